@@ -1,0 +1,50 @@
+// The contract without sockets: JSON text in, JSON text out. What the server, the command line and the tests call.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "api/problem.h"
+#include "engine/progress.h"
+
+namespace tunewright::api {
+
+/// A tuning request that has been read and found valid.
+struct PreparedJob {
+    std::string name;          ///< "" if none
+    double timeout_s = 60;
+    std::string request_json;  ///< the request as sent, compact: what the store keeps and run_job takes
+    std::string request_hash;  ///< of the canonical request, hexadecimal
+};
+
+struct JobOutcome {
+    enum class Status { succeeded, failed, cancelled };
+    Status status = Status::failed;
+    std::string result_json;  ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
+    std::string error_json;   ///< problem object of failed; else empty
+};
+
+/// Status and body of a synchronous call; the media type is problem+json from 400 on.
+struct Answer {
+    int status = 200;
+    std::string body;
+};
+
+/// Reads and checks a tuning request; every fault at once. 400 not JSON, 422 not a valid request.
+std::variant<PreparedJob, Problem> prepare_job(std::string_view body);
+
+/// Runs a prepared request to its end. Never throws for anything in the request.
+JobOutcome run_job(std::string_view request_json, const RunControl& control);
+
+std::string progress_json(const Progress& progress);
+
+Answer evaluate_call(std::string_view body, const RunControl& control);  ///< POST /v1/evaluate
+Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
+
+std::string methods_json();                ///< GET /v1/methods
+Answer method_json(std::string_view id);   ///< GET /v1/methods/{id}; 404 for none
+std::string examples_json();               ///< GET /v1/examples
+std::string openapi_json();                ///< GET /openapi.json (OpenAPI 3.1)
+
+}  // namespace tunewright::api

@@ -1,0 +1,79 @@
+// What controls: the PID law of the contract in its ideal form, with set-point weights and filters.
+//
+//   u = Kp [ (b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f) ]
+//
+// Units: Kp in u per y, Ti, Td, Tf in the plant's time unit.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "engine/expected.h"
+
+namespace tunewright {
+
+enum class FilterType {
+    none,
+    derivative,                 ///< Td s becomes Td s/(1 + s Tf), acting on c r - y
+    measurement_first_order,    ///< y_f = y/(1 + s Tf)
+    measurement_second_order,   ///< y_f = y/(1 + s Tf + (s Tf)^2/2)
+};
+
+struct Filter {
+    FilterType type = FilterType::none;
+    double Tf = 0;  ///< > 0 unless type is none
+};
+
+/// The ideal (standard, non-interacting) form. `Ti` infinite: no integral action.
+struct Pid {
+    double Kp = 0;
+    double Ti = std::numeric_limits<double>::infinity();
+    double Td = 0;
+    double b = 1;
+    double c = 0;
+    Filter filter;
+
+    bool has_integral() const { return Ti < std::numeric_limits<double>::infinity(); }
+};
+
+/// Kp + Ki/s + Kd s, filter and weights as in the ideal form. Carries Kp = 0 (pure I, I + D) too.
+struct ParallelPid {
+    double Kp = 0;
+    double Ki = 0;
+    double Kd = 0;
+    double b = 1;
+    double c = 0;
+    Filter filter;
+};
+
+/// Kp (1 + 1/(s Ti)) (1 + s Td): the interacting form. With `derivative` the filter covers the whole lead (1 + s Td)/(1 + s Tf).
+struct SeriesPid {
+    double Kp = 0;
+    double Ti = 0;
+    double Td = 0;
+    double b = 1;
+    double c = 0;
+    Filter filter;
+    double b_equivalent = 1;  ///< Ti'/Ti of the ideal form: what b = 1 in the series form amounts to
+};
+
+/// A controller as given by the user (`baseline`, `evaluate`).
+using Controller = std::variant<Pid, ParallelPid, SeriesPid>;
+
+/// Ki = Kp/Ti, Kd = Kp Td; exact.
+ParallelPid to_parallel(const Pid& pid);
+
+/// Exact. Errors: Kp = 0 with Ki or Kd != 0 has no ideal form (use the parallel form itself in the loop).
+Expected<Pid> to_ideal(const ParallelPid& pid);
+Pid to_ideal(const SeriesPid& pid);
+
+/// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it exists when
+/// (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says which rule fails.
+Expected<SeriesPid> to_series(const Pid& pid);
+
+/// The gains of any form, which the loop and the simulation work with: exact and total.
+ParallelPid gains(const Controller& controller);
+
+}  // namespace tunewright

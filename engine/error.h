@@ -1,0 +1,30 @@
+// What went wrong, as a value: a kind for programs, a place and a sentence for people.
+#pragma once
+
+#include <string>
+
+namespace tunewright {
+
+/// Named for what the caller can do next, not for where it happened.
+enum class ErrorKind {
+    invalid_argument,        ///< a value of the request is wrong: mend it (`where` names it)
+    unsupported,             ///< a valid request that this method or plant cannot serve: choose another
+    not_identifiable,        ///< the record does not determine a model
+    unstable_plant,          ///< no controller of the asked kind stabilises the plant
+    no_feasible_controller,  ///< no controller meets the limits: relax them (the sentence says how far)
+    unbounded_optimum,       ///< the optimum runs away: fix a filter or limit Mks
+    cancelled,               ///< somebody asked to stop
+    timeout,                 ///< the time allowed is over
+    numerical_failure,       ///< the computation could not be finished to its accuracy
+};
+
+/// The kind as the contract spells it in a problem's `type`, e.g. "no-feasible-controller".
+const char* to_string(ErrorKind kind);
+
+struct Error {
+    ErrorKind kind = ErrorKind::numerical_failure;
+    std::string where;    ///< path inside the request, slash separated, e.g. "plant/L"; empty if none
+    std::string message;  ///< one or two sentences: name, value, rule, cure
+};
+
+}  // namespace tunewright

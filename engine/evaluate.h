@@ -1,0 +1,113 @@
+// One controller on one plant: robustness, performance, traces. The entry behind `POST /v1/evaluate` and every tuned controller.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/plant/plant.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+struct ActuatorLimits {
+    double min = 0;  ///< deviation from the operating point, < 0 or = 0
+    double max = 0;  ///< > min
+};
+
+struct NoiseOptions {
+    double std = 0;          ///< standard deviation of the white measurement noise, >= 0
+    double sample_time = 0;  ///< > 0; 0: 1/100 of the shorter of the loop's own times
+};
+
+struct EvaluateOptions {
+    double setpoint_step = 1;       ///< != 0
+    double load_step = 1;           ///< != 0
+    std::optional<double> horizon;  ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
+    int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
+    std::optional<ActuatorLimits> actuator;
+    std::optional<NoiseOptions> noise;
+    double rank_Ms = 2.0;           ///< entries with Ms above it rank last
+};
+
+/// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.
+struct Robustness {
+    bool stable = false;
+    std::optional<double> Ms, omega_Ms, Mt, omega_Mt, Mks;
+    std::optional<double> gain_margin, gain_margin_low, phase_margin_deg, delay_margin;
+    std::optional<double> gain_crossover, phase_crossover;
+    std::string binding;  ///< e.g. "Ms at omega 12.3"
+    struct Tolerates {
+        std::optional<double> gain_low, gain_high, extra_dead_time;
+    } tolerates;
+    WhyNull why_null;
+};
+
+struct SetpointPerformance {
+    std::optional<double> IAE, ISE, ITAE, overshoot_percent, rise_time, rise_time_5_95, settling_time, TV, first_move;
+    WhyNull why_null;
+};
+
+struct LoadPerformance {
+    std::optional<double> IAE, ISE, ITAE, peak, recovery_time, TV;
+    WhyNull why_null;
+};
+
+struct NoisePerformance {
+    std::optional<double> u_std, gain;
+    WhyNull why_null;
+};
+
+struct Performance {
+    SetpointPerformance setpoint;
+    LoadPerformance load;
+    std::optional<NoisePerformance> noise;
+};
+
+struct Trace {
+    std::vector<double> t, y, u;
+};
+
+struct Responses {
+    Trace setpoint, load;
+    bool settles = true;
+};
+
+struct FrequencyTraces {
+    std::vector<double> omega, L_re, L_im, L_phase_deg, S_abs, T_abs, CS_abs;
+};
+
+/// How the figures were checked; empty where a check does not apply.
+struct Verification {
+    std::optional<double> iae_step_halving;    ///< relative change of the load IAE when the time step is halved
+    std::optional<double> ie_identity;         ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
+    std::optional<double> ms_grid_difference;  ///< relative difference of Ms on an independent grid
+    std::optional<bool> stability_methods_agree;
+};
+
+struct Equivalents {
+    ParallelPid parallel;
+    std::optional<SeriesPid> series;
+    std::string why_no_series;
+};
+
+/// Everything known about one controller on one plant.
+struct Evaluation {
+    Controller controller;
+    Equivalents equivalents;
+    Robustness robustness;
+    Performance performance;
+    std::optional<Responses> responses;        ///< with points > 0 and a stable loop
+    std::optional<FrequencyTraces> frequency;  ///< with points > 0
+    Verification verification;
+    std::vector<Warning> warnings;
+    double compute_ms = 0;
+};
+
+/// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...", "evaluate/...").
+/// An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
+Expected<Evaluation> evaluate(const Plant& plant, const Controller& controller, const EvaluateOptions& options);
+
+}  // namespace tunewright

@@ -1,0 +1,21 @@
+// A recorded test as columns of numbers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tunewright {
+
+enum class RecordKind { automatic, step, relay, general };
+
+/// Samples in time order as exported; u[i] holds from t[i] until t[i+1] (zero-order hold). Lengths are equal.
+struct Record {
+    std::vector<double> t;  ///< time in the user's unit, any start
+    std::vector<double> u;  ///< controller output (plant input)
+    std::vector<double> y;  ///< measurement
+    RecordKind kind = RecordKind::automatic;
+    std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
+};
+
+}  // namespace tunewright

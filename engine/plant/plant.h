@@ -1,0 +1,70 @@
+// What is controlled, as the user describes it. Every type is a linear SISO plant y = P(s) (u + d) with dead time L >= 0
+// at its input; values are deviations from the operating point. Time is in the user's unit, omega in rad per that unit.
+#pragma once
+
+#include <complex>
+#include <variant>
+#include <vector>
+
+namespace tunewright {
+
+/// K e^(-Ls) / (T s + 1), taken literally: T < 0 is unstable, T = 0 a pure dead time with gain.
+struct Fopdt {
+    double K = 0;
+    double T = 0;
+    double L = 0;
+};
+
+/// K e^(-Ls) / ((T1 s + 1)(T2 s + 1)).
+struct Sopdt {
+    double K = 0;
+    double T1 = 0;
+    double T2 = 0;
+    double L = 0;
+};
+
+/// K e^(-Ls) / (T^2 s^2 + 2 zeta T s + 1).
+struct OscillatorySopdt {
+    double K = 0;
+    double T = 0;
+    double zeta = 0;
+    double L = 0;
+};
+
+/// K e^(-Ls) / (s (T s + 1)); K is the slope of y per unit of u.
+struct Ipdt {
+    double K = 0;
+    double L = 0;
+    double T = 0;
+};
+
+/// num(s)/den(s) e^(-Ls), coefficients in descending powers of s, proper.
+struct TransferFunction {
+    std::vector<double> num;
+    std::vector<double> den;
+    double L = 0;
+};
+
+/// K prod(s - z)/prod(s - p) e^(-Ls). K is not the static gain.
+struct Zpk {
+    double K = 0;
+    std::vector<std::complex<double>> zeros;  ///< complex ones in conjugate pairs
+    std::vector<std::complex<double>> poles;
+    double L = 0;
+};
+
+/// x' = A x + B u(t - L), y = C x + D u(t - L). A is n x n (rows), B and C have n entries.
+struct StateSpace {
+    std::vector<std::vector<double>> A;
+    std::vector<double> B;
+    std::vector<double> C;
+    double D = 0;
+    double L = 0;
+};
+
+using Plant = std::variant<Fopdt, Sopdt, OscillatorySopdt, Ipdt, TransferFunction, Zpk, StateSpace>;
+
+/// The dead time of any plant.
+double dead_time(const Plant& plant);
+
+}  // namespace tunewright

@@ -1,0 +1,52 @@
+// The one entry: a tuning request in, a tuning result out. Record -> model -> controllers -> evaluations -> ranking.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/evaluate.h"
+#include "engine/identification/identify.h"
+#include "engine/progress.h"
+#include "engine/tuning/method.h"
+
+namespace tunewright {
+
+struct MethodRequest {
+    std::string method = "robust";
+    MethodOptions options;
+};
+
+struct TuningRequest {
+    std::optional<Plant> plant;    ///< exactly one of plant and record
+    std::optional<Record> record;
+    IdentifyOptions identify;
+    std::vector<MethodRequest> tune = {MethodRequest{}};
+    std::optional<Controller> baseline;
+    EvaluateOptions evaluate;
+};
+
+/// One line of the answer: a method's controller with its evaluation, or why there is none.
+struct TuningEntry {
+    std::string method;  ///< "baseline" for today's settings
+    std::string title;
+    std::string source;
+    MethodOptions options;
+    std::optional<Plant> reduced_model;
+    std::optional<CostSurface> surface;
+    std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
+    std::optional<Error> error;
+};
+
+struct TuningResult {
+    std::optional<IdentifiedModel> model;
+    std::vector<TuningEntry> controllers;
+    std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
+    std::string ranking_by;
+    bool partial = false;      ///< cancelled after a feasible design was found
+};
+
+/// Errors: those of identification; of the single method if all fail; invalid_argument; cancelled.
+Expected<TuningResult> tune(const TuningRequest& request, const RunControl& control);
+
+}  // namespace tunewright

@@ -1,0 +1,56 @@
+// What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/plant/linear_plant.h"
+#include "engine/plant/plant.h"
+#include "engine/progress.h"
+#include "engine/tuning/options.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+/// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j]; empty: no feasible Kp.
+struct CostSurface {
+    std::vector<double> Ti, Td;
+    std::vector<std::vector<std::optional<double>>> cost;
+};
+
+struct TunedController {
+    Pid controller;
+    std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
+    std::vector<Warning> warnings;
+    std::optional<CostSurface> surface;
+    bool partial = false;                ///< stopped early: the best feasible design so far
+};
+
+/// The plant both as given and in the form that computations use; `dead_time_std` is the standard error of an identified L.
+struct TuningProblem {
+    Plant plant;
+    LinearPlant linear;
+    std::optional<double> dead_time_std;
+};
+
+struct TuningMethod {
+    std::string id;
+    std::string title;
+    std::string formula;   ///< readable as in the source, plain text
+    std::string source;    ///< author, year, where
+    std::string needs;     ///< "any linear plant", "fopdt (others are reduced)", ...
+    std::string validity;  ///< the range the source claims
+    std::vector<OptionDescription> options;
+    Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
+};
+
+/// Every method, in the order in which they are listed. The one place that names them all.
+const std::vector<TuningMethod>& method_registry();
+
+/// Null if there is none of this id.
+const TuningMethod* find_method(const std::string& id);
+
+}  // namespace tunewright

@@ -1,0 +1,42 @@
+// The options of a tuning method: their description (from which decoding, schema, form and docs follow) and their values.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tunewright {
+
+enum class OptionType { number, integer, boolean, choice, object };
+
+struct OptionDescription {
+    std::string name;      ///< as in JSON, e.g. "Ms"
+    OptionType type = OptionType::number;
+    std::string sentence;  ///< what it does
+    std::string unit;      ///< "", "time", "u/y", ...
+    std::optional<std::variant<bool, double, std::string>> default_value;
+    std::optional<double> minimum, exclusive_minimum, maximum;  ///< of a number
+    std::vector<std::string> choices;                           ///< of a choice
+    std::vector<OptionDescription> fields;                      ///< of an object
+    int at_most_fields = 0;                                     ///< of an object: 0, any number may be given
+};
+
+using OptionValue = std::variant<bool, double, std::string>;
+
+/// Values by path: "Ms", "filter/Tf", "reduction/method". Only what the user gave; already checked against the description.
+class MethodOptions {
+public:
+    void set(const std::string& path, OptionValue value) { values_[path] = std::move(value); }
+    bool has(const std::string& path) const { return values_.contains(path); }
+    std::optional<double> number(const std::string& path) const;
+    std::optional<bool> boolean(const std::string& path) const;
+    std::optional<std::string> text(const std::string& path) const;
+    const std::map<std::string, OptionValue>& values() const { return values_; }
+
+private:
+    std::map<std::string, OptionValue> values_;
+};
+
+}  // namespace tunewright

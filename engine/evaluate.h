@@ -1,4 +1,5 @@
-// One controller on one plant: robustness, performance, traces. The entry behind `POST /v1/evaluate` and every tuned controller.
+// One controller on one plant: robustness, performance, traces. The entry behind `POST /v1/evaluate` and every tuned
+// controller.
 #pragma once
 
 #include <optional>
@@ -29,7 +30,7 @@ struct EvaluateOptions {
     int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
-    double rank_Ms = 2.0;           ///< entries with Ms above it rank last
+    double rank_Ms = 2.0;  ///< entries with Ms above it rank last
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.
@@ -106,8 +107,8 @@ struct Evaluation {
     double compute_ms = 0;
 };
 
-/// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...", "evaluate/...").
-/// An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
+/// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...",
+/// "evaluate/..."). An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
 Expected<Evaluation> evaluate(const Plant& plant, const Controller& controller, const EvaluateOptions& options);
 
 }  // namespace tunewright

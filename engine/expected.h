@@ -12,7 +12,8 @@ template <class T>
 class [[nodiscard]] Expected {
 public:
     Expected(T value) : content_(std::in_place_index<0>, std::move(value)) {}  // NOLINT(google-explicit-constructor)
-    Expected(Error error) : content_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
+    Expected(Error error)
+        : content_(std::in_place_index<1>, std::move(error)) {}  // NOLINT(google-explicit-constructor)
 
     bool has_value() const { return content_.index() == 0; }
     explicit operator bool() const { return has_value(); }

@@ -18,7 +18,7 @@ struct MethodRequest {
 };
 
 struct TuningRequest {
-    std::optional<Plant> plant;    ///< exactly one of plant and record
+    std::optional<Plant> plant;  ///< exactly one of plant and record
     std::optional<Record> record;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
@@ -43,7 +43,7 @@ struct TuningResult {
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
     std::string ranking_by;
-    bool partial = false;      ///< cancelled after a feasible design was found
+    bool partial = false;  ///< cancelled after a feasible design was found
 };
 
 /// Errors: those of identification; of the single method if all fail; invalid_argument; cancelled.

@@ -16,9 +16,9 @@ namespace tunewright {
 
 enum class FilterType {
     none,
-    derivative,                 ///< Td s becomes Td s/(1 + s Tf), acting on c r - y
-    measurement_first_order,    ///< y_f = y/(1 + s Tf)
-    measurement_second_order,   ///< y_f = y/(1 + s Tf + (s Tf)^2/2)
+    derivative,                ///< Td s becomes Td s/(1 + s Tf), acting on c r - y
+    measurement_first_order,   ///< y_f = y/(1 + s Tf)
+    measurement_second_order,  ///< y_f = y/(1 + s Tf + (s Tf)^2/2)
 };
 
 struct Filter {
@@ -48,7 +48,8 @@ struct ParallelPid {
     Filter filter;
 };
 
-/// Kp (1 + 1/(s Ti)) (1 + s Td): the interacting form. With `derivative` the filter covers the whole lead (1 + s Td)/(1 + s Tf).
+/// Kp (1 + 1/(s Ti)) (1 + s Td): the interacting form. With `derivative` the filter covers the whole lead (1 + s Td)/(1
+/// + s Tf).
 struct SeriesPid {
     double Kp = 0;
     double Ti = 0;
@@ -69,8 +70,9 @@ ParallelPid to_parallel(const Pid& pid);
 Expected<Pid> to_ideal(const ParallelPid& pid);
 Pid to_ideal(const SeriesPid& pid);
 
-/// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it exists when
-/// (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says which rule fails.
+/// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it
+/// exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
+/// which rule fails.
 Expected<SeriesPid> to_series(const Pid& pid);
 
 /// The gains of any form, which the loop and the simulation work with: exact and total.

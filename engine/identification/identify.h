@@ -25,8 +25,8 @@ struct IdentifyOptions {
 
 struct Candidate {
     Plant plant;
-    double fit_percent = 0;                         ///< 100 (1 - ||y - yhat||/||y - mean(y)||), free run, offset estimated
-    double criterion = 0;                           ///< information criterion, smaller is better
+    double fit_percent = 0;  ///< 100 (1 - ||y - yhat||/||y - mean(y)||), free run, offset estimated
+    double criterion = 0;    ///< information criterion, smaller is better
     std::map<std::string, double> standard_errors;  ///< by parameter symbol; robust to autocorrelated residuals
 };
 
@@ -38,13 +38,13 @@ struct FitTrace {
 /// What was found in the record and what was done about it. Named figures, sentences beside them.
 struct DataQuality {
     int samples = 0;
-    double sample_time = 0;       ///< median spacing
+    double sample_time = 0;  ///< median spacing
     bool irregular = false;
-    double noise_std = 0;         ///< of y, high-frequency part
-    double quantisation = 0;      ///< step of y's grid, 0 if none found
-    int steps = 0;                ///< changes of u
+    double noise_std = 0;     ///< of y, high-frequency part
+    double quantisation = 0;  ///< step of y's grid, 0 if none found
+    int steps = 0;            ///< changes of u
     bool settled = false;
-    int samples_dropped = 0;      ///< repeated or backward times, non-numbers
+    int samples_dropped = 0;  ///< repeated or backward times, non-numbers
     std::vector<std::string> notes;
 };
 
@@ -59,7 +59,8 @@ struct IdentifiedModel {
     std::vector<Warning> warnings;
 };
 
-/// Output-error least squares with continuous dead time and free offset. Errors: not_identifiable, with the cure; invalid_argument.
+/// Output-error least squares with continuous dead time and free offset. Errors: not_identifiable, with the cure;
+/// invalid_argument.
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control);
 
 }  // namespace tunewright

@@ -1,4 +1,5 @@
-// The form in which every linear plant is computed with: gain, zeros and poles, dead time, and a state-space realisation.
+// The form in which every linear plant is computed with: gain, zeros and poles, dead time, and a state-space
+// realisation.
 #pragma once
 
 #include <complex>
@@ -17,16 +18,18 @@ struct Realisation {
     double D = 0;
 };
 
-/// P(s) = gain s^(-integrators) prod(s - z)/prod(s - p) e^(-Ls), proper. Poles and zeros at the origin are in `integrators`
-/// alone (negative: zeros at s = 0). Complex ones come in conjugate pairs, neighbours in the list, positive imaginary part first.
+/// P(s) = gain s^(-integrators) prod(s - z)/prod(s - p) e^(-Ls), proper. Poles and zeros at the origin are in
+/// `integrators` alone (negative: zeros at s = 0). Complex ones come in conjugate pairs, neighbours in the list,
+/// positive imaginary part first.
 class LinearPlant {
 public:
-    /// Errors: invalid_argument with `where` = "plant/<field>": non-finite numbers, K = 0, L < 0, empty or zero `den`, improper,
-    /// shapes of A, B, C; unsupported for a state space with an unstable mode that input or output cannot reach.
+    /// Errors: invalid_argument with `where` = "plant/<field>": non-finite numbers, K = 0, L < 0, empty or zero `den`,
+    /// improper, shapes of A, B, C; unsupported for a state space with an unstable mode that input or output cannot
+    /// reach.
     static Expected<LinearPlant> make(const Plant& plant);
 
-    std::complex<double> at(std::complex<double> s) const;         ///< P(s), dead time included
-    std::complex<double> rational(std::complex<double> s) const;   ///< without the dead time
+    std::complex<double> at(std::complex<double> s) const;        ///< P(s), dead time included
+    std::complex<double> rational(std::complex<double> s) const;  ///< without the dead time
 
     double gain() const { return gain_; }
     int integrators() const { return integrators_; }
@@ -36,9 +39,9 @@ public:
     const Realisation& realisation() const { return realisation_; }
 
     int order() const { return static_cast<int>(poles_.size()) + (integrators_ > 0 ? integrators_ : 0); }
-    int pole_excess() const;                 ///< poles minus zeros, >= 0
-    double direct_term() const;              ///< P(infinity) without the dead time: gain if the pole excess is 0, else 0
-    int unstable_poles() const;              ///< in the open right half-plane
+    int pole_excess() const;     ///< poles minus zeros, >= 0
+    double direct_term() const;  ///< P(infinity) without the dead time: gain if the pole excess is 0, else 0
+    int unstable_poles() const;  ///< in the open right half-plane
     bool has_right_half_plane_zero() const;
     /// The first non-zero term: lim s^integrators P(s) for s -> 0 (static gain, or slope for one integrator).
     double low_frequency_gain() const;

@@ -1,5 +1,6 @@
-// What is controlled, as the user describes it. Every type is a linear SISO plant y = P(s) (u + d) with dead time L >= 0
-// at its input; values are deviations from the operating point. Time is in the user's unit, omega in rad per that unit.
+// What is controlled, as the user describes it. Every type is a linear SISO plant y = P(s) (u + d) with dead time L >=
+// 0 at its input; values are deviations from the operating point. Time is in the user's unit, omega in rad per that
+// unit.
 #pragma once
 
 #include <complex>

@@ -15,7 +15,8 @@
 
 namespace tunewright {
 
-/// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j]; empty: no feasible Kp.
+/// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j];
+/// empty: no feasible Kp.
 struct CostSurface {
     std::vector<double> Ti, Td;
     std::vector<std::vector<std::optional<double>>> cost;
@@ -26,10 +27,11 @@ struct TunedController {
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
     std::optional<CostSurface> surface;
-    bool partial = false;                ///< stopped early: the best feasible design so far
+    bool partial = false;  ///< stopped early: the best feasible design so far
 };
 
-/// The plant both as given and in the form that computations use; `dead_time_std` is the standard error of an identified L.
+/// The plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
+/// identified L.
 struct TuningProblem {
     Plant plant;
     LinearPlant linear;

@@ -1,4 +1,5 @@
-// The options of a tuning method: their description (from which decoding, schema, form and docs follow) and their values.
+// The options of a tuning method: their description (from which decoding, schema, form and docs follow) and their
+// values.
 #pragma once
 
 #include <map>
@@ -12,7 +13,7 @@ namespace tunewright {
 enum class OptionType { number, integer, boolean, choice, object };
 
 struct OptionDescription {
-    std::string name;      ///< as in JSON, e.g. "Ms"
+    std::string name;  ///< as in JSON, e.g. "Ms"
     OptionType type = OptionType::number;
     std::string sentence;  ///< what it does
     std::string unit;      ///< "", "time", "u/y", ...
@@ -25,7 +26,8 @@ struct OptionDescription {
 
 using OptionValue = std::variant<bool, double, std::string>;
 
-/// Values by path: "Ms", "filter/Tf", "reduction/method". Only what the user gave; already checked against the description.
+/// Values by path: "Ms", "filter/Tf", "reduction/method". Only what the user gave; already checked against the
+/// description.
 class MethodOptions {
 public:
     void set(const std::string& path, OptionValue value) { values_[path] = std::move(value); }

@@ -1,0 +1,35 @@
+// Eigenvalues, roots, exponentials and solutions of small dense systems as plain functions: the decompositions of Eigen
+// are compiled once, behind this header. Matrices are n x n, row by row.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tunewright {
+
+/// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
+std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
+
+/// Roots of a real polynomial (descending powers, leading coefficient non-zero), with conjugate pairs as above.
+/// Eigenvalues of the scaled and balanced companion matrix, polished by Newton steps where these lower the residual.
+std::vector<std::complex<double>> polynomial_roots(std::span<const double> coefficients);
+
+/// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer
+/// function is 0.
+std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<const double> A,
+                                                                    std::span<const double> B,
+                                                                    std::span<const double> C, double D, int n);
+
+/// C (sI - A)^-1 B + D by solving the linear system.
+std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
+                                        double D, int n, std::complex<double> s);
+
+/// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
+std::vector<double> matrix_exponential(std::span<const double> matrix, int n);
+
+/// Solves M x = b by LU with partial pivoting; empty if M is singular to working precision.
+std::optional<std::vector<double>> solve(std::span<const double> matrix, std::span<const double> b, int n);
+
+}  // namespace tunewright

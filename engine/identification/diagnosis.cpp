@@ -1,0 +1,147 @@
+#include "engine/identification/diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/identification/uncertainty.h"
+#include "engine/identification/wording.h"
+
+namespace tunewright {
+namespace {
+
+double root_mean_square(const std::vector<double>& x) {
+    double sum = 0;
+    for (double value : x) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+/// What is still to come after the last sample, relative to the largest distance from rest so far. Infinite input: 1
+/// for integrating structures.
+double remaining_movement(const CleanRecord& r, const Fit& fit) {
+    if (is_integrating(fit.form.structure)) return 1;
+    const double offset = fit.linear[fit.form.offset_index()];
+    double moved = 0;
+    for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
+    const double final_value = fit.linear[0] * r.v_level.back() + offset;
+    return std::abs(final_value - fit.model.back()) / std::max(moved, 1e-300);
+}
+
+void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {
+    if (is_integrating(fit.form.structure) || remaining <= 0.05 || r.changes() > 2) return;
+    warnings.push_back(
+        {"unsettled-record",
+         "The record ends while y still moves: by the model " + number_text(100 * remaining / (1 + remaining), 3) +
+             " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
+}
+
+void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+    const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
+    const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
+    if (rms > 0.007 && rms > 1.5 * noise && correlation_time(fit.residual) > 3) {
+        warnings.push_back(
+            {"structured-residuals", "The model misses y by " + number_text(rms * unit, 3) +
+                                         " (r.m.s.), more than noise or rounding (" + number_text(noise * unit, 3) +
+                                         ") explain, and the misses are not random. A disturbance, a drift, a "
+                                         "nonlinearity or a richer structure is in the record: compare y and "
+                                         "model in the plot, try another model or repeat the test."});
+    }
+    double worst = 0;
+    for (double e : fit.residual) worst = std::max(worst, std::abs(e));
+    if (worst > 8 * rms) {
+        warnings.push_back({"outliers", "At least one sample lies " + number_text(worst * unit, 3) +
+                                            " from the model where " + number_text(rms * unit, 3) +
+                                            " is typical; remove false readings from the record."});
+    }
+}
+
+void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
+                    std::vector<Warning>& warnings) {
+    double lag_sum = values.at("L");
+    for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? values.at(lag) : 0;
+    for (const auto& [name, error] : errors) {
+        const bool is_time = name == "L" || name == "T2" || name == "b" || name == "T";
+        const double yardstick =
+            is_time ? std::max(std::abs(values.at(name)), 0.5 * lag_sum) : std::abs(values.at(name));
+        if (error <= 0.2 * yardstick) continue;
+        warnings.push_back({"uncertain-parameters", name + " = " + number_text(values.at(name)) +
+                                                        " has a standard error of " + number_text(error, 2) +
+                                                        ": the record hardly determines it. A larger or longer test, "
+                                                        "or a simpler model, gives a usable figure."});
+    }
+}
+
+/// A straight line through the samples before the first change of u.
+void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
+    const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
+    if (n < 5 || r.t[n - 1] <= r.t[0]) return;
+    const double t_mean = std::accumulate(r.t.begin(), r.t.begin() + n, 0.0) / n,
+                 y_mean = std::accumulate(r.y.begin(), r.y.begin() + n, 0.0) / n;
+    double tt = 0, ty = 0, yy = 0;
+    for (int i = 0; i < n; ++i) {
+        tt += (r.t[i] - t_mean) * (r.t[i] - t_mean);
+        ty += (r.t[i] - t_mean) * (r.y[i] - y_mean);
+        yy += (r.y[i] - y_mean) * (r.y[i] - y_mean);
+    }
+    const double slope = ty / tt, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
+    const double error = std::sqrt(std::max(0.0, yy - slope * ty) / (n - 2) / tt);
+    if (moved < 0.03 || std::abs(slope) < 5 * error) return;
+    warnings.push_back(
+        {"not-at-rest",
+         "y already moves by " + number_text(moved * r.scale.y_scale, 3) + " before u changes, " +
+             number_text(100 * moved, 2) +
+             " % of its range: the test did not start at rest, or y drifts. Start the test from a steady state."});
+}
+
+void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+    const int rows = quality.samples + quality.samples_dropped;
+    if (quality.samples_dropped > 0.05 * rows) {
+        warnings.push_back({"rows-dropped", std::to_string(quality.samples_dropped) + " of " + std::to_string(rows) +
+                                                " rows could not be used."});
+    }
+    if (quality.quantisation * 10 > r.scale.y_scale) {
+        warnings.push_back(
+            {"coarse-quantisation", "y covers only " + number_text(r.scale.y_scale / quality.quantisation, 3) +
+                                        " steps of its grid (" + number_text(quality.quantisation, 3) +
+                                        "). A larger step of u or a finer sensor range gives a better model."});
+    }
+    if (fit.form.structure == Structure::fopdt && fit.shape.T() >= 50) {
+        warnings.push_back({"looks-integrating",
+                            "The time constant is at least 50 times the record's length: the record looks like that of "
+                            "an integrating process. Use model ipdt."});
+    }
+    if (fit.form.structure == Structure::ipdt) return;
+    const double slowest = (is_integrating(fit.form.structure) ? fit.shape.T() : fit.shape.a1()) * r.scale.t_scale;
+    if (!is_integrating(fit.form.structure) && slowest < quality.sample_time) {
+        warnings.push_back({"undersampled-response", "The time constant (" + number_text(slowest, 3) +
+                                                         ") is below the spacing of the samples (" +
+                                                         number_text(quality.sample_time, 3) +
+                                                         "), which cannot show it. Record faster."});
+    }
+}
+
+}  // namespace
+
+bool responds(const CleanRecord& r, const Fit& fit) {
+    const double mean = std::accumulate(r.y.begin(), r.y.end(), 0.0) / r.samples();
+    double constant = 0;
+    for (double y : r.y) constant += (y - mean) * (y - mean);
+    const double n = effective_samples(fit.residual);
+    const double gain = n * std::log((constant + 1e-14 * r.samples()) / (fit.sse + 1e-14 * r.samples()));
+    return gain > (fit.form.parameters() - 1) * std::log(n) + 10;
+}
+
+Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
+                   const std::map<std::string, double>& standard_errors, const DataQuality& quality) {
+    Diagnosis diagnosis;
+    const double remaining = remaining_movement(record, fit);
+    diagnosis.settled = remaining < 0.05;
+    warn_unsettled(record, fit, remaining, diagnosis.warnings);
+    warn_not_at_rest(record, diagnosis.warnings);
+    warn_residuals(record, fit, quality, diagnosis.warnings);
+    warn_uncertain(values, standard_errors, diagnosis.warnings);
+    warn_sampling(record, fit, quality, diagnosis.warnings);
+    return diagnosis;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,160 @@
+#include "engine/identification/identify.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/identification/candidates.h"
+#include "engine/identification/data_quality.h"
+#include "engine/identification/diagnosis.h"
+#include "engine/identification/uncertainty.h"
+#include "engine/identification/wording.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kThinSamples = 240;
+constexpr int kTracePoints = 2000;
+
+/// The structures to fit, simpler ones first; the last is the one asked for unless the choice is automatic.
+std::vector<Structure> structures_for(ModelChoice model) {
+    switch (model) {
+        case ModelChoice::fopdt: return {Structure::fopdt};
+        case ModelChoice::sopdt: return {Structure::fopdt, Structure::sopdt};
+        case ModelChoice::sopdt_zero: return {Structure::fopdt, Structure::sopdt, Structure::sopdt_zero};
+        case ModelChoice::ipdt: return {Structure::ipdt};
+        case ModelChoice::ipdt_lag: return {Structure::ipdt, Structure::ipdt_lag};
+        case ModelChoice::automatic: break;
+    }
+    return {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, Structure::sopdt_zero};
+}
+
+std::optional<Error> refuse_method(const IdentifyOptions& options) {
+    if (options.method == IdentifyMethod::relay_fourier) {
+        return Error{ErrorKind::unsupported, "identify/method",
+                     "The relay formulas alone (relay_fourier) are not available; use output_error, which fits relay "
+                     "records too."};
+    }
+    if (options.method == IdentifyMethod::two_point) {
+        return Error{ErrorKind::unsupported, "identify/method",
+                     "The two-point construction is not available; use output_error, which uses every sample."};
+    }
+    return std::nullopt;
+}
+
+/// A change of u in the last samples shows nothing of the response.
+std::optional<Error> refuse_late_step(const CleanRecord& r) {
+    const auto after = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t > r.v_time.front(); });
+    if (after > 3) return std::nullopt;
+    return Error{ErrorKind::not_identifiable, "record",
+                 "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
+                     ", with " + std::to_string(after) +
+                     " samples left: the response is not in the record. Record until y has settled after the step."};
+}
+
+Error no_response(const CleanRecord& r, double percent) {
+    return {ErrorKind::not_identifiable, "record",
+            "y does not respond to u beyond what its own noise and drift explain (the best model reaches a fit of " +
+                number_text(std::max(0.0, percent), 3) +
+                " %). u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
+                " and the record ends at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.t.back()) +
+                ". Make a larger step, record until y has settled, and check that u and y belong to the same loop."};
+}
+
+Error cancelled() { return {ErrorKind::cancelled, "", "The identification was cancelled."}; }
+
+void report(const RunControl& control, double fraction, std::string message) {
+    if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
+}
+
+FitTrace trace_of(const CleanRecord& r, const Fit& fit) {
+    FitTrace trace;
+    const int n = r.samples(), points = std::min(n, kTracePoints);
+    for (int k = 0; k < points; ++k) {
+        const int i = points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1));
+        trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
+        trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
+        trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * fit.model[i]);
+    }
+    return trace;
+}
+
+/// The best-fitting candidate's residual is the nearest to noise: it says how many independent samples there are.
+double independent_samples(const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    return best == nullptr ? 4 : effective_samples(best->residual);
+}
+
+/// Candidates sorted by criterion, and the chosen one's result.
+IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const std::vector<double>& criteria,
+                         const std::vector<double>& percents, const Choice& choice) {
+    IdentifiedModel model;
+    model.data_quality = describe_record(record);
+    const double grid = model.data_quality.quantisation / record.scale.y_scale;
+    std::vector<int> order(fits.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return criteria[a] < criteria[b]; });
+    for (int i : order) {
+        if (!fits[i].determined) continue;
+        jacobian(record, fits[i]);
+        FittedPlant fitted = fitted_plant(record, fits[i], grid);
+        model.candidates.push_back({fitted.plant, percents[i], criteria[i], fitted.standard_errors});
+        if (i != choice.index) continue;
+        Diagnosis diagnosis = diagnose(record, fits[i], fitted.values, fitted.standard_errors, model.data_quality);
+        model.plant = fitted.plant;
+        model.fit_percent = percents[i];
+        model.standard_errors = std::move(fitted.standard_errors);
+        model.choice_reason = choice.reason;
+        model.fit = trace_of(record, fits[i]);
+        model.data_quality.settled = diagnosis.settled;
+        model.warnings = std::move(diagnosis.warnings);
+        if (fits[i].form.free_rest) {
+            const double level = -fits[i].linear[2] / fits[i].linear[0] * record.scale.u_scale + record.scale.u_rest;
+            model.data_quality.notes.push_back("y rests at u = " + number_text(level) +
+                                               ", as estimated from the record (the first u is " +
+                                               number_text(record.scale.u_rest) + ").");
+        }
+    }
+    return model;
+}
+
+}  // namespace
+
+Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
+    if (auto error = refuse_method(options)) return *error;
+    const Expected<CleanRecord> clean = clean_record(record);
+    if (!clean) return clean.error();
+    if (auto error = refuse_late_step(*clean)) return *error;
+    const CleanRecord thin = thin_out(*clean, kThinSamples);
+
+    const bool automatic = options.model == ModelChoice::automatic;
+    const std::vector<Structure> structures = structures_for(options.model);
+    std::vector<Fit> fits;
+    for (std::size_t i = 0; i < structures.size(); ++i) {
+        if (control.stop.stop_requested()) return cancelled();
+        report(control, static_cast<double>(i) / static_cast<double>(structures.size()),
+               std::string("fitting ") + name_of(structures[i]));
+        fits.push_back(fit_structure(*clean, thin, structures[i], fits, control.stop));
+    }
+    if (control.stop.stop_requested()) return cancelled();
+    if (!automatic) fits = {fits.back()};
+
+    const double independent = independent_samples(fits);
+    std::vector<double> criteria, percents;
+    for (const Fit& fit : fits) {
+        criteria.push_back(information_criterion(*clean, fit, independent));
+        percents.push_back(fit_percent(*clean, fit));
+    }
+    Choice choice = choose(fits, criteria, percents, independent);
+    if (choice.index < 0 || !responds(*clean, fits[choice.index])) {
+        return no_response(*clean, *std::max_element(percents.begin(), percents.end()));
+    }
+    if (!automatic) choice.reason = std::string(name_of(structures.back())) + " was asked for.";
+    IdentifiedModel model = assemble(*clean, std::move(fits), criteria, percents, choice);
+    report(control, 1, "model found");
+    return model;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,58 @@
+// Output-error least squares: the free run of a model against the measurement.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "engine/identification/response.h"
+
+namespace tunewright {
+
+/// What the model of a structure is made of beside its shape. The linear coefficients are, in this order: the gain,
+/// gain times b (sopdt_zero), the offset, and with `free_rest` (integrating structures) a slope: then the level of u at
+/// which y rests is unknown.
+struct ModelForm {
+    Structure structure = Structure::fopdt;
+    bool free_rest = false;
+
+    int linear_size() const { return 2 + (structure == Structure::sopdt_zero) + free_rest; }
+    int offset_index() const { return structure == Structure::sopdt_zero ? 2 : 1; }
+    int parameters() const { return shape_size(structure) + linear_size(); }
+};
+
+/// Bounds of the search, dimensionless, from the record's sampling and length.
+struct ShapeBounds {
+    std::array<double, 3> low{}, high{};
+};
+ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
+
+/// A model fitted to a clean record; dimensionless.
+struct Fit {
+    ModelForm form;
+    Shape shape;
+    std::vector<double> linear;    ///< linear_size() coefficients
+    std::vector<double> model;     ///< n_samples: the free run
+    std::vector<double> residual;  ///< n_samples: y - model
+    double sse = 0;                ///< sum of squares, that of y_rest's row included
+    /// Columns d model/d shape, then d model/d linear; n_samples rows and one more for y_rest if there is one. Empty
+    /// until `jacobian`.
+    std::vector<std::vector<double>> J;
+    bool determined = false;  ///< the gain's column is independent of the others
+    int iterations = 0;
+};
+
+/// The linear coefficients for a fixed shape by orthogonal projection (variable projection: Golub and Pereyra 1973),
+/// and the fit's residual.
+Fit project(const CleanRecord& record, const ModelForm& form, const Shape& shape);
+
+/// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
+/// projected Jacobian), from `start`. Sensitivity to L is exact (-dx/dt), those to the logarithms are central
+/// differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more than
+/// 1e-9, after `most_iterations`, or when asked to.
+Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& start, int most_iterations,
+              std::stop_token stop);
+
+/// Fills `fit.J`.
+void jacobian(const CleanRecord& record, Fit& fit);
+
+}  // namespace tunewright

@@ -1,0 +1,151 @@
+#include "engine/identification/response.h"
+
+#include <cmath>
+
+namespace tunewright {
+namespace {
+
+/// T x' + x = v.
+struct Lag {
+    double T, x = 0;
+
+    void advance(double dt, double v) { x = v + (x - v) * std::exp(-dt / T); }
+    double value() const { return x; }
+    double slope(double v) const { return (v - x) / T; }
+    double curvature(double v) const { return -slope(v) / T; }
+};
+
+/// x' = v.
+struct Integrator {
+    double x = 0;
+
+    void advance(double dt, double v) { x += v * dt; }
+    double value() const { return x; }
+    double slope(double v) const { return v; }
+    double curvature(double) const { return 0; }
+};
+
+/// x' = l, T l' + l = v.
+struct LaggedIntegrator {
+    double T, x = 0, l = 0;
+
+    void advance(double dt, double v) {
+        const double e = std::expm1(-dt / T);
+        x += v * dt - (l - v) * T * e;
+        l += (l - v) * e;
+    }
+    double value() const { return x; }
+    double slope(double) const { return l; }
+    double curvature(double v) const { return (v - l) / T; }
+};
+
+/// a2 x'' + a1 x' + x = v. The transition matrix over dt in closed form, through the roots -sigma +- w (real) or -sigma
+/// +- i w.
+class SecondOrder {
+public:
+    SecondOrder(double a1, double a2) : a1_(a1), a2_(a2), sigma_(a1 / (2 * a2)) {
+        const double square = sigma_ * sigma_ - 1 / a2;
+        // Nearly equal roots are taken as equal: the relative error of the response is below 1e-12.
+        const double w2 = std::abs(square) < 1e-13 * sigma_ * sigma_ ? 0 : square;
+        w_ = std::sqrt(std::abs(w2));
+        kind_ = w2 == 0 ? Kind::equal : w2 > 0 ? Kind::real : Kind::complex;
+        fast_ = sigma_ + w_;
+        slow_ = 1 / (a2 * fast_);
+    }
+
+    void advance(double dt, double v) {
+        if (dt != dt_) prepare(dt);
+        const double e = x_ - v, e1 = x1_;
+        x_ = v + (cosine_ + sigma_ * sine_) * e + sine_ * e1;
+        x1_ = -(sine_ / a2_) * e + (cosine_ - sigma_ * sine_) * e1;
+    }
+    double value() const { return x_; }
+    double slope(double) const { return x1_; }
+    double curvature(double v) const { return (v - x_ - a1_ * x1_) / a2_; }
+
+private:
+    enum class Kind { real, equal, complex };
+
+    /// e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or their trigonometric twins.
+    void prepare(double dt) {
+        dt_ = dt;
+        if (kind_ == Kind::real) {
+            const double slow = std::exp(-slow_ * dt), ratio = std::expm1(-2 * w_ * dt);
+            cosine_ = slow * (1 + 0.5 * ratio);
+            sine_ = -slow * ratio / (2 * w_);
+        } else if (kind_ == Kind::equal) {
+            cosine_ = std::exp(-sigma_ * dt);
+            sine_ = cosine_ * dt;
+        } else {
+            const double decay = std::exp(-sigma_ * dt);
+            cosine_ = decay * std::cos(w_ * dt);
+            sine_ = decay * std::sin(w_ * dt) / w_;
+        }
+    }
+
+    double a1_, a2_, sigma_, w_ = 0, fast_ = 0, slow_ = 0;
+    Kind kind_ = Kind::real;
+    double dt_ = -1, cosine_ = 1, sine_ = 0;
+    double x_ = 0, x1_ = 0;
+};
+
+template <class System>
+void run(const CleanRecord& r, double L, System system, UnitResponse& out) {
+    double now = 0, v = 0;
+    std::size_t j = 0;
+    for (std::size_t i = 0; i < r.t.size(); ++i) {
+        const double t = r.t[i];
+        for (; j < r.v_time.size() && r.v_time[j] + L <= t; ++j) {
+            const double event = r.v_time[j] + L;
+            if (event > now) system.advance(event - now, v);
+            now = event;
+            v = r.v_level[j];
+        }
+        if (t > now) system.advance(t - now, v);
+        now = t;
+        out.x[i] = system.value();
+        out.x1[i] = system.slope(v);
+        out.x2[i] = system.curvature(v);
+    }
+}
+
+}  // namespace
+
+double Shape::T() const { return std::exp(p[1]); }
+double Shape::a1() const { return std::exp(p[1]); }
+double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
+
+int shape_size(Structure structure) {
+    switch (structure) {
+        case Structure::ipdt: return 1;
+        case Structure::fopdt:
+        case Structure::ipdt_lag: return 2;
+        default: return 3;
+    }
+}
+
+bool is_integrating(Structure structure) { return structure == Structure::ipdt || structure == Structure::ipdt_lag; }
+
+const char* name_of(Structure structure) {
+    switch (structure) {
+        case Structure::fopdt: return "fopdt";
+        case Structure::sopdt: return "sopdt";
+        case Structure::sopdt_zero: return "sopdt_zero";
+        case Structure::ipdt: return "ipdt";
+        case Structure::ipdt_lag: return "ipdt_lag";
+    }
+    return "";
+}
+
+void unit_response(const CleanRecord& record, const Shape& shape, UnitResponse& response) {
+    for (auto* column : {&response.x, &response.x1, &response.x2}) column->resize(record.t.size());
+    switch (shape.structure) {
+        case Structure::fopdt: return run(record, shape.L(), Lag{shape.T()}, response);
+        case Structure::ipdt: return run(record, shape.L(), Integrator{}, response);
+        case Structure::ipdt_lag: return run(record, shape.L(), LaggedIntegrator{shape.T()}, response);
+        case Structure::sopdt:
+        case Structure::sopdt_zero: return run(record, shape.L(), SecondOrder(shape.a1(), shape.a2()), response);
+    }
+}
+
+}  // namespace tunewright

@@ -1,0 +1,47 @@
+// The free response of a model of unit gain to a piecewise constant input, exact at any sample times.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "engine/identification/clean_record.h"
+
+namespace tunewright {
+
+enum class Structure {
+    fopdt,       ///< e^(-Ls)/(T s + 1)
+    sopdt,       ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
+    sopdt_zero,  ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
+    ipdt,        ///< e^(-Ls)/s
+    ipdt_lag,    ///< e^(-Ls)/(s (T s + 1))
+};
+
+/// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
+/// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
+/// smoothly.
+struct Shape {
+    Structure structure = Structure::fopdt;
+    std::array<double, 3> p{};
+
+    double L() const { return p[0]; }
+    double T() const;   ///< fopdt, ipdt_lag
+    double a1() const;  ///< sopdt, sopdt_zero
+    double a2() const;
+};
+
+/// 1 to 3: how many entries of `p` count.
+int shape_size(Structure structure);
+bool is_integrating(Structure structure);
+/// The contract's name: "fopdt", ...
+const char* name_of(Structure structure);
+
+/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; each has samples() entries.
+struct UnitResponse {
+    std::vector<double> x, x1, x2;
+};
+
+/// Rest before the first sample. Each interval between samples and delayed changes of v is one step with the exact
+/// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes.
+void unit_response(const CleanRecord& record, const Shape& shape, UnitResponse& response);
+
+}  // namespace tunewright

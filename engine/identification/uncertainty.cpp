@@ -1,0 +1,147 @@
+#include "engine/identification/uncertainty.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace tunewright {
+namespace {
+
+using Parameters = std::map<std::string, double>;
+
+/// The plant's parameters by symbol, in the record's units. `lags`: name the second order by T1, T2.
+Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shape& shape,
+                         std::span<const double> linear, bool lags) {
+    const double K = linear[0] * s.y_scale / s.u_scale;
+    Parameters p;
+    p["L"] = shape.L() * s.t_scale;
+    p["K"] = is_integrating(form.structure) ? K / s.t_scale : K;
+    switch (form.structure) {
+        case Structure::ipdt: break;
+        case Structure::fopdt:
+        case Structure::ipdt_lag: p["T"] = shape.T() * s.t_scale; break;
+        case Structure::sopdt:
+            if (lags) {
+                const double root = std::sqrt(std::max(0.0, 1 - 4 * std::exp(shape.p[2])));
+                p["T1"] = 0.5 * shape.a1() * (1 + root) * s.t_scale;
+                // The product of the lags keeps the digits of a small one.
+                p["T2"] = shape.a2() / (0.5 * shape.a1() * (1 + root)) * s.t_scale;
+            } else {
+                p["T"] = std::sqrt(shape.a2()) * s.t_scale;
+                p["zeta"] = 0.5 * std::exp(-0.5 * shape.p[2]);
+            }
+            break;
+        case Structure::sopdt_zero:
+            p["a1"] = shape.a1() * s.t_scale;
+            p["a2"] = shape.a2() * s.t_scale * s.t_scale;
+            p["b"] = linear[1] / linear[0] * s.t_scale;
+            break;
+    }
+    return p;
+}
+
+bool has_two_lags(const Shape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
+
+Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
+    auto at = [&](const char* name) { return p.at(name); };
+    switch (form.structure) {
+        case Structure::fopdt: return Fopdt{at("K"), at("T"), at("L")};
+        case Structure::sopdt:
+            if (lags) return Sopdt{at("K"), at("T1"), at("T2"), at("L")};
+            return OscillatorySopdt{at("K"), at("T"), at("zeta"), at("L")};
+        case Structure::sopdt_zero:
+            return TransferFunction{{at("K") * at("b"), at("K")}, {at("a2"), at("a1"), 1}, at("L")};
+        case Structure::ipdt: return Ipdt{at("K"), at("L"), 0};
+        case Structure::ipdt_lag: return Ipdt{at("K"), at("L"), at("T")};
+    }
+    return Fopdt{};
+}
+
+/// s^2 times the factor for correlated residuals.
+double residual_variance(const Fit& fit, double quantisation) {
+    const double n = static_cast<double>(fit.residual.size());
+    const double floor = quantisation * quantisation / 12;
+    const double independent = effective_samples(fit.residual);
+    const double freedom = std::max(1.0, independent - fit.form.parameters());
+    return std::max(fit.sse / n, floor) * n / freedom;
+}
+
+/// The rows are scaled deviations of (shape, linear), one per principal axis of the covariance, each one standard
+/// deviation long.
+Eigen::MatrixXd principal_deviations(const Fit& fit, double variance) {
+    const int m = fit.form.parameters();
+    const int rows = static_cast<int>(fit.J[0].size());
+    Eigen::MatrixXd J(rows, m);
+    Eigen::VectorXd length(m);
+    for (int k = 0; k < m; ++k) {
+        J.col(k) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), rows);
+        length[k] = std::max(J.col(k).norm(), 1e-12);
+        J.col(k) /= length[k];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(J.transpose() * J);
+    Eigen::MatrixXd deviations(m, m);
+    for (int k = 0; k < m; ++k) {
+        const double value = std::max(eigen.eigenvalues()[k], 1e-13);
+        deviations.row(k) =
+            (std::sqrt(variance / value) * eigen.eigenvectors().col(k).array() / length.array()).transpose();
+    }
+    return deviations;
+}
+
+}  // namespace
+
+double correlation_time(std::span<const double> series) {
+    const int n = static_cast<int>(series.size());
+    const int longest = std::min(n / 2, 2000);
+    auto covariance = [&](int lag) {
+        double sum = 0;
+        for (int i = lag; i < n; ++i) sum += series[i] * series[i - lag];
+        return sum;
+    };
+    const double variance = covariance(0);
+    if (!(variance > 0)) return 1;
+    double time = -1;
+    for (int k = 0; k + 1 <= longest; k += 2) {
+        const double pair = (k == 0 ? variance : covariance(k)) + covariance(k + 1);
+        if (pair <= 0) break;
+        time += 2 * pair / variance;
+    }
+    return std::max(1.0, time);
+}
+
+double effective_samples(std::span<const double> residual) {
+    return std::max(4.0, static_cast<double>(residual.size()) / correlation_time(residual));
+}
+
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation) {
+    const bool lags = has_two_lags(fit.shape);
+    const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
+    FittedPlant result{plant_of(fit.form, best, lags), best, {}};
+    const Eigen::MatrixXd deviations = principal_deviations(fit, residual_variance(fit, quantisation));
+    const int size = shape_size(fit.form.structure);
+    std::map<std::string, double> squares;
+    for (int axis = 0; axis < deviations.rows(); ++axis) {
+        // A long axis is walked in part and scaled up: the logarithms would overflow.
+        const double reach = deviations.row(axis).head(size).cwiseAbs().maxCoeff();
+        const double part = reach > 1 ? 1 / reach : 1;
+        Parameters side[2];
+        for (int k = 0; k < 2; ++k) {
+            const double sign = k == 0 ? part : -part;
+            Shape shape = fit.shape;
+            std::vector<double> linear = fit.linear;
+            for (int i = 0; i < size; ++i) shape.p[i] += sign * deviations(axis, i);
+            for (std::size_t i = 0; i < linear.size(); ++i)
+                linear[i] += sign * deviations(axis, size + static_cast<int>(i));
+            if (linear[0] == 0) linear = fit.linear;
+            side[k] = parameters_of(record.scale, fit.form, shape, linear, lags);
+        }
+        for (const auto& [name, value] : side[0]) {
+            const double half = 0.5 * (value - side[1].at(name)) / part;
+            squares[name] += half * half;
+        }
+    }
+    for (const auto& [name, square] : squares) result.standard_errors[name] = std::min(std::sqrt(square), 1e300);
+    return result;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,34 @@
+// How sure the fitted parameters are.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/identification/output_error.h"
+#include "engine/plant/plant.h"
+
+namespace tunewright {
+
+/// The integrated autocorrelation time of a series, in samples, >= 1: 1 + 2 sum rho_k, the sum ended by Geyer's initial
+/// positive sequence (Geyer 1992, section 3.3). White noise: 1. n samples are worth n/(this) independent ones.
+double correlation_time(std::span<const double> series);
+
+/// Independent samples that a residual is worth, at least 4.
+double effective_samples(std::span<const double> residual);
+
+/// The plant of a fit in the record's units, and the standard errors of its parameters.
+struct FittedPlant {
+    Plant plant;
+    std::map<std::string, double> values;           ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b
+    std::map<std::string, double> standard_errors;  ///< of the same; all finite and >= 0
+};
+
+/// Needs `fit.J`. Covariance s^2 (J'J)^-1 with s^2 of the residual, enlarged by its correlation time and never below
+/// the variance of the rounding, quantisation^2/12 (`quantisation` dimensionless); carried to the plant's parameters by
+/// differences along the principal axes of the covariance. Two lags give `Sopdt` (T1 >= T2), an oscillation
+/// `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K], den [a2, a1, 1].
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation);
+
+}  // namespace tunewright

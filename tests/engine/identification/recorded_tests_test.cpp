@@ -1,0 +1,116 @@
+// The recorded tests in tests/data/records: true parameters as stated there, tolerances beside them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "engine/identification/identify.h"
+#include "tests/engine/identification/record_files.h"
+
+namespace tunewright {
+namespace {
+
+using testing::read_record;
+
+IdentifiedModel identified(const Record& record, ModelChoice model = ModelChoice::automatic) {
+    IdentifyOptions options;
+    options.model = model;
+    auto result = identify(record, options, {});
+    EXPECT_TRUE(result) << (result ? "" : result.error().message);
+    return result ? *result : IdentifiedModel{};
+}
+
+Error refusal(const Record& record) {
+    auto result = identify(record, {}, {});
+    EXPECT_FALSE(result);
+    return result ? Error{} : result.error();
+}
+
+void expect_relative(double got, double want, double tolerance, const char* what) {
+    EXPECT_NEAR(got, want, tolerance * std::abs(want)) << what;
+}
+
+void expect_fopdt(const IdentifiedModel& model, const Fopdt& want, const Fopdt& tolerance) {
+    ASSERT_TRUE(std::holds_alternative<Fopdt>(model.plant)) << model.choice_reason;
+    const auto& got = std::get<Fopdt>(model.plant);
+    expect_relative(got.K, want.K, tolerance.K, "K");
+    expect_relative(got.T, want.T, tolerance.T, "T");
+    expect_relative(got.L, want.L, tolerance.L, "L");
+}
+
+TEST(RecordedTests, CleanFopdtStepIsRecoveredToItsPrintedDigits) {
+    expect_fopdt(identified(read_record("step_fopdt_clean.csv")), {1.5, 12, 3}, {1e-5, 1e-5, 2e-5});
+}
+
+TEST(RecordedTests, QuantisedStepIsFopdtWithinItsErrors) {
+    const IdentifiedModel model = identified(read_record("step_quantised.csv"));
+    expect_fopdt(model, {1, 20, 5}, {0.01, 0.03, 0.05});
+    EXPECT_NEAR(model.data_quality.quantisation, 0.05, 1e-9);
+    EXPECT_LT(std::abs(std::get<Fopdt>(model.plant).L - 5), 3 * model.standard_errors.at("L"));
+}
+
+TEST(RecordedTests, StepFarFromZeroIsFopdt) {
+    const IdentifiedModel model = identified(read_record("step_offset_units.csv"));
+    expect_fopdt(model, {0.6, 40, 8}, {0.01, 0.02, 0.03});
+    EXPECT_NEAR(model.data_quality.noise_std, 0.02, 0.004);
+    EXPECT_TRUE(model.data_quality.settled);
+    EXPECT_TRUE(model.warnings.empty());
+}
+
+TEST(RecordedTests, NoisySecondOrderStepIsSopdt) {
+    const IdentifiedModel model = identified(read_record("step_sopdt_noisy.csv"));
+    ASSERT_TRUE(std::holds_alternative<Sopdt>(model.plant)) << model.choice_reason;
+    const auto& got = std::get<Sopdt>(model.plant);
+    expect_relative(got.K, 2, 0.01, "K");
+    expect_relative(got.T1 + got.T2, 14, 0.03, "T1 + T2");
+    expect_relative(got.T1 * got.T2, 40, 0.06, "T1 T2");
+    expect_relative(got.L, 2, 0.1, "L");
+}
+
+TEST(RecordedTests, RampIsIntegrating) {
+    const IdentifiedModel model = identified(read_record("step_integrating_ramp.csv"));
+    ASSERT_TRUE(std::holds_alternative<Ipdt>(model.plant)) << model.choice_reason;
+    const auto& got = std::get<Ipdt>(model.plant);
+    expect_relative(got.K, 0.04, 0.01, "K");
+    expect_relative(got.L, 6, 0.03, "L");
+    EXPECT_EQ(got.T, 0);
+    EXPECT_FALSE(model.data_quality.settled);
+}
+
+TEST(RecordedTests, InverseResponseNeedsAZero) {
+    const IdentifiedModel model = identified(read_record("step_inverse_response.csv"));
+    ASSERT_TRUE(std::holds_alternative<TransferFunction>(model.plant)) << model.choice_reason;
+    const auto& got = std::get<TransferFunction>(model.plant);
+    expect_relative(got.num[1], 1, 0.01, "K");
+    expect_relative(got.num[0], -3, 0.04, "K b");
+    expect_relative(got.den[1], 10, 0.02, "a1");
+    expect_relative(got.den[0], 16, 0.04, "a2");
+    expect_relative(got.L, 1, 0.06, "L");
+}
+
+TEST(RecordedTests, FopdtOfAnInverseResponseIsFlagged) {
+    const IdentifiedModel model = identified(read_record("step_inverse_response.csv"), ModelChoice::fopdt);
+    ASSERT_FALSE(model.warnings.empty());
+    EXPECT_EQ(model.warnings.front().code, "structured-residuals");
+}
+
+TEST(RecordedTests, ConstantInputIsRefusedWithTheCure) {
+    const Error error = refusal(read_record("step_missing_excitation.csv"));
+    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
+    EXPECT_THAT(error.message, ::testing::HasSubstr("u never moves"));
+    EXPECT_THAT(error.message, ::testing::HasSubstr("Record a test in which u changes"));
+}
+
+TEST(RecordedTests, LabKitReaches97Point2PercentWithFopdtAndMoreWithAuto) {
+    const Record record = read_record("tclab-step.csv", "Time", "Q1", "T1");
+    const IdentifiedModel simple = identified(record, ModelChoice::fopdt);
+    EXPECT_GE(simple.fit_percent, 97.2);
+    const IdentifiedModel chosen = identified(record);
+    EXPECT_GE(chosen.fit_percent, simple.fit_percent);
+    EXPECT_TRUE(std::holds_alternative<Fopdt>(chosen.plant) || std::holds_alternative<Sopdt>(chosen.plant))
+        << chosen.choice_reason;
+    EXPECT_EQ(chosen.data_quality.steps, 1);
+    EXPECT_EQ(chosen.data_quality.samples, 801);
+    EXPECT_NEAR(chosen.data_quality.quantisation, 0.322, 0.001);
+}
+
+}  // namespace
+}  // namespace tunewright

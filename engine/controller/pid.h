@@ -33,7 +33,7 @@ struct Pid {
     double Td = 0;
     double b = 1;
     double c = 0;
-    Filter filter;
+    Filter filter = {};
 
     bool has_integral() const { return Ti < std::numeric_limits<double>::infinity(); }
 };
@@ -45,7 +45,7 @@ struct ParallelPid {
     double Kd = 0;
     double b = 1;
     double c = 0;
-    Filter filter;
+    Filter filter = {};
 };
 
 /// Kp (1 + 1/(s Ti)) (1 + s Td): the interacting form. With `derivative` the filter covers the whole lead (1 + s Td)/(1
@@ -56,7 +56,7 @@ struct SeriesPid {
     double Td = 0;
     double b = 1;
     double c = 0;
-    Filter filter;
+    Filter filter = {};
     double b_equivalent = 1;  ///< Ti'/Ti of the ideal form: what b = 1 in the series form amounts to
 };
 

@@ -1,0 +1,35 @@
+// The closed loop in state space: linear equations with one delayed signal.
+//
+//   x' = F x + G v + H r,   u = M x + N v + R r,   y = Y x + Z v,   v(t) = w(t - L),  w = u + d
+//
+// Plant states first, then the controller's: integral of r - y_f, filter states. N couples u to the delayed signal
+// directly (proportional action on a plant with a direct term, or a pure derivative on a plant of pole excess one): a
+// neutral loop.
+#pragma once
+
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright {
+
+struct DelaySystem {
+    int n = 0;
+    double L = 0;
+    std::vector<double> F;        // n x n, row by row
+    std::vector<double> G, H, M;  // n
+    std::vector<double> Y;        // n
+    double N = 0, R = 0, Z = 0;
+    int integral_state = -1;  // index of the integral's state, -1 without integral action
+};
+
+/// The loop is well posed (Loop::make accepted it). Set-point weights act here; a derivative of r needs the
+/// `derivative` filter.
+DelaySystem make_delay_system(const LinearPlant& plant, const ParallelPid& controller);
+
+/// The same for L = 0 with the algebraic loop v = u + d solved: v appears as d alone.
+DelaySystem close_without_delay(const DelaySystem& open);
+
+}  // namespace tunewright

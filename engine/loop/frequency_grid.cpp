@@ -1,0 +1,119 @@
+#include "engine/loop/frequency_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tunewright {
+namespace {
+
+constexpr std::size_t kMaxPoints = 20000;
+constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are followed one by one
+constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
+
+struct Range {
+    double low, high;
+};
+
+void add_corner(std::vector<double>& corners, double omega) {
+    if (std::isfinite(omega) && omega > 0) corners.push_back(omega);
+}
+
+/// Roots of Kd s^2 + Kp s + Ki: where the controller turns from integral to proportional to derivative action.
+void add_controller_corners(std::vector<double>& corners, const ParallelPid& c) {
+    if (c.Kp != 0) add_corner(corners, std::abs(c.Ki / c.Kp));
+    if (c.Kd != 0) add_corner(corners, std::abs(c.Kp / c.Kd));
+    if (c.Kd != 0) add_corner(corners, std::sqrt(std::abs(c.Ki / c.Kd)));
+    if (c.filter.type != FilterType::none) add_corner(corners, 1 / c.filter.Tf);
+}
+
+/// Where the low- and high-frequency asymptotes of |L| cross one: a slow loop's crossover can lie far below every
+/// corner.
+void add_asymptote_crossings(std::vector<double>& corners, const Loop& loop, double low, double high) {
+    const auto slope_crossing = [&](double omega, double ratio) {
+        const double here = std::abs(loop.open_loop({0, omega}));
+        const double there = std::abs(loop.open_loop({0, omega * ratio}));
+        const double slope = std::log(there / here) / std::log(ratio);
+        if (!std::isfinite(slope) || std::abs(slope) < 0.1) return 0.0;
+        return omega * std::exp(std::clamp(-std::log(here) / slope, -30.0, 30.0));
+    };
+    const double below = slope_crossing(low * 1e-2, 0.5), above = slope_crossing(high * 1e2, 2.0);
+    if (below < low) add_corner(corners, below);
+    if (above > high) add_corner(corners, above);
+}
+
+Range range_of(const Loop& loop) {
+    std::vector<double> corners;
+    for (const auto zero : loop.plant().zeros()) add_corner(corners, std::abs(zero));
+    for (const auto pole : loop.plant().poles()) add_corner(corners, std::abs(pole));
+    if (loop.plant().dead_time() > 0) add_corner(corners, 1 / loop.plant().dead_time());
+    add_controller_corners(corners, loop.gains());
+    if (corners.empty()) corners.push_back(1);
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
+    const double lowest = *low, highest = *high;
+    add_asymptote_crossings(corners, loop, lowest, highest);
+    const auto [lower, higher] = std::minmax_element(corners.begin(), corners.end());
+    return {*lower * 1e-3, *higher * 1e2};
+}
+
+std::vector<double> base_frequencies(const Loop& loop, const Range& range, int density) {
+    const double decades = std::log10(range.high / range.low);
+    const int n = std::max(2, static_cast<int>(std::ceil(decades * density)));
+    std::vector<double> omega;
+    for (int i = 0; i <= n; ++i) omega.push_back(range.low * std::pow(10.0, decades * i / n));
+    // A lightly damped pole or zero shows between two points of any grid only if one is put there.
+    const auto add_resonance = [&](std::complex<double> root) {
+        if (root.imag() <= 0 || std::abs(root.real()) > 0.3 * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), 1e-6 * centre);
+        for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0})
+            if (centre + offset * width > 0) omega.push_back(centre + offset * width);
+    };
+    for (const auto pole : loop.plant().poles()) add_resonance(pole);
+    for (const auto zero : loop.plant().zeros()) add_resonance(zero);
+    std::sort(omega.begin(), omega.end());
+    omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
+    return omega;
+}
+
+bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
+    const double scale = std::max(1.0, std::min(std::abs(a.S), std::abs(b.S)));
+    return !(std::abs(a.S - b.S) <= step * scale);
+}
+
+}  // namespace
+
+LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
+    const Range range = range_of(loop);
+    const double L = loop.plant().dead_time();
+    LoopGrid grid;
+    grid.resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, range.low) : range.high;
+
+    const std::vector<double> base = base_frequencies(loop, range, density);
+    grid.omega.push_back(base[0]);
+    grid.point.push_back(loop.at(base[0]));
+    // Between two base points: a stack of pending right ends, halved (in log omega) until neighbours are close.
+    std::vector<double> pending;
+    std::vector<LoopPoint> pending_point;
+    for (std::size_t i = 1; i < base.size(); ++i) {
+        pending.assign(1, base[i]);
+        pending_point.assign(1, loop.at(base[i]));
+        while (!pending.empty()) {
+            const double left = grid.omega.back(), right = pending.back();
+            const bool may_refine = right <= grid.resolved_to && right > left * (1 + kClosestNeighbours) &&
+                                    grid.omega.size() + pending.size() < kMaxPoints;
+            if (may_refine && too_far(grid.point.back(), pending_point.back(), step)) {
+                const double middle = std::sqrt(left * right);
+                pending.push_back(middle);
+                pending_point.push_back(loop.at(middle));
+                continue;
+            }
+            grid.omega.push_back(right);
+            grid.point.push_back(pending_point.back());
+            pending.pop_back();
+            pending_point.pop_back();
+        }
+    }
+    return grid;
+}
+
+}  // namespace tunewright

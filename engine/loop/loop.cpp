@@ -1,0 +1,155 @@
+#include "engine/loop/loop.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tunewright {
+namespace {
+
+using Complex = std::complex<double>;
+
+Error invalid(const std::string& message) { return {ErrorKind::invalid_argument, "controller", message}; }
+
+int filter_order(FilterType type) {
+    switch (type) {
+        case FilterType::none: return 0;
+        case FilterType::derivative: return 1;
+        case FilterType::measurement_first_order: return 1;
+        case FilterType::measurement_second_order: return 2;
+    }
+    return 0;
+}
+
+}  // namespace
+
+Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
+    for (const double value : {gains.Kp, gains.Ki, gains.Kd, gains.b, gains.c, gains.filter.Tf})
+        if (!std::isfinite(value)) return invalid("Every controller parameter must be a finite number.");
+    if (gains.Kp == 0 && gains.Ki == 0 && gains.Kd == 0)
+        return invalid("All gains are 0: the controller does nothing.");
+    if (gains.filter.type != FilterType::none && !(gains.filter.Tf > 0))
+        return Error{ErrorKind::invalid_argument, "controller/filter/Tf", "A filter needs Tf > 0."};
+    if (gains.c != 0 && gains.Kd != 0 && gains.filter.type != FilterType::derivative)
+        return Error{ErrorKind::invalid_argument, "controller/c",
+                     "c is not 0, so a set-point step is differentiated: that needs the filter type \"derivative\". "
+                     "Use c = 0 or that filter."};
+    const Loop loop(plant, gains);
+    const double q = loop.signed_high_frequency_gain();
+    if (!std::isfinite(q))
+        return Error{ErrorKind::invalid_argument, "controller/filter",
+                     "A derivative without filter on a plant with a direct term has infinite loop gain. Give the "
+                     "controller a filter."};
+    if (plant.dead_time() == 0 && std::abs(1 + q) < 1e-12)
+        return invalid(
+            "The loop is not well posed: 1 + L is 0 at infinite frequency. Add a filter or change the gain.");
+    return loop;
+}
+
+Loop::ControllerFraction Loop::controller_fraction(Complex s) const {
+    const double Tf = gains_.filter.Tf;
+    Complex numerator, denominator = 1;
+    switch (gains_.filter.type) {
+        case FilterType::none: numerator = gains_.Kp + gains_.Kd * s; break;
+        case FilterType::derivative:
+            denominator = 1.0 + Tf * s;
+            numerator = gains_.Kp * denominator + gains_.Kd * s;
+            break;
+        case FilterType::measurement_first_order:
+            numerator = gains_.Kp + gains_.Kd * s;
+            denominator = 1.0 + Tf * s;
+            break;
+        case FilterType::measurement_second_order:
+            numerator = gains_.Kp + gains_.Kd * s;
+            denominator = 1.0 + Tf * s * (1.0 + 0.5 * Tf * s);
+            break;
+    }
+    if (gains_.Ki == 0) return {numerator, denominator};
+    const Complex integral_path = gains_.filter.type == FilterType::derivative ? denominator : Complex(1);
+    return {numerator * s + gains_.Ki * integral_path, denominator * s};
+}
+
+Complex Loop::controller(Complex s) const {
+    const auto c = controller_fraction(s);
+    return c.numerator / c.denominator;
+}
+
+Complex Loop::open_loop(Complex s) const {
+    const auto l = fraction(s);
+    return l.numerator / l.denominator;
+}
+
+Loop::Fraction Loop::fraction(Complex s) const {
+    const auto c = controller_fraction(s);
+    Complex numerator = plant_->gain() * c.numerator, denominator = c.denominator;
+    for (int i = 0; i < plant_->integrators(); ++i) denominator *= s;
+    for (int i = 0; i < -plant_->integrators(); ++i) numerator *= s;
+    for (const auto zero : plant_->zeros()) numerator *= s - zero;
+    for (const auto pole : plant_->poles()) denominator *= s - pole;
+    if (plant_->dead_time() > 0) numerator *= std::exp(-s * plant_->dead_time());
+    return {numerator, denominator};
+}
+
+int Loop::denominator_degree() const {
+    return plant_->order() + filter_order(gains_.filter.type) + (gains_.Ki != 0 ? 1 : 0);
+}
+
+LoopPoint Loop::at(double omega) const {
+    const Complex s(0, omega);
+    const auto [numerator, denominator] = fraction(s);
+    const Complex sum = denominator + numerator;
+    LoopPoint point;
+    point.L = numerator / denominator;
+    point.S = denominator / sum;
+    point.T = numerator / sum;
+    // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
+    const auto c = controller_fraction(s);
+    Complex plant_denominator = 1;
+    for (int i = 0; i < plant_->integrators(); ++i) plant_denominator *= s;
+    for (const auto pole : plant_->poles()) plant_denominator *= s - pole;
+    point.CS = c.numerator * plant_denominator / sum;
+    return point;
+}
+
+int Loop::controller_excess() const {
+    const int integral = gains_.Ki != 0 ? 1 : 0;
+    const int denominator = filter_order(gains_.filter.type) + integral;
+    int numerator = 0;
+    if (gains_.filter.type == FilterType::derivative) {
+        const bool proper = gains_.Kp * gains_.filter.Tf + gains_.Kd != 0;
+        numerator = (proper ? 1 : 0) + integral;
+    } else {
+        numerator = (gains_.Kd != 0 ? 1 : 0) + integral;
+        if (gains_.Kd == 0 && gains_.Kp == 0) numerator = 0;
+    }
+    return denominator - numerator;
+}
+
+double Loop::controller_leading_coefficient() const {
+    const double Tf = gains_.filter.Tf;
+    const double numerator = gains_.Kd != 0 ? gains_.Kd : gains_.Kp != 0 ? gains_.Kp : gains_.Ki;
+    switch (gains_.filter.type) {
+        case FilterType::none: return numerator;
+        case FilterType::derivative:
+            return gains_.Kp + gains_.Kd / Tf != 0 ? gains_.Kp + gains_.Kd / Tf : gains_.Kp / Tf;
+        case FilterType::measurement_first_order: return numerator / Tf;
+        case FilterType::measurement_second_order: return 2 * numerator / (Tf * Tf);
+    }
+    return numerator;
+}
+
+double Loop::signed_high_frequency_gain() const {
+    const int excess = plant_->pole_excess() + controller_excess();
+    if (excess > 0) return 0;
+    if (excess < 0) return std::numeric_limits<double>::infinity();
+    return plant_->gain() * controller_leading_coefficient();
+}
+
+double Loop::high_frequency_gain() const { return std::abs(signed_high_frequency_gain()); }
+
+double Loop::controller_high_frequency_gain() const {
+    if (controller_excess() > 0) return 0;
+    if (controller_excess() < 0) return std::numeric_limits<double>::infinity();
+    return controller_leading_coefficient();
+}
+
+}  // namespace tunewright

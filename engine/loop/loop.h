@@ -1,0 +1,62 @@
+// Plant and controller together over frequency.
+//
+//        r --> [ C ] --> u --(+)--> [ P ] --> y        L = P C, S = 1/(1 + L), T = L/(1 + L), C S
+//               ^             ^ d              |       C = -u/y with r = 0: the filter belongs to it,
+//               +------------- y --------------+       the set-point weights do not
+#pragma once
+
+#include <complex>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright {
+
+/// The loop's functions at one frequency. Finite also at undamped poles and at 0, since S = D/(D + N).
+struct LoopPoint {
+    std::complex<double> L, S, T, CS;
+};
+
+class Loop {
+public:
+    /// Errors: invalid_argument ("controller") where no loop exists: a derivative without filter on a plant of pole
+    /// excess 0, 1 + L(infinity) = 0 without dead time, gains or filter that are not finite, Tf <= 0 with a filter, all
+    /// gains 0.
+    static Expected<Loop> make(const LinearPlant& plant, const ParallelPid& gains);
+
+    LoopPoint at(double omega) const;
+    std::complex<double> controller(std::complex<double> s) const;
+    std::complex<double> open_loop(std::complex<double> s) const;
+
+    /// L = numerator e^(-sL)/denominator with both finite everywhere; the characteristic function is their sum.
+    struct Fraction {
+        std::complex<double> numerator, denominator;
+    };
+    Fraction fraction(std::complex<double> s) const;  ///< dead time included in the numerator
+    int denominator_degree() const;
+
+    /// q = |L(infinity)| without the dead time's turning; 0 for a strictly proper loop. With dead time q >= 1 is
+    /// unstable.
+    double high_frequency_gain() const;
+    double signed_high_frequency_gain() const;
+    /// C(infinity) of the filtered controller; infinite for a derivative without filter.
+    double controller_high_frequency_gain() const;
+
+    const LinearPlant& plant() const { return *plant_; }
+    const ParallelPid& gains() const { return gains_; }
+
+private:
+    Loop(const LinearPlant& plant, const ParallelPid& gains) : plant_(&plant), gains_(gains) {}
+    struct ControllerFraction {
+        std::complex<double> numerator, denominator;
+    };
+    ControllerFraction controller_fraction(std::complex<double> s) const;
+    int controller_excess() const;                  // degree of denominator minus numerator
+    double controller_leading_coefficient() const;  // of numerator over denominator
+
+    const LinearPlant* plant_;
+    ParallelPid gains_;
+};
+
+}  // namespace tunewright

@@ -1,0 +1,102 @@
+#include "engine/loop/margins.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+namespace tunewright {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPi = std::numbers::pi;
+
+/// Root of f in log omega between two points of opposite sign: Illinois' false position, to rounding.
+double crossing(const std::function<double(double)>& f, double left, double right, double f_left, double f_right) {
+    double a = std::log(left), b = std::log(right);
+    for (int i = 0; i < 60 && b - a > 1e-13; ++i) {
+        const double x = (a * f_right - b * f_left) / (f_right - f_left);
+        const double fx = f(std::exp(x));
+        if (fx == 0) return std::exp(x);
+        if ((fx < 0) == (f_right < 0)) {
+            b = x;
+            f_right = fx;
+            f_left /= 2;
+        } else {
+            a = x;
+            f_left = fx;
+            f_right /= 2;
+        }
+        if (b - x < 1e-13 && x - a < 1e-13) break;
+    }
+    return std::exp(0.5 * (a + b));
+}
+
+/// L (real and negative) at some frequency: the factor 1/|L| brings it to -1.
+void note_real_crossing(Margins& margins, double real, double omega) {
+    if (!(real < 0)) return;
+    const double factor = -1 / real;
+    if (factor > 1 && factor < margins.gain_margin) {
+        margins.gain_margin = factor;
+        margins.phase_crossover = omega;
+    }
+    if (factor < 1 && factor > margins.gain_margin_low) {
+        if (margins.gain_margin == kInfinity) margins.phase_crossover = omega;
+        margins.gain_margin_low = factor;
+    }
+}
+
+void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
+    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
+    if (lag >= 2 * kPi) lag -= 2 * kPi;
+    const double distance = std::min(lag, 2 * kPi - lag);
+    if (distance < margins.phase_margin) {
+        margins.phase_margin = distance;
+        margins.gain_crossover = omega;
+    }
+    margins.delay_margin = std::min(margins.delay_margin, lag / omega);
+}
+
+/// The two ends of the axis, where L is real or its magnitude tends to a limit.
+void note_limits(Margins& margins, const Loop& loop) {
+    const auto [numerator, denominator] = loop.fraction(0);
+    if (denominator != 0.0) note_real_crossing(margins, (numerator / denominator).real(), 0);
+    const double q = loop.signed_high_frequency_gain();
+    if (q == 0) return;
+    if (loop.plant().dead_time() > 0) {
+        note_real_crossing(margins, -std::abs(q), kInfinity);  // every direction is reached again and again
+    } else {
+        note_real_crossing(margins, q, kInfinity);
+        if (std::abs(q) > 1) margins.delay_margin = 0;
+    }
+}
+
+}  // namespace
+
+Margins find_margins(const Loop& loop, const LoopGrid& grid) {
+    Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};
+    const auto imaginary = [&](double omega) {
+        const auto L = loop.open_loop({0, omega});
+        return L.imag() / std::abs(L);
+    };
+    const auto log_gain = [&](double omega) { return std::log(std::abs(loop.open_loop({0, omega}))); };
+    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
+        const auto a = grid.point[i - 1].L, b = grid.point[i].L;
+        const double left = grid.omega[i - 1], right = grid.omega[i];
+        const bool resolved = right <= grid.resolved_to;
+        if (!std::isfinite(std::abs(a)) || !std::isfinite(std::abs(b))) continue;
+        if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
+            const double omega = crossing(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b));
+            note_real_crossing(margins, loop.open_loop({0, omega}).real(), omega);
+        }
+        if (!resolved && 1 / std::abs(b) > 1) note_real_crossing(margins, -std::abs(b), right);
+        if ((std::abs(a) < 1) != (std::abs(b) < 1)) {
+            const double omega = crossing(log_gain, left, right, std::log(std::abs(a)), std::log(std::abs(b)));
+            note_unit_crossing(margins, loop.open_loop({0, omega}), omega);
+        }
+    }
+    note_limits(margins, loop);
+    return margins;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,155 @@
+#include "engine/loop/peaks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tunewright {
+namespace {
+
+using Magnitude = double (*)(const LoopPoint&);
+
+double magnitude_S(const LoopPoint& p) { return std::abs(p.S); }
+double magnitude_T(const LoopPoint& p) { return std::abs(p.T); }
+double magnitude_CS(const LoopPoint& p) { return std::abs(p.CS); }
+
+constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
+
+Peak interior_peak(const Loop& loop, const LoopGrid& grid, Magnitude magnitude) {
+    const std::size_t n = grid.omega.size();
+    std::vector<double> value(n);
+    for (std::size_t i = 0; i < n; ++i) value[i] = magnitude(grid.point[i]);
+    const auto largest = std::max_element(value.begin(), value.end());
+    Peak best{*largest, grid.omega[static_cast<std::size_t>(largest - value.begin())]};
+    const double threshold = kWorthRefining * *largest;
+    const auto f = [&](double omega) { return magnitude(loop.at(omega)); };
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        if (value[i] < threshold || value[i] < value[i - 1] || value[i] < value[i + 1]) continue;
+        const Peak peak = maximise(f, grid.omega[i - 1], grid.omega[i], grid.omega[i + 1]);
+        if (peak.value > best.value) best = peak;
+    }
+    return best;
+}
+
+/// Beyond the resolved range: |S| <= 1/(1 - |L|), reached once every turn of the dead time. Scans a few turns around
+/// the places where |L| is locally largest.
+void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks) {
+    const double L = loop.plant().dead_time();
+    if (L == 0) return;
+    const double period = 2 * std::numbers::pi / L;
+    const auto scan = [&](double around, Magnitude magnitude, Peak& best) {
+        const double from = std::max(around - 1.5 * period, grid.resolved_to), step = period / 24;
+        const auto f = [&](double omega) { return magnitude(loop.at(omega)); };
+        for (int k = 1; k < 72; ++k) {
+            const double omega = from + k * step;
+            const double here = f(omega);
+            if (here < kWorthRefining * best.value || here < f(omega - step) || here < f(omega + step)) continue;
+            const Peak peak = maximise(f, omega - step, omega, omega + step);
+            if (peak.value > best.value) best = peak;
+        }
+    };
+    const auto gain = [&](std::size_t i) { return std::abs(grid.point[i].L); };
+    for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
+        if (grid.omega[i] <= grid.resolved_to || gain(i) >= 1) continue;
+        const bool first = grid.omega[i - 1] <= grid.resolved_to;
+        if (!first && (gain(i) < gain(i - 1) || gain(i) < gain(i + 1))) continue;
+        if (1 / (1 - gain(i)) > peaks.S.value) scan(grid.omega[i], magnitude_S, peaks.S);
+        if (gain(i) / (1 - gain(i)) > peaks.T.value) scan(grid.omega[i], magnitude_T, peaks.T);
+        if (std::abs(grid.point[i].CS) * (1 + gain(i)) / (1 - gain(i)) > peaks.CS.value)
+            scan(grid.omega[i], magnitude_CS, peaks.CS);
+    }
+}
+
+void raise(Peak& peak, double value, double omega) {
+    if (value > peak.value * (1 + 1e-12) || (value >= peak.value && omega == 0)) peak = {value, omega};
+}
+
+void raise_by_limits(const Loop& loop, Peaks& peaks) {
+    const LoopPoint zero = loop.at(0);
+    raise(peaks.S, std::abs(zero.S), 0);
+    raise(peaks.T, std::abs(zero.T), 0);
+    if (std::isfinite(std::abs(zero.CS))) raise(peaks.CS, std::abs(zero.CS), 0);
+
+    const double infinity = std::numeric_limits<double>::infinity(), q = loop.signed_high_frequency_gain();
+    const double nearest = loop.plant().dead_time() > 0 ? 1 - std::abs(q) : std::abs(1 + q);
+    raise(peaks.S, 1 / nearest, infinity);
+    raise(peaks.T, std::abs(q) / nearest, infinity);
+    raise(peaks.CS, std::abs(loop.controller_high_frequency_gain()) / nearest, infinity);
+}
+
+}  // namespace
+
+Peak maximise(const std::function<double(double)>& f, double left, double centre, double right) {
+    // Brent (1973): golden section with parabolic steps, in x = log omega.
+    constexpr double golden = 0.3819660112501051, tolerance = 1e-8;
+    double a = std::log(left), b = std::log(right), x = std::log(centre), w = x, v = x;
+    const auto g = [&](double at) { return -f(std::exp(at)); };
+    double fx = g(x), fw = fx, fv = fx, step = 0, before = 0;
+    for (int iteration = 0; iteration < 60; ++iteration) {
+        const double middle = 0.5 * (a + b);
+        if (std::abs(x - middle) <= 2 * tolerance - 0.5 * (b - a)) break;
+        double p = 0, q = 0, r = 0;
+        if (std::abs(before) > tolerance) {
+            r = (x - w) * (fx - fv);
+            q = (x - v) * (fx - fw);
+            p = (x - v) * q - (x - w) * r;
+            q = 2 * (q - r);
+            if (q > 0) p = -p;
+            q = std::abs(q);
+        }
+        if (std::abs(p) < std::abs(0.5 * q * before) && p > q * (a - x) && p < q * (b - x)) {
+            before = step;
+            step = p / q;
+        } else {
+            before = (x < middle ? b : a) - x;
+            step = golden * before;
+        }
+        const double u = x + (std::abs(step) >= tolerance ? step : std::copysign(tolerance, step));
+        const double fu = g(u);
+        if (fu <= fx) {
+            (u < x ? b : a) = x;
+            v = w;
+            fv = fw;
+            w = x;
+            fw = fx;
+            x = u;
+            fx = fu;
+            if (std::abs(fw - fx) <= 1e-14 * std::abs(fx)) break;
+        } else {
+            (u < x ? a : b) = u;
+            if (fu <= fw || w == x) {
+                v = w;
+                fv = fw;
+                w = u;
+                fw = fu;
+            } else if (fu <= fv || v == x || v == w) {
+                v = u;
+                fv = fu;
+            }
+        }
+    }
+    return {-fx, std::exp(x)};
+}
+
+LoopGrid make_peak_grid(const Loop& loop) {
+    LoopGrid grid = make_loop_grid(loop);
+    double largest = 0;
+    for (const auto& point : grid.point) largest = std::max(largest, std::abs(point.S));
+    // Where S never rises far above one, its maximum is as flat: look closer.
+    const double rise = largest - 1;
+    if (rise < 0.3) grid = make_loop_grid(loop, std::clamp(0.3 * rise, 5e-3, 0.15));
+    return grid;
+}
+
+Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {
+    Peaks peaks;
+    peaks.S = interior_peak(loop, grid, magnitude_S);
+    peaks.T = interior_peak(loop, grid, magnitude_T);
+    peaks.CS = interior_peak(loop, grid, magnitude_CS);
+    raise_by_fast_turning(loop, grid, peaks);
+    raise_by_limits(loop, peaks);
+    return peaks;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,30 @@
+// The largest values of |S|, |T| and |C S| over all frequencies, both ends included.
+#pragma once
+
+#include <functional>
+
+#include "engine/loop/frequency_grid.h"
+
+namespace tunewright {
+
+struct Peak {
+    double value = 0;  ///< sup over 0 <= omega <= infinity; infinite for |C S| of a derivative without filter
+    double omega = 0;  ///< where; 0 or infinity if the supremum is a limit
+};
+
+struct Peaks {
+    Peak S, T, CS;
+};
+
+/// Peaks of a stable loop, refined between grid points to a relative error below 1e-9 where the grid is resolved;
+/// beyond it (dead time turning faster than any grid) the envelope's maximum is searched turn by turn.
+Peaks find_peaks(const Loop& loop, const LoopGrid& grid);
+
+/// A grid fine enough for `find_peaks` also where all of |S| - 1 is small.
+LoopGrid make_peak_grid(const Loop& loop);
+
+/// Maximum of f over (left, right) in log omega, Brent's method from a bracket around `centre`. Relative error of f
+/// about 1e-12.
+Peak maximise(const std::function<double(double)>& f, double left, double centre, double right);
+
+}  // namespace tunewright

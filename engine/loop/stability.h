@@ -1,0 +1,23 @@
+// Is the closed loop stable? Decided by the argument principle on the characteristic function, dead time exact.
+#pragma once
+
+#include "engine/loop/loop.h"
+
+namespace tunewright {
+
+/// Closed-loop poles in the right half-plane, counted by the change of argument of D + N e^(-sL) along the imaginary
+/// axis (Mikhailov's form of the Nyquist criterion: integrators and undamped open-loop poles need no indentation).
+struct StabilityCount {
+    int unstable_poles = 0;        ///< -1: infinitely many (a neutral loop with |L(infinity)| >= 1)
+    bool on_the_boundary = false;  ///< a pole on the imaginary axis, to working precision
+    bool stable() const { return unstable_poles == 0 && !on_the_boundary; }
+};
+
+StabilityCount count_unstable_poles(const Loop& loop);
+
+/// The second, independent method: the rightmost closed-loop pole from a Chebyshev discretisation of the delay operator
+/// (Breda, Maset, Vermiglio 2005) with `nodes` points over the dead time. Poles with |s| L up to about nodes/2 are
+/// accurate. Error: numerical_failure for a loop without states or without finite realisation.
+Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes = 24);
+
+}  // namespace tunewright

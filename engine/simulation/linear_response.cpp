@@ -12,6 +12,7 @@ namespace {
 
 using Index = std::size_t;
 
+constexpr int kFirstEchoes = 2;     // the kinks at L and 2L are always met with the shortest step
 constexpr int kRetardedEchoes = 4;  // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
 constexpr int kMaxEchoes = 2000;
 
@@ -325,20 +326,35 @@ private:
         return rest * error >= 0 || std::abs(rest) <= options_.settled * std::abs(*steady_.error_integral);
     }
 
-    bool echoes_are_over() const { return !system_.delayed || segment_ >= echoes_; }
+    bool echoes_are_over() const {
+        return !system_.delayed || (segment_ >= echoes_ && restart_level_ >= std::min(level_, level_of_L_));
+    }
 
     void choose_level(int step) {
         if (options_.repeat != nullptr) {
             level_ = options_.repeat->level[Index(step)];
             return;
         }
-        if (segment_started_ && !echoes_are_over()) level_ = 0;
-        const int quality = smoothness();
-        if (quality < 0 && level_ > 0) --level_;
-        if (quality > 0 && may_double()) ++level_;
+        if (segment_started_ && !echoes_are_over()) restart();
+        const Smoothness smooth = smoothness();
+        if (smooth == Smoothness::rough && level_ > 0) {
+            if (level_ <= restart_level_) restart_level_ = std::max(0, restart_level_ - 2);
+            --level_;
+        }
+        if (smooth == Smoothness::fine && may_double()) ++level_;
+        if (level_ < top_level_ && (smooth == Smoothness::rough || smooth == Smoothness::enough)) climb_blocked_ = true;
         // Never across the end of a segment while jumps come with it.
         if (!echoes_are_over() || (system_.delayed && level_ <= level_of_L_))
             while (level_ > 0 && (offset_ & ((1L << level_) - 1)) != 0) --level_;
+    }
+
+    /// A segment starts short, at the scale of the kink that its start may bring. Where the way up to the former length
+    /// was free, the kink has faded: the next one starts longer.
+    void restart() {
+        if (segment_ > kFirstEchoes && !climb_blocked_) restart_level_ += 2;
+        climb_blocked_ = false;
+        top_level_ = level_;
+        level_ = std::min(level_, restart_level_);
     }
 
     bool may_double() const {
@@ -348,10 +364,12 @@ private:
         return true;
     }
 
-    /// +1: a step twice as long would do, -1: even this one was too long, 0 otherwise.
-    int smoothness() const {
+    enum class Smoothness { unknown, rough, enough, fine };
+
+    /// fine: a step twice as long would do; rough: even this one was too long; unknown: too few equal steps to tell.
+    Smoothness smoothness() const {
         const auto& nodes = response_.nodes;
-        if (equal_steps_ < 2 || nodes.size() < 3) return 0;
+        if (equal_steps_ < 2 || nodes.size() < 3) return Smoothness::unknown;
         const ResponseNode &a = nodes[nodes.size() - 3], &b = nodes[nodes.size() - 2], &c = nodes.back();
         const double h = c.t - a.t;
         const auto error = [&](double va, double sa, double vb, double vc, double sc, double final_value,
@@ -362,7 +380,8 @@ private:
         };
         const double worst = std::max(error(a.y, a.y_slope, b.y, c.y, c.y_slope, steady_.y, largest_y_),
                                       error(a.u, a.u_slope, b.u, c.u, c.u_slope, steady_.u, largest_u_));
-        return worst < options_.tolerance ? 1 : worst > 40 * options_.tolerance ? -1 : 0;
+        if (worst < options_.tolerance) return Smoothness::fine;
+        return worst > 40 * options_.tolerance ? Smoothness::rough : Smoothness::enough;
     }
 
     void take_step(std::vector<double>& x, std::vector<double>& scratch) {
@@ -397,7 +416,7 @@ private:
         offset_ = 0;
         ++segment_;
         segment_started_ = true;
-        if (segment_ <= echoes_) push(node_at(system_, time(), x, history_.at(time() - L, true, slack)));
+        if (!echoes_are_over()) push(node_at(system_, time(), x, history_.at(time() - L, true, slack)));
         if (echoes_are_over()) segment_started_ = false;
     }
 
@@ -420,7 +439,8 @@ private:
     std::vector<LongStep> long_steps_;
     int echoes_ = 0, segment_ = 0;
     int level_ = 0, last_level_ = -1, equal_steps_ = 0;
-    bool segment_started_ = true;
+    bool segment_started_ = true, climb_blocked_ = false;
+    int restart_level_ = 0, top_level_ = 0;
     long offset_ = 0;   // of the segment, in units of h0
     double ticks_ = 0;  // since t = 0, in units of h0: exact
     double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;

@@ -1,0 +1,233 @@
+// The part of the HTTP contract that the page uses. Quantities that are infinite or undefined are null; their object says why.
+
+export type WhyNull = Record<string, string>;
+
+export interface Units {
+  time?: string;
+  u?: string;
+  y?: string;
+}
+
+export type Complex = number | [number, number];
+
+export type Plant = { type: string; L?: number } & Record<string, unknown>;
+
+export interface RecordedTest {
+  t?: number[] | string[];
+  dt?: number;
+  u?: number[];
+  y?: number[];
+  csv?: string;
+  columns?: { t?: string; u?: string; y?: string };
+  kind?: string;
+  u0?: number;
+  y0?: number;
+}
+
+export interface Baseline {
+  form: string;
+  [parameter: string]: unknown;
+}
+
+export type TuneEntry = { method: string } & Record<string, unknown>;
+
+export interface TuningRequest {
+  name?: string;
+  units?: Units;
+  plant?: Plant;
+  record?: RecordedTest;
+  identify?: Record<string, unknown>;
+  tune?: TuneEntry[] | string;
+  baseline?: Baseline;
+  evaluate?: {
+    setpoint_step?: number;
+    load_step?: number;
+    actuator?: { min?: number | null; max?: number | null };
+    [key: string]: unknown;
+  };
+  [key: string]: unknown;
+}
+
+export interface Notice {
+  code: string;
+  detail: string;
+}
+
+export interface FieldError {
+  pointer: string;
+  detail: string;
+}
+
+export interface Problem {
+  type?: string;
+  title?: string;
+  status?: number;
+  detail?: string;
+  errors?: FieldError[];
+}
+
+export interface Filter {
+  type: string;
+  Tf?: number | null;
+  N?: number | null;
+}
+
+export interface Controller {
+  form: string;
+  Kp: number;
+  Ti: number | null;
+  Td: number | null;
+  b?: number;
+  c?: number;
+  action?: string;
+  filter?: Filter;
+  why_null?: WhyNull;
+}
+
+export interface Equivalent {
+  Kp?: number | null;
+  Ki?: number | null;
+  Kd?: number | null;
+  Ti?: number | null;
+  Td?: number | null;
+  b_equivalent?: number | null;
+  why_null?: WhyNull;
+}
+
+export interface Robustness {
+  stable: boolean;
+  Ms: number | null;
+  omega_Ms: number | null;
+  Mt: number | null;
+  omega_Mt: number | null;
+  Mks: number | null;
+  gain_margin: number | null;
+  gain_margin_low: number | null;
+  phase_margin_deg: number | null;
+  delay_margin: number | null;
+  gain_crossover: number | null;
+  phase_crossover: number | null;
+  binding?: string | null;
+  tolerates?: { gain?: [number | null, number | null] | null; extra_dead_time?: number | null };
+  why_null?: WhyNull;
+}
+
+export type Figures = { why_null?: WhyNull } & Record<string, number | null | WhyNull | undefined>;
+
+export interface Response {
+  t: number[];
+  y: (number | null)[];
+  u: (number | null)[];
+}
+
+export interface FrequencyTraces {
+  omega: number[];
+  L: { re: (number | null)[]; im: (number | null)[]; phase_deg?: (number | null)[] };
+  S_abs: (number | null)[];
+  T_abs: (number | null)[];
+  CS_abs: (number | null)[];
+}
+
+export interface Entry {
+  method: string;
+  title?: string;
+  source?: string;
+  options?: Record<string, unknown>;
+  warnings?: Notice[];
+  error?: Problem;
+  reduced_model?: Plant;
+  controller?: Controller;
+  equivalents?: { parallel?: Equivalent | null; series?: Equivalent | null; why_null?: WhyNull };
+  robustness?: Robustness;
+  performance?: { setpoint?: Figures; load?: Figures; noise?: Figures };
+  responses?: { setpoint?: Response; load?: Response };
+  frequency?: FrequencyTraces;
+  verification?: Record<string, unknown>;
+  compute_ms?: number;
+  partial?: boolean;
+}
+
+export interface Model {
+  plant: Plant;
+  fit_percent: number | null;
+  candidates?: { plant: Plant; fit_percent: number | null; criterion?: number | null; standard_errors?: Record<string, number | null> }[];
+  fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
+  standard_errors?: Record<string, number | null>;
+  data_quality?: Record<string, unknown>;
+  warnings?: Notice[];
+  why_null?: WhyNull;
+}
+
+export interface Result {
+  model?: Model;
+  controllers: Entry[];
+  ranking?: number[];
+  ranking_by?: string;
+  partial?: boolean;
+  version?: string;
+  request_hash?: string;
+}
+
+export interface Progress {
+  fraction: number | null;
+  stage?: string;
+  message?: string;
+  best?: Record<string, unknown> | null;
+}
+
+export type JobStatus = "queued" | "running" | "succeeded" | "failed" | "cancelled";
+
+export interface Job {
+  id: string;
+  name?: string;
+  status: JobStatus;
+  progress?: Progress;
+  created_at?: string;
+  started_at?: string | null;
+  finished_at?: string | null;
+  request?: TuningRequest;
+  result?: Result;
+  error?: Problem;
+}
+
+/** A JSON Schema, as far as method options use it. */
+export interface Schema {
+  type?: string | string[];
+  title?: string;
+  description?: string;
+  default?: unknown;
+  enum?: unknown[];
+  const?: unknown;
+  minimum?: number;
+  maximum?: number;
+  exclusiveMinimum?: number;
+  exclusiveMaximum?: number;
+  properties?: Record<string, Schema>;
+  required?: string[];
+  items?: Schema;
+  oneOf?: Schema[];
+  anyOf?: Schema[];
+  $ref?: string;
+  $defs?: Record<string, Schema>;
+  "x-unit"?: string;
+}
+
+export interface Method {
+  id: string;
+  title: string;
+  formula?: string;
+  needs?: string;
+  validity?: string;
+  source?: string;
+  options?: Schema;
+}
+
+export interface Example {
+  id: string;
+  title: string;
+  description?: string;
+  source?: string;
+  request: TuningRequest;
+}
+
+export const isFinal = (status: JobStatus): boolean => status === "succeeded" || status === "failed" || status === "cancelled";

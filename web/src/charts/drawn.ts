@@ -1,0 +1,57 @@
+// Which entries are drawn, and how each one looks everywhere.
+import type { Entry, Result } from "../api/types.ts";
+import type { Look } from "../plot/frame.ts";
+
+export interface Drawn {
+  index: number;
+  name: string;
+  look: Look;
+  entry: Entry;
+}
+
+export const MOST_DRAWN = 4;
+
+/** Short names of the entries: the method, numbered where it occurs twice; "today" for the baseline. */
+export function entryNames(entries: Entry[]): string[] {
+  const base = entries.map((entry) => (entry.method === "baseline" ? "today" : entry.method));
+  const distinguishing = base.map((name, index) => {
+    if (base.filter((other) => other === name).length < 2) return name;
+    const twins = entries.filter((_, at) => base[at] === name);
+    const options = entries[index]!.options ?? {};
+    const telling = Object.entries(options).find(
+      ([key, value]) => (typeof value === "number" || typeof value === "string") && twins.some((twin) => twin.options?.[key] !== value),
+    );
+    return telling ? `${name} ${telling[0]} ${String(telling[1])}` : name;
+  });
+  return distinguishing.map((name, index) => {
+    const earlier = distinguishing.slice(0, index).filter((other) => other === name).length;
+    return earlier === 0 ? name : `${name} #${earlier + 1}`;
+  });
+}
+
+const drawable = (entry: Entry | undefined): boolean => Boolean(entry && !entry.error && (entry.responses || entry.frequency));
+
+/** The best of the ranking and today's settings, at most four, in the order of the entries. */
+export function defaultDrawn(result: Result): number[] {
+  const entries = result.controllers;
+  const order = [...(result.ranking ?? []), ...entries.map((_, index) => index)];
+  const today = entries.findIndex((entry) => entry.method === "baseline");
+  const chosen = new Set<number>(today >= 0 && drawable(entries[today]) ? [today] : []);
+  for (const index of order) {
+    if (chosen.size >= MOST_DRAWN) break;
+    if (drawable(entries[index])) chosen.add(index);
+  }
+  return [...chosen].sort((a, b) => a - b);
+}
+
+/** Looks: today's settings are always series 2, the others take 1, 3, 4 (and 2 if it is free) in order. */
+export function drawnEntries(result: Result, indices: number[]): Drawn[] {
+  const names = entryNames(result.controllers);
+  const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MOST_DRAWN);
+  const hasToday = shown.some((index) => result.controllers[index]!.method === "baseline");
+  const free: Look[] = hasToday ? [1, 3, 4] : [1, 2, 3, 4];
+  return shown.map((index) => {
+    const entry = result.controllers[index]!;
+    return { index, name: names[index]!, entry, look: entry.method === "baseline" ? 2 : free.shift()! };
+  });
+}

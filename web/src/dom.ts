@@ -1,0 +1,60 @@
+// Elements without a framework: made once, then written to. Text only ever enters as text nodes (Trusted Types stay empty).
+
+export type Child = Node | string | number | null | undefined | false | Child[];
+type AttributeValue = string | number | boolean | null | undefined | ((event: never) => void);
+
+const SVG = "http://www.w3.org/2000/svg";
+const MATHML = "http://www.w3.org/1998/Math/MathML";
+
+function append(parent: Element, children: Child[]): void {
+  for (const child of children) {
+    if (Array.isArray(child)) append(parent, child);
+    else if (child instanceof Node) parent.append(child);
+    else if (child !== null && child !== undefined && child !== false) parent.append(String(child));
+  }
+}
+
+/** An HTML element. Functions are listeners (`onclick`), `true` a bare attribute, `false` and null none. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, AttributeValue> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === "function") element.addEventListener(name.slice(2), value as unknown as EventListener);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value));
+  }
+  append(element, children);
+  return element;
+}
+
+/** A description of a node outside HTML: what formulas and plots are made of before they touch the page. */
+export interface TreeNode {
+  tag: string;
+  attributes?: Record<string, string | number>;
+  children?: (TreeNode | string)[];
+}
+
+/** Shorthand for TreeNode. */
+export function node(tag: string, attributes: Record<string, string | number> = {}, ...children: (TreeNode | string)[]): TreeNode {
+  return { tag, attributes, children };
+}
+
+function build(tree: TreeNode, namespace: string): Element {
+  const element = document.createElementNS(namespace, tree.tag);
+  for (const [name, value] of Object.entries(tree.attributes ?? {})) element.setAttribute(name, String(value));
+  for (const child of tree.children ?? []) element.append(typeof child === "string" ? child : build(child, namespace));
+  return element;
+}
+
+export const svgElement = (tree: TreeNode): SVGElement => build(tree, SVG) as SVGElement;
+export const mathElement = (tree: TreeNode): MathMLElement => build(tree, MATHML) as MathMLElement;
+
+let counter = 0;
+/** An id that no other element of the page has. */
+export function uniqueId(prefix: string): string {
+  counter += 1;
+  return `${prefix}-${counter}`;
+}

@@ -1,0 +1,63 @@
+// Labelled controls: text fields with unit and hint, choices, check boxes. All of them can carry an error sentence.
+import { h, uniqueId } from "../dom.ts";
+import type { Control, FormErrors } from "./errors.ts";
+
+export interface ControlOptions {
+  label: string;
+  hint?: string;
+  unit?: string;
+  value?: string;
+  placeholder?: string;
+  wide?: boolean;
+  rows?: number;
+  pointer: () => string | null;
+}
+
+export interface Field<T extends Control["input"]> {
+  element: HTMLElement;
+  input: T;
+  /** What the form's errors know this field by. */
+  control: Control;
+  setUnit(unit: string): void;
+}
+
+function assemble<T extends Control["input"]>(input: T, options: ControlOptions, errors: FormErrors): Field<T> {
+  input.id = uniqueId("field");
+  const hint = options.hint ? h("span", { class: "hint", id: `${input.id}-hint` }, options.hint) : null;
+  const error = h("span", { class: "error", id: `${input.id}-error`, hidden: true });
+  const unit = h("span", { class: "unit" }, options.unit ? ` (${options.unit})` : "");
+  input.setAttribute("aria-describedby", [hint?.id, error.id].filter(Boolean).join(" "));
+  const control: Control = { input, error, pointer: options.pointer };
+  errors.add(control);
+  const element = h("div", { class: options.wide ? "field wide" : "field" }, h("label", { for: input.id }, options.label, unit), input, error, hint);
+  return {
+    element,
+    input,
+    control,
+    setUnit(text) {
+      unit.textContent = text ? ` (${text})` : "";
+    },
+  };
+}
+
+/** A text field: numbers are text too, read by our own parser. */
+export function textField(options: ControlOptions, errors: FormErrors): Field<HTMLInputElement> {
+  const input = h("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: options.placeholder, value: options.value });
+  return assemble(input, options, errors);
+}
+
+export function areaField(options: ControlOptions, errors: FormErrors): Field<HTMLTextAreaElement> {
+  const input = h("textarea", { rows: options.rows ?? 4, spellcheck: "false", placeholder: options.placeholder });
+  if (options.value) input.value = options.value;
+  return assemble(input, options, errors);
+}
+
+/** A choice of [value, text] pairs. */
+export function choiceField(options: ControlOptions & { choices: readonly (readonly [string, string])[] }, errors: FormErrors): Field<HTMLSelectElement> {
+  const input = h(
+    "select",
+    {},
+    options.choices.map(([value, text]) => h("option", { value, selected: value === options.value }, text)),
+  );
+  return assemble(input, options, errors);
+}

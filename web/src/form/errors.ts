@@ -1,0 +1,87 @@
+// Faults at their fields: one sentence beside the field, the same in a summary that takes the focus.
+import type { FieldError } from "../api/types.ts";
+import { h } from "../dom.ts";
+
+export interface Control {
+  input: HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement;
+  /** The element beside the field that holds its sentence. */
+  error: HTMLElement;
+  /** JSON Pointer of the value in the request as it would be sent now; null: not part of it. */
+  pointer(): string | null;
+}
+
+/** The control that a pointer belongs to: its own, else that of the nearest enclosing value, else one inside it. */
+export function matchPointer(pointer: string, known: readonly (string | null)[]): number {
+  let best = -1;
+  let length = -1;
+  known.forEach((candidate, index) => {
+    if (candidate === null) return;
+    const same = candidate === pointer;
+    const encloses = pointer.startsWith(`${candidate}/`);
+    if ((same || encloses) && candidate.length > length) {
+      best = index;
+      length = candidate.length;
+    }
+  });
+  if (best >= 0) return best;
+  return pointer === "" ? -1 : known.findIndex((candidate) => candidate !== null && candidate.startsWith(`${pointer}/`));
+}
+
+export class FormErrors {
+  readonly summary = h("div", { class: "summary", role: "group", "aria-label": "What to mend", tabindex: -1, hidden: true });
+  private readonly controls = new Set<Control>();
+
+  add(control: Control): void {
+    this.controls.add(control);
+    control.input.addEventListener("input", () => this.clearControl(control));
+    control.input.addEventListener("change", () => this.clearControl(control));
+  }
+
+  remove(control: Control): void {
+    this.controls.delete(control);
+  }
+
+  clear(): void {
+    this.summary.hidden = true;
+    this.summary.replaceChildren();
+    for (const control of this.controls) this.clearControl(control);
+  }
+
+  /** Shows every fault at its field and all of them in the summary, which takes the focus. */
+  show(errors: FieldError[], general = ""): void {
+    this.clear();
+    const controls = [...this.controls];
+    const pointers = controls.map((control) => control.pointer());
+    const items = errors.map((error) => {
+      const control = controls[matchPointer(error.pointer, pointers)];
+      if (!control) return h("li", {}, error.detail, error.pointer ? h("code", {}, ` ${error.pointer}`) : null);
+      control.error.textContent = [control.error.textContent, error.detail].filter(Boolean).join(" ");
+      control.error.hidden = false;
+      control.input.setAttribute("aria-invalid", "true");
+      const link = h("a", { href: `#${control.input.id}` }, error.detail);
+      link.addEventListener("click", (event) => {
+        event.preventDefault();
+        openAround(control.input);
+        control.input.focus();
+      });
+      return h("li", {}, link);
+    });
+    const count = errors.length;
+    const head = count === 0 ? general : `${count} ${count === 1 ? "thing" : "things"} to mend`;
+    this.summary.replaceChildren(h("h2", {}, head), ...(items.length > 0 ? [h("ul", {}, items)] : []));
+    this.summary.hidden = false;
+    this.summary.focus();
+    this.summary.scrollIntoView({ block: "nearest" });
+  }
+
+  private clearControl(control: Control): void {
+    control.error.textContent = "";
+    control.error.hidden = true;
+    control.input.removeAttribute("aria-invalid");
+  }
+}
+
+/** Opens the folded parts of the page that an element is in. */
+function openAround(element: Element): void {
+  for (let at = element.closest("details"); at; at = at.parentElement?.closest("details") ?? null) at.open = true;
+}

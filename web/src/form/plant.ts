@@ -1,0 +1,156 @@
+// The model card's fields: which plants can be entered, and how their parameters are written.
+import type { Plant } from "../api/types.ts";
+import { parseMatrix, parseNumber, parseNumbers, parseRoots } from "./number.ts";
+import type { Parsed } from "./number.ts";
+
+export interface PlantField {
+  /** Name in the contract. */
+  name: string;
+  hint: string;
+  /** Which unit stands behind it. */
+  unit: "gain" | "slope" | "time" | "";
+  optional?: boolean;
+  example: string;
+  read(text: string): Parsed<unknown>;
+  write(value: unknown): string;
+}
+
+export interface PlantForm {
+  /** The form's own key; several forms may write one type. */
+  id: string;
+  type: string;
+  title: string;
+  fields: PlantField[];
+}
+
+const writeNumber = (value: unknown): string => (typeof value === "number" ? String(value) : "");
+const writeList = (value: unknown): string => (Array.isArray(value) ? value.map(String).join(" ") : writeNumber(value));
+const writeRoots = (value: unknown): string =>
+  Array.isArray(value)
+    ? value.map((root: unknown) => (Array.isArray(root) ? `${String(root[0])}${Number(root[1]) < 0 ? "-" : "+"}${Math.abs(Number(root[1]))}i` : String(root))).join(" ")
+    : "";
+const writeMatrix = (value: unknown): string =>
+  Array.isArray(value) ? value.map((row: unknown) => (Array.isArray(row) ? row.map(String).join(" ") : String(row))).join("; ") : writeNumber(value);
+
+function numberField(name: string, hint: string, unit: PlantField["unit"], example: string, optional = false): PlantField {
+  return { name, hint, unit, example, optional, read: (text) => parseNumber(text, name), write: writeNumber };
+}
+
+const listField = (name: string, hint: string, example: string): PlantField => ({
+  name,
+  hint,
+  unit: "",
+  example,
+  read: (text) => parseNumbers(text, name),
+  write: writeList,
+});
+const rootField = (name: string, hint: string, example: string): PlantField => ({
+  name,
+  hint,
+  unit: "",
+  example,
+  optional: true,
+  read: (text) => parseRoots(text, name),
+  write: writeRoots,
+});
+const matrixField = (name: string, hint: string, example: string): PlantField => ({
+  name,
+  hint,
+  unit: "",
+  example,
+  read: (text) => parseMatrix(text, name),
+  write: writeMatrix,
+});
+
+const gain = numberField("K", "how far y goes for one unit of u, in the end", "gain", "1.25");
+const deadTime = numberField("L", "dead time: nothing happens before it", "time", "8");
+const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
+
+export const PLANT_FORMS: PlantForm[] = [
+  { id: "fopdt", type: "fopdt", title: "First order with dead time", fields: [gain, numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"), deadTime] },
+  {
+    id: "sopdt",
+    type: "sopdt",
+    title: "Second order, two time constants",
+    fields: [gain, numberField("T1", "first time constant", "time", "10"), numberField("T2", "second time constant", "time", "5"), deadTime],
+  },
+  {
+    id: "sopdt_zeta",
+    type: "sopdt",
+    title: "Second order, damped oscillation",
+    fields: [gain, numberField("T", "1/natural frequency", "time", "10"), numberField("zeta", "damping; below 1 it oscillates", "", "0.4"), deadTime],
+  },
+  {
+    id: "ipdt",
+    type: "ipdt",
+    title: "Integrating with dead time",
+    fields: [numberField("K", "slope of y for one unit of u", "slope", "0.02"), deadTime, numberField("T", "additional lag; empty is none", "time", "", true)],
+  },
+  {
+    id: "transfer_function",
+    type: "transfer_function",
+    title: "Transfer function",
+    fields: [listField("num", "numerator, falling powers of s", "1"), listField("den", "denominator, falling powers of s", "1 3 3 1"), optionalDeadTime],
+  },
+  {
+    id: "zpk",
+    type: "zpk",
+    title: "Zeros, poles and gain",
+    fields: [
+      numberField("K", "factor in front; not the static gain", "", "2"),
+      rootField("zeros", "empty: none. Pairs as -1±2i", ""),
+      rootField("poles", "for example -1 -2±1i", "-1 -2±1i"),
+      optionalDeadTime,
+    ],
+  },
+  {
+    id: "state_space",
+    type: "state_space",
+    title: "State space",
+    fields: [
+      matrixField("A", "rows with semicolons between them", "-1 0; 1 -2"),
+      matrixField("B", "one column", "1; 0"),
+      matrixField("C", "one row", "0 1"),
+      { ...numberField("D", "direct part; empty is 0", "", "", true), read: (text) => readD(text), write: writeD },
+      optionalDeadTime,
+    ],
+  },
+];
+
+function readD(text: string): Parsed<unknown> {
+  const parsed = parseNumber(text, "D");
+  return parsed.ok ? { ok: true, value: [[parsed.value]] } : parsed;
+}
+
+function writeD(value: unknown): string {
+  const first: unknown = Array.isArray(value) ? (value as unknown[]).flat()[0] : value;
+  return typeof first === "number" && first !== 0 ? String(first) : "";
+}
+
+/** The form that can show this plant, or null. */
+export function formOf(plant: Plant): PlantForm | null {
+  if (plant.type === "sopdt" && plant["zeta"] !== undefined) return PLANT_FORMS.find((form) => form.id === "sopdt_zeta")!;
+  const form = PLANT_FORMS.find((candidate) => candidate.type === plant.type) ?? null;
+  const known = new Set(["type", ...(form?.fields.map((field) => field.name) ?? [])]);
+  return form && Object.keys(plant).every((key) => known.has(key)) ? form : null;
+}
+
+export interface PlantReading {
+  plant: Plant;
+  errors: { pointer: string; detail: string }[];
+}
+
+/** The plant as typed; faults carry their pointers. */
+export function readPlant(form: PlantForm, typed: (name: string) => string): PlantReading {
+  const plant: Plant = { type: form.type };
+  const errors: PlantReading["errors"] = [];
+  for (const field of form.fields) {
+    const text = typed(field.name);
+    const listLike = field.name === "zeros" || field.name === "poles";
+    if (field.optional && text.trim() === "" && !listLike) continue;
+    const parsed = field.read(text);
+    if (parsed.ok) plant[field.name] = parsed.value;
+    else errors.push({ pointer: `/plant/${field.name}`, detail: parsed.sentence });
+  }
+  return { plant, errors };
+}

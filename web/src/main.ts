@@ -1,0 +1,184 @@
+// Starts the page: header, routes, the job that is followed, and what happens when something unforeseen goes wrong.
+import { getExamples, getJob, getMethods, getRecentJobs, watchJob } from "./api/jobs.ts";
+import type { Job } from "./api/types.ts";
+import { h } from "./dom.ts";
+import { formatRoute, parseRoute } from "./routes.ts";
+import type { Route } from "./routes.ts";
+import { createStore } from "./store.ts";
+import { applyTheme, themeButton } from "./theme.ts";
+import { designView } from "./views/design.ts";
+import { startView } from "./views/start.ts";
+import type { StartView, View } from "./views/start.ts";
+
+const store = createStore({
+  route: { screen: "start" },
+  job: null,
+  jobTrouble: "",
+  selected: 0,
+  drawn: null,
+  methods: [],
+  examples: [],
+  recent: [],
+  serviceTrouble: "",
+  units: {},
+});
+
+const status = h("p", { class: "visually-hidden", role: "status" });
+const announce = (sentence: string): void => {
+  status.textContent = sentence;
+};
+const links = { start: h("a", { href: "#/" }, "Start"), design: h("a", { href: "#/", hidden: true }, "Design") };
+const skip = h("a", { class: "skip", href: "#main" }, "Skip to the content");
+const stage = h("div", { class: "stage" });
+
+let view: View | null = null;
+let start: StartView | null = null;
+let stopWatching: (() => void) | null = null;
+
+document.body.append(
+  skip,
+  h(
+    "header",
+    { class: "top" },
+    h("a", { class: "brand", href: "#/" }, "Tunewright"),
+    h("nav", { "aria-label": "Screens" }, links.start, links.design),
+    h("div", { class: "tools" }, h("a", { href: "openapi.json" }, "API"), themeButton()),
+  ),
+  stage,
+  status,
+);
+skip.addEventListener("click", (event) => {
+  event.preventDefault();
+  view?.heading.focus();
+});
+
+function mount(next: View, title: string, focus: boolean): void {
+  if (view !== next) {
+    if (view && view !== start) view.dispose();
+    view = next;
+    stage.replaceChildren(next.element);
+    window.scrollTo(0, 0);
+    if (focus) next.heading.focus();
+  }
+  document.title = title;
+}
+
+/** The start screen is kept: what was typed is still there when one comes back. */
+function startScreen(): StartView {
+  start ??= startView(store, {
+    onJob(job) {
+      store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: 0, drawn: null }));
+      location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
+    },
+    onModel(form, values) {
+      history.replaceState(null, "", formatRoute({ screen: "new", plant: form, values }));
+    },
+  });
+  return start;
+}
+
+function follow(id: string): void {
+  stopWatching?.();
+  stopWatching = watchJob(id, {
+    onJob: takeJob,
+    onTrouble: (sentence) => store.set((workspace) => ({ ...workspace, jobTrouble: sentence })),
+  });
+}
+
+function takeJob(job: Job): void {
+  store.set((workspace) => (workspace.route.screen === "design" && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace));
+}
+
+async function refreshRecent(): Promise<void> {
+  try {
+    const recent = await getRecentJobs(6);
+    store.set((workspace) => ({ ...workspace, recent }));
+  } catch {
+    // The list is a convenience: without it the page works as before.
+  }
+}
+
+async function loadForm(route: Route): Promise<void> {
+  const form = startScreen();
+  if (route.screen === "new") form.loadTyped(route.plant, route.values);
+  try {
+    if (route.screen === "edit") {
+      const known = store.get().job;
+      const job = known?.id === route.job && known.request ? known : await getJob(route.job);
+      if (job.request) form.load(job.request);
+    }
+    if (route.screen === "example") {
+      await lists;
+      const example = store.get().examples.find((candidate) => candidate.id === route.id);
+      if (example) form.load(example.request);
+      else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
+    }
+  } catch (error) {
+    store.set((workspace) => ({ ...workspace, serviceTrouble: error instanceof Error ? error.message : String(error) }));
+  }
+}
+
+function go(first: boolean): void {
+  const route = parseRoute(location.hash);
+  const before = store.get();
+  store.set((workspace) => ({ ...workspace, route }));
+  links.start.toggleAttribute("data-current", route.screen !== "design");
+  links.design.toggleAttribute("data-current", route.screen === "design");
+  for (const link of Object.values(links)) {
+    if (link.hasAttribute("data-current")) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+  if (route.screen === "design") {
+    const same = before.job?.id === route.job;
+    store.set((workspace) => ({
+      ...workspace,
+      job: same ? workspace.job : null,
+      jobTrouble: "",
+      selected: route.entry ?? (same ? workspace.selected : 0),
+      drawn: same ? workspace.drawn : null,
+    }));
+    links.design.href = formatRoute({ ...route, entry: null });
+    links.design.hidden = false;
+    mount(designView(store, announce, takeJob), "Design · Tunewright", !first);
+    follow(route.job);
+    return;
+  }
+  stopWatching?.();
+  stopWatching = null;
+  mount(startScreen(), "Tunewright", !first);
+  void loadForm(route);
+  void refreshRecent();
+}
+
+// The address follows the chosen entry, and the title the loop's name.
+store.subscribe((workspace, previous) => {
+  const route = workspace.route;
+  if (route.screen !== "design") return;
+  if (workspace.selected !== previous.selected && workspace.job?.id === previous.job?.id) {
+    history.replaceState(null, "", formatRoute({ ...route, entry: workspace.selected }));
+  }
+  const name = workspace.job?.name || workspace.job?.request?.name;
+  document.title = name ? `${name} · Design · Tunewright` : "Design · Tunewright";
+});
+
+async function loadLists(): Promise<void> {
+  const [methods, examples] = await Promise.allSettled([getMethods(), getExamples()]);
+  store.set((workspace) => ({
+    ...workspace,
+    methods: methods.status === "fulfilled" ? methods.value : workspace.methods,
+    examples: examples.status === "fulfilled" ? examples.value : workspace.examples,
+    serviceTrouble: methods.status === "rejected" ? "The service's list of methods could not be read; the default method is used." : "",
+  }));
+}
+
+function fault(reason: unknown): void {
+  const words = reason instanceof Error ? reason.message : String(reason);
+  stage.prepend(h("p", { class: "trouble", role: "alert" }, `Something went wrong in this page: ${words}. Reload it; your jobs are kept by the service.`));
+}
+
+window.addEventListener("error", (event) => fault(event.error ?? event.message));
+window.addEventListener("unhandledrejection", (event) => fault(event.reason));
+window.addEventListener("hashchange", () => go(false));
+applyTheme();
+const lists = loadLists();
+go(true);

@@ -1,0 +1,123 @@
+// Ranges, scales and ticks, linear and logarithmic. Every function returns for every input: no data, one value, or nonsense.
+
+export type ScaleKind = "linear" | "log";
+export type Range = readonly [number, number];
+
+export interface Scale {
+  kind: ScaleKind;
+  /** In data units, lo < hi. */
+  range: Range;
+  /** Data to pixels. */
+  toPixel(value: number): number;
+  /** Pixels to data. */
+  toValue(pixel: number): number;
+}
+
+const EMPTY: Record<ScaleKind, Range> = { linear: [0, 1], log: [0.1, 10] };
+
+/** A range that can be drawn: finite, ordered, not empty; positive for a log axis. */
+export function usableRange(lo: number, hi: number, kind: ScaleKind): Range {
+  if (kind === "log") {
+    if (!(lo > 0) || !(hi > 0) || !Number.isFinite(lo) || !Number.isFinite(hi)) return EMPTY.log;
+    return lo < hi ? [lo, hi] : [lo / 2, lo * 2];
+  }
+  if (!Number.isFinite(lo) || !Number.isFinite(hi) || lo > hi) return EMPTY.linear;
+  if (hi - lo <= 1e-12 * Math.max(Math.abs(lo), Math.abs(hi))) {
+    const half = lo === 0 ? 1 : Math.abs(lo) / 2;
+    return [lo - half, hi + half];
+  }
+  return [lo, hi];
+}
+
+/** The extent of all values that can be drawn, widened by `margin` of itself at both ends (in decades on a log axis). */
+export function extent(lists: readonly (readonly (number | null)[])[], kind: ScaleKind, margin = 0): Range {
+  let lo = Infinity;
+  let hi = -Infinity;
+  for (const list of lists) {
+    for (const value of list) {
+      if (value === null || !Number.isFinite(value) || (kind === "log" && value <= 0)) continue;
+      if (value < lo) lo = value;
+      if (value > hi) hi = value;
+    }
+  }
+  const [a, b] = usableRange(lo, hi, kind);
+  if (kind === "log") {
+    const factor = (b / a) ** margin;
+    return [a / factor, b * factor];
+  }
+  return [a - margin * (b - a), b + margin * (b - a)];
+}
+
+export function makeScale(kind: ScaleKind, range: Range, pixels: Range): Scale {
+  const [lo, hi] = usableRange(range[0], range[1], kind);
+  const [p0, p1] = pixels;
+  if (kind === "log") {
+    const a = Math.log(lo);
+    const width = Math.log(hi) - a;
+    return {
+      kind,
+      range: [lo, hi],
+      toPixel: (value) => p0 + ((Math.log(value) - a) / width) * (p1 - p0),
+      toValue: (pixel) => Math.exp(a + ((pixel - p0) / (p1 - p0)) * width),
+    };
+  }
+  return {
+    kind,
+    range: [lo, hi],
+    toPixel: (value) => p0 + ((value - lo) / (hi - lo)) * (p1 - p0),
+    toValue: (pixel) => lo + ((pixel - p0) / (p1 - p0)) * (hi - lo),
+  };
+}
+
+/** Tick values inside the range, about `count` of them, at least three where the numbers allow it. */
+export function ticks(kind: ScaleKind, range: Range, count: number): number[] {
+  const [lo, hi] = usableRange(range[0], range[1], kind);
+  const wanted = Math.max(3, Math.min(20, Math.round(count) || 3));
+  if (kind === "linear") return linearTicks(lo, hi, wanted);
+  const decades = logTicks(lo, hi, wanted);
+  return decades.length >= 3 ? decades : linearTicks(lo, hi, wanted).filter((value) => value > 0);
+}
+
+function linearTicks(lo: number, hi: number, wanted: number): number[] {
+  let chosen: number[] = [];
+  const rough = (hi - lo) / wanted;
+  const decade = 10 ** Math.floor(Math.log10(rough));
+  // From coarse to fine: the first step that gives enough ticks wins.
+  for (const factor of [10, 5, 2, 1, 0.5, 0.2, 0.1]) {
+    const step = decade * factor;
+    const first = Math.ceil(lo / step - 1e-9);
+    const last = Math.floor(hi / step + 1e-9);
+    if (last - first > 40) break;
+    chosen = [];
+    for (let index = first; index <= last; index += 1) chosen.push(clean(index, step));
+    if (chosen.length >= Math.min(wanted, 3) && step <= rough * 2.001) break;
+  }
+  return chosen;
+}
+
+/** index * step without the rounding dust of a decimal step. */
+function clean(index: number, step: number): number {
+  return Number((index * step).toPrecision(12));
+}
+
+function logTicks(lo: number, hi: number, wanted: number): number[] {
+  const first = Math.floor(Math.log10(lo));
+  const last = Math.ceil(Math.log10(hi));
+  const inside = (mantissas: number[], every: number): number[] => {
+    const list: number[] = [];
+    for (let exponent = first; exponent <= last; exponent += 1) {
+      if (exponent % every !== 0) continue;
+      for (const mantissa of mantissas) {
+        const value = Number(`${mantissa}e${exponent}`);
+        if (value >= lo * (1 - 1e-9) && value <= hi * (1 + 1e-9)) list.push(value);
+      }
+    }
+    return list;
+  };
+  for (const mantissas of [[1], [1, 3], [1, 2, 5]]) {
+    const list = inside(mantissas, 1);
+    if (list.length > wanted + 2 && mantissas.length === 1) return inside([1], Math.ceil(list.length / wanted));
+    if (list.length >= 3) return list;
+  }
+  return inside([1, 2, 5], 1);
+}

@@ -1,0 +1,41 @@
+// Cursors that move together: plots with the same link name share a position.
+
+export interface CursorPosition {
+  value: number | null;
+  /** Who moved it: that plot shows the figures. */
+  source: object | null;
+}
+
+type Listener = (position: CursorPosition) => void;
+
+const links = new Map<string, Set<Listener>>();
+
+export function joinLink(name: string, listener: Listener): () => void {
+  const listeners = links.get(name) ?? new Set<Listener>();
+  links.set(name, listeners);
+  listeners.add(listener);
+  return () => {
+    listeners.delete(listener);
+    if (listeners.size === 0) links.delete(name);
+  };
+}
+
+export function moveCursor(name: string, position: CursorPosition): void {
+  for (const listener of links.get(name) ?? []) listener(position);
+}
+
+/** Index of the sample nearest to the value; -1 for an empty list. The list rises, or falls. */
+export function nearestIndex(list: readonly (number | null)[], value: number): number {
+  let best = -1;
+  let distance = Infinity;
+  for (let index = 0; index < list.length; index += 1) {
+    const sample = list[index];
+    if (typeof sample !== "number" || !Number.isFinite(sample)) continue;
+    const away = Math.abs(sample - value);
+    if (away < distance) {
+      distance = away;
+      best = index;
+    }
+  }
+  return best;
+}

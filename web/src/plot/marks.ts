@@ -1,0 +1,170 @@
+// From a layout to SVG nodes. Looks are presentation attributes over colour tokens, var(--name): no class and no style,
+// so the same nodes serve the page (which follows the theme) and the exports (which put the colours in).
+import { node } from "../dom.ts";
+import type { TreeNode } from "../dom.ts";
+import { ticks } from "./axis.ts";
+import { columnExtremes, drawableRuns } from "./dense.ts";
+import type { Frame, Look, Mark, Trace } from "./frame.ts";
+import type { Layout, PaneBox } from "./layout.ts";
+
+type Attributes = Record<string, string | number>;
+
+const LINES: Record<Look, Attributes> = {
+  1: { stroke: "var(--series-1)", "stroke-width": 2.2 },
+  2: { stroke: "var(--series-2)", "stroke-width": 1.8, "stroke-dasharray": "6 4" },
+  3: { stroke: "var(--series-3)", "stroke-width": 1.8, "stroke-dasharray": "12 3" },
+  4: { stroke: "var(--series-4)", "stroke-width": 2, "stroke-dasharray": "2 3" },
+  data: { stroke: "var(--muted)", "stroke-width": 1.3 },
+};
+
+const ROLES: Record<"setpoint" | "limit" | "zero", Attributes> = {
+  setpoint: { stroke: "var(--setpoint)", "stroke-width": 1 },
+  limit: { stroke: "var(--limit)", "stroke-width": 1.5, "stroke-dasharray": "3 3" },
+  zero: { stroke: "var(--control)", "stroke-width": 1 },
+};
+
+export const lineOf = (look: Look): Attributes => LINES[look];
+
+const FONT = { "font-size": 12 };
+const MINUS = "−";
+const FAR = 20000;
+
+const round = (value: number): number => Math.round(value * 10) / 10;
+
+/** A tick's text: no dust, true minus, powers of ten where plain digits would be long. */
+export function tickText(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text = size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
+  return text.replaceAll("-", MINUS);
+}
+
+/** Everything but the cursor. `clip` makes ids of clip paths unique in the document. */
+export function drawLayout(frame: Frame, layout: Layout, clip: string): TreeNode[] {
+  return layout.boxes.flatMap((box, index) => drawBox(frame, box, `${clip}-${index}`, index === layout.boxes.length - 1));
+}
+
+function drawBox(frame: Frame, box: PaneBox, clip: string, last: boolean): TreeNode[] {
+  const inside = { "clip-path": `url(#${clip})` };
+  const marks = box.pane.marks ?? [];
+  const frameRect = { x: box.left, y: round(box.top), width: round(box.width), height: round(box.height) };
+  return [
+    node("clipPath", { id: clip }, node("rect", frameRect)),
+    node("g", {}, ...drawGrid(box)),
+    node("g", inside, ...marks.flatMap((mark) => drawMark(box, mark))),
+    node("g", inside, ...box.pane.traces.map((trace) => drawTrace(box, trace))),
+    node("rect", { ...frameRect, fill: "none", stroke: "var(--control)" }),
+    node("g", inside, ...markLabels(box, marks)),
+    node("g", { fill: "var(--muted)", ...FONT }, ...drawTickTexts(box, last), ...drawAxisNames(frame, box, last)),
+  ];
+}
+
+function axisTicks(box: PaneBox): { x: number[]; y: number[] } {
+  return {
+    x: ticks(box.x.kind, box.x.range, box.width / 90),
+    y: ticks(box.y.kind, box.y.range, box.height / 38),
+  };
+}
+
+function drawGrid(box: PaneBox): TreeNode[] {
+  const { x, y } = axisTicks(box);
+  const right = round(box.left + box.width);
+  const bottom = round(box.top + box.height);
+  const path =
+    x.map((value) => `M${round(box.x.toPixel(value))} ${round(box.top)}V${bottom}`).join("") +
+    y.map((value) => `M${box.left} ${round(box.y.toPixel(value))}H${right}`).join("");
+  const grid = node("path", { d: path || "M0 0", fill: "none", stroke: "var(--grid)" });
+  const zero = box.y.kind === "linear" && box.y.range[0] < 0 && box.y.range[1] > 0;
+  return zero ? [grid, node("path", { d: `M${box.left} ${round(box.y.toPixel(0))}H${right}`, fill: "none", ...ROLES.zero })] : [grid];
+}
+
+function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
+  const { x, y } = axisTicks(box);
+  const bottom = box.top + box.height;
+  const texts: TreeNode[] = y.map((value) =>
+    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, tickText(value)),
+  );
+  if (!last) return texts;
+  let free = -Infinity;
+  for (const value of x) {
+    const at = box.x.toPixel(value);
+    const half = tickText(value).length * 3.4;
+    if (at - half < free) continue;
+    free = at + half + 6;
+    texts.push(node("text", { x: round(at), y: round(bottom + 16), "text-anchor": "middle" }, tickText(value)));
+  }
+  return texts;
+}
+
+function drawAxisNames(frame: Frame, box: PaneBox, last: boolean): TreeNode[] {
+  const middle = round(box.top + box.height / 2);
+  const names = [node("text", { x: 0, y: 0, transform: `translate(13 ${middle}) rotate(-90)`, "text-anchor": "middle" }, box.pane.y.label)];
+  if (last) names.push(node("text", { x: round(box.left + box.width / 2), y: round(box.top + box.height + 33), "text-anchor": "middle" }, frame.x.label));
+  return names;
+}
+
+/** The path of a trace in pixels; long traces keep their extremes of each pixel column. */
+export function tracePath(box: PaneBox, trace: Trace): string {
+  const near = (pixel: number): number => Math.max(-FAR, Math.min(FAR, pixel));
+  let path = "";
+  for (const [first, end] of drawableRuns(trace.x, trace.y, box.x.kind === "log", box.y.kind === "log")) {
+    const xs: number[] = [];
+    const ys: number[] = [];
+    for (let index = first; index <= end; index += 1) {
+      xs.push(near(box.x.toPixel(trace.x[index]!)));
+      ys.push(near(box.y.toPixel(trace.y[index]!)));
+    }
+    const dense = !trace.parameter && xs.length > 4 * box.width;
+    const kept = dense ? columnExtremes(xs.map(Math.floor), ys) : xs.map((_, index) => index);
+    path += kept.map((index, position) => `${position === 0 ? "M" : "L"}${round(xs[index]!)} ${round(ys[index]!)}`).join("");
+  }
+  return path;
+}
+
+function drawTrace(box: PaneBox, trace: Trace): TreeNode {
+  return node("path", { d: tracePath(box, trace) || "M0 0", fill: "none", "stroke-linejoin": "round", ...LINES[trace.look] });
+}
+
+function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
+  switch (mark.kind) {
+    case "level": {
+      const y = round(box.y.toPixel(mark.value));
+      return [node("path", { d: `M${box.left} ${y}H${round(box.left + box.width)}`, fill: "none", ...ROLES[mark.role] })];
+    }
+    case "upright": {
+      const x = round(box.x.toPixel(mark.value));
+      return [node("path", { d: `M${x} ${round(box.top)}V${round(box.top + box.height)}`, fill: "none", ...ROLES[mark.role] })];
+    }
+    case "circle": {
+      const radius = Math.abs(box.x.toPixel(mark.x + mark.radius) - box.x.toPixel(mark.x));
+      const centre = { cx: round(box.x.toPixel(mark.x)), cy: round(box.y.toPixel(mark.y)), r: round(radius) };
+      return [node("circle", { ...centre, fill: "var(--limit)", "fill-opacity": 0.07, ...ROLES.limit })];
+    }
+    case "point":
+      return [node("circle", { cx: round(box.x.toPixel(mark.x)), cy: round(box.y.toPixel(mark.y)), r: 3.5, fill: "var(--bad)" })];
+  }
+}
+
+function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
+  const right = box.left + box.width;
+  return marks.flatMap((mark): TreeNode[] => {
+    if (!mark.label) return [];
+    const at = (x: number, y: number, anchor: string): TreeNode[] => [
+      node("text", { x: round(x), y: round(y), "text-anchor": anchor, fill: "var(--text)", ...FONT }, mark.label!),
+    ];
+    switch (mark.kind) {
+      case "level": {
+        const line = box.y.toPixel(mark.value);
+        return at(right - 5, line - box.top > 18 ? line - 5 : line + 15, "end");
+      }
+      case "upright":
+        return at(box.x.toPixel(mark.value) + 5, box.top + 14, "start");
+      case "circle": {
+        const edge = box.y.toPixel(mark.y + (mark.labelAt === "above" ? mark.radius : -mark.radius));
+        return at(box.x.toPixel(mark.x), edge + (mark.labelAt === "above" ? -5 : 15), "middle");
+      }
+      case "point":
+        return at(box.x.toPixel(mark.x) + 6, box.y.toPixel(mark.y) - 6, "start");
+    }
+  });
+}

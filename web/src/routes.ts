@@ -1,0 +1,49 @@
+// Hash routes: nothing for the server to rewrite, and a plant never appears in an access log.
+
+export type Route =
+  | { screen: "start" }
+  | { screen: "new"; plant: string; values: Record<string, string> }
+  | { screen: "example"; id: string }
+  | { screen: "edit"; job: string }
+  | { screen: "design"; job: string; entry: number | null };
+
+/** The route of a location hash; anything unknown is the start. */
+export function parseRoute(hash: string): Route {
+  const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?", 2);
+  const parts = path.split("/").filter(Boolean).map(decode);
+  const values = Object.fromEntries(new URLSearchParams(query));
+  if (parts[0] === "new" && parts[1]) return { screen: "new", plant: parts[1], values };
+  if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
+  if (parts[0] === "jobs" && parts[1]) {
+    if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
+    const entry = /^\d+$/.test(values["entry"] ?? "") ? Number(values["entry"]) : null;
+    return { screen: "design", job: parts[1], entry };
+  }
+  return { screen: "start" };
+}
+
+/** The hash that parseRoute reads back as the same route. */
+export function formatRoute(route: Route): string {
+  switch (route.screen) {
+    case "start":
+      return "#/";
+    case "new": {
+      const query = new URLSearchParams(Object.entries(route.values).filter(([, value]) => value !== "")).toString();
+      return `#/new/${encodeURIComponent(route.plant)}${query ? `?${query}` : ""}`;
+    }
+    case "example":
+      return `#/examples/${encodeURIComponent(route.id)}`;
+    case "edit":
+      return `#/jobs/${encodeURIComponent(route.job)}/edit`;
+    case "design":
+      return `#/jobs/${encodeURIComponent(route.job)}/design${route.entry === null ? "" : `?entry=${route.entry}`}`;
+  }
+}
+
+function decode(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}

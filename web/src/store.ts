@@ -1,0 +1,56 @@
+// The page's state: one immutable workspace. Every change is a function from one workspace to the next; subscribers run once per frame.
+import type { Job, Method, Example, Units } from "./api/types.ts";
+import type { Route } from "./routes.ts";
+
+export interface Workspace {
+  route: Route;
+  job: Job | null;
+  /** Why the job cannot be shown or followed at the moment, or "". */
+  jobTrouble: string;
+  selected: number;
+  /** Indices of the entries drawn, at most four. Null: the default choice. */
+  drawn: number[] | null;
+  methods: Method[];
+  examples: Example[];
+  recent: Job[];
+  /** Why methods or examples could not be had, or "". */
+  serviceTrouble: string;
+  units: Units;
+}
+
+export interface Store {
+  get(): Workspace;
+  set(change: (workspace: Workspace) => Workspace): void;
+  subscribe(listener: (workspace: Workspace, previous: Workspace) => void): () => void;
+}
+
+export function createStore(initial: Workspace): Store {
+  let current = initial;
+  let painted = initial;
+  let pending = false;
+  const listeners = new Set<(workspace: Workspace, previous: Workspace) => void>();
+  const flush = (): void => {
+    pending = false;
+    const previous = painted;
+    painted = current;
+    for (const listener of [...listeners]) listener(current, previous);
+  };
+  return {
+    get: () => current,
+    set(change) {
+      const next = change(current);
+      if (next === current) return;
+      current = next;
+      if (!pending) {
+        pending = true;
+        // A hidden tab gets no frames; its state must still be painted when it is looked at.
+        if (document.hidden) setTimeout(flush, 0);
+        else requestAnimationFrame(flush);
+      }
+    },
+    subscribe(listener) {
+      listeners.add(listener);
+      return () => listeners.delete(listener);
+    },
+  };
+}

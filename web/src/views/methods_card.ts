@@ -1,0 +1,131 @@
+// The choice of methods with their options, built from what GET /v1/methods says.
+import type { FieldError, Method, TuneEntry } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { choiceField, textField } from "../form/controls.ts";
+import type { Field } from "../form/controls.ts";
+import type { Control, FormErrors } from "../form/errors.ts";
+import { fieldsOf, pick, place, readField, typedText } from "../form/fields.ts";
+import type { FieldSpec } from "../form/fields.ts";
+
+export interface MethodsCard {
+  element: HTMLElement;
+  setMethods(methods: Method[]): void;
+  read(): { tune: TuneEntry[] | string; errors: FieldError[] };
+  load(tune: TuneEntry[] | string | undefined): void;
+}
+
+/** Options that decide what comes out: shown at once, the others on request. */
+const MAIN_OPTIONS = ["controller", "Ms", "Mt", "Mks", "tau_c", "lambda"];
+const DEFAULT_TUNE: TuneEntry[] = [{ method: "robust", Ms: 1.4, Mt: 1.4 }];
+
+interface Row {
+  method: Method;
+  element: HTMLElement;
+  chosen: HTMLInputElement;
+  fields: { spec: FieldSpec; field: Field<Control["input"]> }[];
+  /** Options of a loaded request that have no field here: sent back as they came. */
+  rest: Record<string, unknown>;
+  options: HTMLElement;
+}
+
+export function methodsCard(errors: FormErrors): MethodsCard {
+  let rows: Row[] = [];
+  let wanted: TuneEntry[] | string = DEFAULT_TUNE;
+  const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
+  const element = h(
+    "section",
+    { class: "card", "aria-labelledby": "methods-title" },
+    h("h2", { id: "methods-title" }, "How to tune"),
+    h("p", { class: "hint" }, "The first is a good choice: the best load rejection within the robustness you set. Choose several to compare them."),
+    list,
+  );
+
+  /** Position of a row among the chosen ones, which is its index in `tune`. */
+  const position = (row: Row): number => rows.filter((other) => other.chosen.checked).indexOf(row);
+
+  function makeRow(method: Method): Row {
+    const chosen = h("input", { type: "checkbox", id: `method-${method.id}` });
+    const row: Row = { method, chosen, fields: [], rest: {}, element: h("div"), options: h("div") };
+    const pointer = (path: string[]) => (): string | null => (chosen.checked ? `/tune/${position(row)}/${path.join("/")}` : null);
+    row.fields = fieldsOf(method.options)
+      .filter((spec) => spec.path[0] !== "method")
+      .map((spec) => ({ spec, field: optionField(spec, pointer(spec.path), errors) }));
+    const main = row.fields.filter(({ spec }) => spec.path.length === 1 && MAIN_OPTIONS.includes(spec.path[0]!));
+    const others = row.fields.filter((item) => !main.includes(item));
+    row.options = h(
+      "div",
+      { class: "options", hidden: true },
+      main.length > 0 ? h("div", { class: "fields" }, main.map(({ field }) => field.element)) : null,
+      others.length > 0 ? h("details", {}, h("summary", {}, "More options"), h("div", { class: "fields" }, others.map(({ field }) => field.element))) : null,
+      h("p", { class: "hint" }, [method.needs && `Needs ${method.needs}.`, method.validity && `Valid: ${method.validity}.`, method.source].filter(Boolean).join(" ").replaceAll("..", ".")),
+    );
+    chosen.addEventListener("change", () => {
+      row.options.hidden = !chosen.checked;
+    });
+    row.element = h("div", { class: "method" }, h("div", { class: "check" }, chosen, h("label", { for: chosen.id }, method.title, h("code", {}, ` ${method.id}`))), row.options);
+    return row;
+  }
+
+  function fill(row: Row, entry: TuneEntry | undefined): void {
+    row.chosen.checked = entry !== undefined;
+    row.options.hidden = entry === undefined;
+    row.rest = {};
+    if (!entry) return;
+    const known = new Set(row.fields.map(({ spec }) => spec.path[0]!));
+    for (const [name, value] of Object.entries(entry)) if (name !== "method" && !known.has(name)) row.rest[name] = value;
+    for (const { spec, field } of row.fields) field.input.value = typedText(pick(entry, spec.path));
+  }
+
+  function show(): void {
+    const entries = typeof wanted === "string" ? rows.map((row) => ({ method: row.method.id })) : wanted;
+    for (const row of rows) fill(row, entries.find((entry) => entry.method === row.method.id));
+  }
+
+  return {
+    element,
+    setMethods(methods) {
+      for (const row of rows) for (const { field } of row.fields) errors.remove(field.control);
+      rows = methods.filter((method) => method.id !== "all").map(makeRow);
+      const robustFirst = [...rows].sort((a, b) => Number(b.method.id === "robust") - Number(a.method.id === "robust"));
+      rows = robustFirst;
+      const [first, ...others] = rows.map((row) => row.element);
+      list.replaceChildren(
+        ...(first ? [first] : []),
+        ...(others.length > 0 ? [h("details", { class: "rules" }, h("summary", {}, `Compare with ${others.length} other ${others.length === 1 ? "method" : "methods"}`), ...others)] : []),
+      );
+      show();
+    },
+    read() {
+      // Without the service's list the default of the contract holds.
+      if (rows.length === 0) return { tune: wanted, errors: [] };
+      const faults: FieldError[] = [];
+      const tune = rows
+        .filter((row) => row.chosen.checked)
+        .map((row, index) => {
+          const entry: TuneEntry = { method: row.method.id, ...row.rest };
+          for (const { spec, field } of row.fields) {
+            const parsed = readField(spec, field.input.value);
+            if (parsed.ok) place(entry, spec.path, parsed.value);
+            else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
+          }
+          return entry;
+        });
+      if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });
+      return { tune, errors: faults };
+    },
+    load(tune) {
+      wanted = tune ?? DEFAULT_TUNE;
+      show();
+      if (typeof wanted === "string" || wanted.length > 1) list.querySelector("details.rules")?.setAttribute("open", "");
+    },
+  };
+}
+
+function optionField(spec: FieldSpec, pointer: () => string | null, errors: FormErrors): Field<Control["input"]> {
+  const hint = [spec.hint, spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""].filter(Boolean).join(" ");
+  const shared = { label: spec.label, hint, unit: spec.unit, pointer };
+  const standard = spec.defaultText ? `as usual (${spec.defaultText})` : "as usual";
+  if (spec.kind === "choice") return choiceField({ ...shared, choices: [["", standard], ...spec.choices.map((item) => [item, item] as const)] }, errors);
+  if (spec.kind === "boolean") return choiceField({ ...shared, choices: [["", standard], ["true", "yes"], ["false", "no"]] }, errors);
+  return textField({ ...shared, placeholder: spec.defaultText || "optional" }, errors);
+}

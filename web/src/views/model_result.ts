@@ -1,0 +1,60 @@
+// What was identified from the record: the model, how well it fits, the other candidates.
+import type { Model } from "../api/types.ts";
+import { h, mathElement } from "../dom.ts";
+import { plantFormula } from "../form/formula.ts";
+import { formatNumber } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
+import { parameterUnit, plantTitle, plantWords } from "../words/plant.ts";
+
+export function modelResult(model: Model, units: UnitNames): HTMLElement {
+  const formula = plantFormula(rounded(model.plant));
+  const parameters = Object.entries(model.plant).filter((pair): pair is [string, number] => typeof pair[1] === "number");
+  const candidates = model.candidates ?? [];
+  return h(
+    "section",
+    { class: "card", "aria-labelledby": "model-title" },
+    h("h2", { id: "model-title" }, "Model from the record"),
+    formula ? h("div", { class: "formula" }, mathElement(formula)) : null,
+    h(
+      "table",
+      { class: "figures" },
+      h("caption", { class: "visually-hidden" }, "Identified parameters"),
+      h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, "value"), h("th", { scope: "col" }, "± std. error"))),
+      h(
+        "tbody",
+        {},
+        h("tr", {}, h("th", { scope: "row" }, "Fit (%)"), h("td", {}, formatNumber(model.fit_percent)), h("td", {})),
+        parameters.map(([name, value]) => {
+          const unit = parameterUnit(model.plant, name, units);
+          return h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, unit ? `${name} (${unit})` : name),
+            h("td", {}, formatNumber(value, 4)),
+            h("td", {}, formatNumber(model.standard_errors?.[name], 2)),
+          );
+        }),
+      ),
+    ),
+    candidates.length > 1
+      ? h(
+          "details",
+          {},
+          h("summary", {}, `${candidates.length} candidates`),
+          h(
+            "ul",
+            { class: "plain" },
+            candidates.map((candidate) => h("li", {}, `${plantTitle(candidate.plant.type)}: fit ${formatNumber(candidate.fit_percent)} %, ${plantWords(candidate.plant, units)}`)),
+          ),
+        )
+      : null,
+    (model.warnings ?? []).length > 0 ? h("ul", { class: "notes" }, (model.warnings ?? []).map((warning) => h("li", {}, warning.detail))) : null,
+  );
+}
+
+/** Identified numbers are known to a few digits only; the formula shows no more. */
+function rounded(plant: Model["plant"]): Model["plant"] {
+  const round = (value: unknown): unknown =>
+    typeof value === "number" ? Number(value.toPrecision(4)) : Array.isArray(value) ? value.map(round) : value;
+  return Object.fromEntries(Object.entries(plant).map(([key, value]) => [key, round(value)])) as Model["plant"];
+}

@@ -1,0 +1,168 @@
+// Start: a record, a model, or an example; everything below is optional.
+import { ApiError } from "../api/client.ts";
+import { postJob } from "../api/jobs.ts";
+import type { Example, FieldError, Job, TuningRequest } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { FormErrors } from "../form/errors.ts";
+import { formatRoute } from "../routes.ts";
+import type { Store, Workspace } from "../store.ts";
+import { unitNames } from "../words/numbers.ts";
+import { methodsCard } from "./methods_card.ts";
+import { modelCard } from "./model_card.ts";
+import { recordCard } from "./record_card.ts";
+import { todayCard } from "./today_card.ts";
+
+export interface View {
+  element: HTMLElement;
+  /** The heading that takes the focus when the screen changes. */
+  heading: HTMLElement;
+  dispose(): void;
+}
+
+export interface StartEvents {
+  onJob(job: Job): void;
+  /** The model as typed, for the address. */
+  onModel(form: string, values: Record<string, string>): void;
+}
+
+export interface StartView extends View {
+  load(request: TuningRequest): void;
+  loadTyped(form: string, values: Record<string, string>): void;
+}
+
+export function startView(store: Store, events: StartEvents): StartView {
+  const errors = new FormErrors();
+  // Parts of a loaded request that have no field: sent back as they came.
+  let base: TuningRequest = {};
+  let busy = false;
+  const heading = h("h1", { tabindex: -1 }, "What do you have?");
+  const status = h("p", { class: "trouble", role: "status", hidden: true });
+  const model = modelCard(errors, { onTune: () => void tuneModel(), onChange: events.onModel });
+  const record = recordCard(errors, () => void tuneRecord());
+  const methods = methodsCard(errors);
+  const today = todayCard(errors, () => model.setUnits(unitNames(today.readUnits())));
+  const examples = h("div", { class: "examples" });
+  const recent = h("p", { class: "recent", hidden: true });
+  const element = h(
+    "main",
+    { class: "start", id: "main" },
+    heading,
+    h("p", { class: "lead" }, "Describe your process in one of three ways and press its button: you get controller settings, and the proof that the loop will hold with them."),
+    recent,
+    status,
+    errors.summary,
+    h(
+      "div",
+      { class: "cards" },
+      record.element,
+      model.element,
+      h("section", { class: "card", "aria-labelledby": "examples-title" }, h("h2", { id: "examples-title" }, "Nothing yet"), h("p", { class: "hint" }, "Try a ready-made example."), examples),
+    ),
+    h("div", { class: "cards two" }, methods.element, today.element),
+  );
+
+  async function send(request: TuningRequest, faults: FieldError[]): Promise<void> {
+    errors.clear();
+    if (faults.length > 0) return errors.show(faults);
+    if (busy) return;
+    busy = true;
+    element.setAttribute("aria-busy", "true");
+    try {
+      events.onJob(await postJob(request));
+    } catch (error) {
+      const problem = error instanceof ApiError ? error.problem : {};
+      const listed = problem.errors ?? [];
+      errors.show(listed, error instanceof Error ? error.message : String(error));
+    } finally {
+      busy = false;
+      element.removeAttribute("aria-busy");
+    }
+  }
+
+  function common(): { request: TuningRequest; faults: FieldError[] } {
+    const units = today.readUnits();
+    const baseline = today.read();
+    const chosen = methods.read();
+    const { plant: _plant, record: _record, identify: _identify, ...kept } = base;
+    const request: TuningRequest = { ...kept };
+    delete request.name;
+    delete request.units;
+    delete request.baseline;
+    if (today.readName()) request.name = today.readName();
+    if (Object.keys(units).length > 0) request.units = units;
+    request.tune = chosen.tune;
+    if (baseline.baseline) request.baseline = baseline.baseline;
+    return { request, faults: [...chosen.errors, ...baseline.errors] };
+  }
+
+  async function tuneModel(): Promise<void> {
+    const reading = model.read();
+    const { request, faults } = common();
+    await send({ ...request, plant: reading.plant }, [...reading.errors, ...faults]);
+  }
+
+  async function tuneRecord(): Promise<void> {
+    const reading = record.read();
+    const { request, faults } = common();
+    const identify = { ...base.identify, ...reading.identify };
+    await send({ ...request, record: { ...baseRecord(base), ...reading.record }, identify }, [...reading.errors, ...faults]);
+  }
+
+  function load(request: TuningRequest): void {
+    errors.clear();
+    base = request;
+    today.load(request.units, request.baseline, request.name);
+    methods.load(request.tune);
+    if (request.record) record.load(request.record, request.identify);
+    if (request.plant && !model.load(request.plant)) {
+      status.textContent = `A plant of type ${request.plant.type} in this shape has no form here; send it to the service's API, or choose another kind.`;
+      status.hidden = false;
+    }
+  }
+
+  function showLists(workspace: Workspace): void {
+    if (workspace.serviceTrouble) {
+      status.textContent = workspace.serviceTrouble;
+      status.hidden = false;
+    }
+    examples.replaceChildren(...workspace.examples.map((example) => exampleElement(example, () => void send(example.request, []))));
+    recent.hidden = workspace.recent.length === 0;
+    recent.replaceChildren(
+      "Recent: ",
+      ...workspace.recent.flatMap((job, index) => [
+        index > 0 ? " · " : "",
+        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, job.name || `job ${job.id.slice(0, 8)}`),
+      ]),
+    );
+  }
+
+  methods.setMethods(store.get().methods);
+  showLists(store.get());
+  const leave = store.subscribe((workspace, previous) => {
+    if (workspace.methods !== previous.methods) methods.setMethods(workspace.methods);
+    const changed = workspace.examples !== previous.examples || workspace.recent !== previous.recent || workspace.serviceTrouble !== previous.serviceTrouble;
+    if (changed) showLists(workspace);
+  });
+  return { element, heading, dispose: leave, load, loadTyped: model.loadTyped };
+}
+
+/** What the record card has no field for: values before the first sample. */
+function baseRecord(request: TuningRequest): { u0?: number; y0?: number } {
+  const { u0, y0 } = request.record ?? {};
+  return { ...(u0 === undefined ? {} : { u0 }), ...(y0 === undefined ? {} : { y0 }) };
+}
+
+function exampleElement(example: Example, tune: () => void): HTMLElement {
+  return h(
+    "div",
+    { class: "example" },
+    h("h3", {}, example.title),
+    example.description || example.source ? h("p", { class: "hint" }, example.description ?? example.source) : null,
+    h(
+      "p",
+      { class: "actions" },
+      h("button", { type: "button", onclick: tune, "aria-label": `Tune: ${example.title}` }, "Tune"),
+      h("a", { href: formatRoute({ screen: "example", id: example.id }), "aria-label": `See in the form: ${example.title}` }, "See in the form"),
+    ),
+  );
+}

@@ -1,0 +1,160 @@
+// The figures of an entry, in the order and with the names and units in which they are read.
+import type { Entry, WhyNull } from "../api/types.ts";
+import { formatNumber, product, quotient, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+
+export interface FigureRow {
+  label: string;
+  /** What the quantity is, for those who do not know it. */
+  meaning: string;
+  value(entry: Entry): FigureValue;
+}
+
+export interface FigureValue {
+  text: string;
+  /** Why there is no number; "" if there is one. */
+  why: string;
+}
+
+export interface FigureGroup {
+  title: string;
+  /** Shown at once, or among "all figures". */
+  main: boolean;
+  rows: FigureRow[];
+}
+
+type Part = { why_null?: WhyNull } | undefined;
+
+const missing = (why: string): FigureValue => ({ text: "", why });
+
+/** A number of one of the entry's objects, with that object's reason where it is null. */
+function numeric(part: Part, name: string, absent: string): FigureValue {
+  const value = (part as Record<string, unknown> | undefined)?.[name];
+  if (typeof value === "number" && Number.isFinite(value)) return { text: formatNumber(value), why: "" };
+  return missing(part?.why_null?.[name] ?? absent);
+}
+
+const NOT_GIVEN = "The service gave no figure.";
+
+export function filterWords(type: string | undefined): string {
+  switch (type) {
+    case undefined:
+    case "none":
+      return "none";
+    case "derivative":
+      return "on the derivative";
+    case "measurement_first_order":
+      return "1st order on y";
+    case "measurement_second_order":
+      return "2nd order on y";
+    default:
+      return type.replaceAll("_", " ");
+  }
+}
+
+export function figureGroups(units: UnitNames): FigureGroup[] {
+  const gain = quotient(units.u, units.y);
+  const error = product(units.y, units.time);
+  const controller = (label: string, name: string, meaning: string, absent: string): FigureRow => ({
+    label,
+    meaning,
+    value: (entry) => numeric(entry.controller, name, absent),
+  });
+  const robustness = (label: string, name: string, meaning: string): FigureRow => ({ label, meaning, value: (entry) => numeric(entry.robustness, name, NOT_GIVEN) });
+  const performance = (kind: "setpoint" | "load" | "noise", label: string, name: string, meaning: string): FigureRow => ({
+    label,
+    meaning,
+    value: (entry) => numeric(entry.performance?.[kind], name, NOT_GIVEN),
+  });
+  return [
+    {
+      title: "Controller",
+      main: true,
+      rows: [
+        controller(withUnit("Kp", gain), "Kp", "proportional gain", NOT_GIVEN),
+        controller(withUnit("Ti", units.time), "Ti", "integral time", "no integral action"),
+        controller(withUnit("Td", units.time), "Td", "derivative time", "no derivative action"),
+        { label: withUnit("Tf", units.time), meaning: "filter time constant", value: (entry) => filterTime(entry) },
+      ],
+    },
+    {
+      title: "Robustness",
+      main: true,
+      rows: [
+        robustness("Ms", "Ms", "peak of |S|: 1/Ms is the distance of L from −1; 1.4 is calm, 2 is sharp"),
+        robustness("Mt", "Mt", "peak of |T|"),
+        robustness("Gain margin", "gain_margin", "the loop gain may grow by this factor"),
+        robustness("Phase margin (°)", "phase_margin_deg", "smallest over all crossings"),
+      ],
+    },
+    {
+      title: "Load step",
+      main: true,
+      rows: [
+        performance("load", withUnit("IAE", error), "IAE", "integrated absolute error: less is better"),
+        performance("load", withUnit("Peak", units.y), "peak", "largest deviation, with its sign"),
+      ],
+    },
+    {
+      title: "Set-point step",
+      main: true,
+      rows: [
+        performance("setpoint", withUnit("IAE", error), "IAE", "integrated absolute error"),
+        performance("setpoint", "Overshoot (%)", "overshoot_percent", "of the step"),
+        performance("setpoint", withUnit("Settling", units.time), "settling_time", "last time outside 2 % of the step"),
+        performance("setpoint", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
+      ],
+    },
+    {
+      title: "Controller, the rest",
+      main: false,
+      rows: [
+        { label: "Filter", meaning: "where it acts", value: (entry) => ({ text: filterWords(entry.controller?.filter?.type), why: "" }) },
+        controller("b", "b", "set-point weight of P", "1 by default"),
+        controller("c", "c", "set-point weight of D", "0 by default"),
+        { label: "Action", meaning: "sign of the gain", value: (entry) => ({ text: entry.controller?.action ?? "", why: entry.controller?.action ? "" : NOT_GIVEN }) },
+      ],
+    },
+    {
+      title: "Robustness, the rest",
+      main: false,
+      rows: [
+        robustness(withUnit("Mks", gain), "Mks", "peak of |CS|: how much noise may reach u"),
+        robustness("Gain margin, low", "gain_margin_low", "the loop gain may fall to this share"),
+        robustness(withUnit("Delay margin", units.time), "delay_margin", "so much more dead time is stable"),
+        robustness(`ω of Ms (rad/${units.time})`, "omega_Ms", "where |S| peaks"),
+        robustness(`ω of Mt (rad/${units.time})`, "omega_Mt", "where |T| peaks"),
+        robustness(`Gain crossover (rad/${units.time})`, "gain_crossover", "where |L| = 1"),
+        robustness(`Phase crossover (rad/${units.time})`, "phase_crossover", "where L is at −180°"),
+      ],
+    },
+    {
+      title: "Load step, the rest",
+      main: false,
+      rows: [
+        performance("load", "ISE", "ISE", "integrated squared error"),
+        performance("load", "ITAE", "ITAE", "integrated absolute error, weighted by time"),
+        performance("load", withUnit("Recovery", units.time), "recovery_time", "last time outside 2 % of the peak"),
+        performance("load", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
+      ],
+    },
+    {
+      title: "Set-point step, the rest",
+      main: false,
+      rows: [
+        performance("setpoint", "ISE", "ISE", "integrated squared error"),
+        performance("setpoint", "ITAE", "ITAE", "integrated absolute error, weighted by time"),
+        performance("setpoint", withUnit("Rise", units.time), "rise_time", "from 10 % to 90 %"),
+        performance("setpoint", withUnit("First move of u", units.u), "first_move", "u right after the step"),
+      ],
+    },
+  ];
+}
+
+function filterTime(entry: Entry): FigureValue {
+  const filter = entry.controller?.filter;
+  if (typeof filter?.Tf === "number") return { text: formatNumber(filter.Tf), why: "" };
+  const Td = entry.controller?.Td;
+  if (typeof filter?.N === "number" && typeof Td === "number" && filter.N > 0) return { text: formatNumber(Td / filter.N), why: "" };
+  return missing("no filter");
+}

@@ -1,0 +1,56 @@
+// Numbers and units as people read them: three digits, a true minus, a dash for what does not exist.
+
+export const DASH = "–";
+const MINUS = "−";
+
+/** `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros stay: they say how exact the figure is. */
+export function formatNumber(value: number | null | undefined, digits = 3): string {
+  if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size < 1e-3 || size >= 1e5) {
+    const [mantissa = "", exponent = ""] = value.toExponential(digits - 1).split("e");
+    return `${mantissa}e${exponent.replace("+", "")}`.replaceAll("-", MINUS);
+  }
+  const fixed = value.toPrecision(digits);
+  const plain = fixed.includes("e") ? String(Math.round(Number(fixed))) : fixed;
+  return plain.replaceAll("-", MINUS);
+}
+
+/** A figure to enter into a controller: five digits at most, no trailing zeros. */
+export function formatSetting(value: number | null | undefined): string {
+  if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
+  return String(Number(value.toPrecision(5))).replaceAll("-", MINUS);
+}
+
+/** The same for machines and clipboards: ASCII minus. */
+export const plainSetting = (value: number): string => String(Number(value.toPrecision(5)));
+
+export interface UnitNames {
+  time: string;
+  u: string;
+  y: string;
+}
+
+export function unitNames(units: { time?: string; u?: string; y?: string } | undefined): UnitNames {
+  return { time: units?.time || "s", u: pretty(units?.u ?? ""), y: pretty(units?.y ?? "") };
+}
+
+/** degC and degF as they are printed. */
+function pretty(unit: string): string {
+  return unit.replace(/^deg([CF])$/, "°$1");
+}
+
+/** "Ti (s)"; the bare name where there is no unit. */
+export const withUnit = (name: string, unit: string): string => (unit ? `${name} (${unit})` : name);
+
+/** "%/°C"; empty unless at least one is known. */
+export function quotient(top: string, bottom: string): string {
+  if (!top && !bottom) return "";
+  if (top === bottom) return "";
+  return `${top || "1"}${bottom ? `/${bottom}` : ""}`;
+}
+
+export function product(a: string, b: string): string {
+  return [a, b].filter(Boolean).join(" ");
+}

@@ -1,0 +1,35 @@
+// A plant in one line of words.
+import type { Plant } from "../api/types.ts";
+import { formatNumber, quotient } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+
+const TITLES: Record<string, string> = {
+  fopdt: "first order with dead time",
+  sopdt: "second order with dead time",
+  ipdt: "integrating with dead time",
+  transfer_function: "transfer function",
+  zpk: "zeros, poles and gain",
+  state_space: "state space",
+};
+
+export const plantTitle = (type: string): string => TITLES[type] ?? type.replaceAll("_", " ");
+
+/** Parameter name -> unit. */
+export function parameterUnit(plant: Plant, name: string, units: UnitNames): string {
+  if (name === "K") {
+    const gain = quotient(units.y, units.u);
+    return plant.type === "ipdt" ? (gain ? `${gain}/${units.time}` : `1/${units.time}`) : gain;
+  }
+  return name === "zeta" ? "" : units.time;
+}
+
+/** "K 1.25 °C/%, T 40 s, L 8 s"; the plant's kind where it has no such parameters. */
+export function plantWords(plant: Plant, units: UnitNames): string {
+  const parts = ["K", "T", "T1", "T2", "zeta", "L"].flatMap((name) => {
+    const value = plant[name];
+    if (typeof value !== "number" || (name === "L" && value === 0)) return [];
+    const unit = parameterUnit(plant, name, units);
+    return [`${name} ${formatNumber(value)}${unit ? ` ${unit}` : ""}`];
+  });
+  return parts.length > 0 ? parts.join(", ") : plantTitle(plant.type);
+}

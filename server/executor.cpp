@@ -1,0 +1,55 @@
+#include "server/executor.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace tunewright::server {
+
+void be_nice(int niceness) {
+    // On Linux a thread has its own niceness, addressed by its thread id.
+    if (niceness > 0) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
+}
+
+Executor::Executor(std::size_t threads, int niceness) {
+    for (std::size_t i = 0; i < threads; i++) threads_.emplace_back([this, niceness] { work(niceness); });
+}
+
+Executor::~Executor() { stop(); }
+
+void Executor::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+    threads_.clear();
+}
+
+void Executor::post(std::function<void()> task) { post_within(static_cast<std::size_t>(-1), std::move(task)); }
+
+bool Executor::post_within(std::size_t most, std::function<void()> task) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (stopping_ || tasks_.size() >= most) return false;
+        tasks_.push_back(std::move(task));
+    }
+    changed_.notify_one();
+    return true;
+}
+
+void Executor::work(int niceness) {
+    be_nice(niceness);
+    for (;;) {
+        std::function<void()> task;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
+            if (tasks_.empty()) return;
+            task = std::move(tasks_.front());
+            tasks_.pop_front();
+        }
+        task();
+    }
+}
+
+}  // namespace tunewright::server

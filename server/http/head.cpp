@@ -1,0 +1,195 @@
+#include "server/http/head.h"
+
+#include <strings.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace tunewright::server::http {
+namespace {
+
+bool equals(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && strncasecmp(a.data(), b.data(), a.size()) == 0;
+}
+
+bool is_token_char(char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
+}
+
+bool is_token(std::string_view text) { return !text.empty() && std::ranges::all_of(text, is_token_char); }
+
+bool has_control(std::string_view text) {
+    return std::ranges::any_of(text, [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+}
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    return text;
+}
+
+bool has_word(std::string_view list, std::string_view word) {
+    while (!list.empty()) {
+        const std::size_t comma = list.find(',');
+        if (equals(trim(list.substr(0, comma)), word)) return true;
+        if (comma == std::string_view::npos) break;
+        list.remove_prefix(comma + 1);
+    }
+    return false;
+}
+
+Head refuse(int status, std::string detail) {
+    Head head;
+    head.state = Head::State::refused;
+    head.status = status;
+    head.detail = std::move(detail);
+    return head;
+}
+
+/// What has been seen so far of one request's fields.
+struct Fields {
+    bool http_1_0 = false;
+    int hosts = 0;
+    int lengths = 0;
+    std::size_t count = 0;
+    std::string_view connection;
+};
+
+/// The parsing library acts upon these itself (ranges, its own address fields) or the loop has dealt with them.
+bool is_kept(std::string_view name) {
+    return !equals(name, "Range") && !equals(name, "Expect") && !equals(name, "REMOTE_ADDR") &&
+           !equals(name, "REMOTE_PORT") && !equals(name, "LOCAL_ADDR") && !equals(name, "LOCAL_PORT");
+}
+
+bool read_length(std::string_view value, std::size_t& length) {
+    if (value.empty() || value.size() > 18) return false;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), length);
+    return error == std::errc{} && end == value.data() + value.size();
+}
+
+/// False after filling `head` with a refusal.
+bool take_field(std::string_view name, std::string_view value, Fields& seen, Head& head) {
+    if (equals(name, "Host")) {
+        seen.hosts++;
+    } else if (equals(name, "Content-Length")) {
+        if (++seen.lengths > 1 || !read_length(value, head.content_length)) {
+            head = refuse(400, "Content-Length must be given once, as a whole number of bytes.");
+            return false;
+        }
+    } else if (equals(name, "Transfer-Encoding")) {
+        head = refuse(411, "Transfer-Encoding is not accepted here; send the body with a Content-Length.");
+        return false;
+    } else if (equals(name, "Content-Encoding") && !equals(value, "identity")) {
+        head = refuse(415, "Compressed bodies are not accepted; send the JSON text as it is.");
+        return false;
+    } else if (equals(name, "Connection")) {
+        seen.connection = value;
+    } else if (equals(name, "Expect")) {
+        if (!equals(value, "100-continue")) {
+            head = refuse(417, "The only expectation that can be met is 100-continue.");
+            return false;
+        }
+        head.expects_continue = true;
+    }
+    return true;
+}
+
+/// False after filling `head` with a refusal.
+bool read_request_line(std::string_view line, Fields& seen, Head& head) {
+    const std::size_t first = line.find(' ');
+    const std::size_t last = line.rfind(' ');
+    if (first == std::string_view::npos || last <= first || !is_token(line.substr(0, first))) {
+        head = refuse(400, "The first line must be METHOD TARGET HTTP/1.1.");
+        return false;
+    }
+    const std::string_view target = line.substr(first + 1, last - first - 1);
+    const std::string_view version = line.substr(last + 1);
+    if (version != "HTTP/1.1" && version != "HTTP/1.0") {
+        const bool is_http = version.substr(0, 5) == "HTTP/";
+        head = is_http ? refuse(505, "This service speaks HTTP/1.1 and HTTP/1.0.")
+                       : refuse(400, "The first line must be METHOD TARGET HTTP/1.1.");
+        return false;
+    }
+    const bool plain = std::ranges::all_of(target, [](unsigned char c) { return c > 0x20 && c < 0x7f; });
+    if (!plain || target.empty() || (target.front() != '/' && target != "*")) {
+        head = refuse(400, "The target must be an absolute path of printable ASCII characters.");
+        return false;
+    }
+    seen.http_1_0 = version == "HTTP/1.0";
+    return true;
+}
+
+/// The next line without its CRLF; false (and a refusal) where it does not end properly.
+bool next_line(std::string_view& rest, std::string_view& line, Head& head) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos || end == 0 || rest[end - 1] != '\r') {
+        head = refuse(400, "Each line of the head must end with CR LF.");
+        return false;
+    }
+    line = rest.substr(0, end - 1);
+    rest.remove_prefix(end + 1);
+    if (has_control(line)) {
+        head = refuse(400, "The head contains a control character.");
+        return false;
+    }
+    return true;
+}
+
+/// False after filling `head` with a refusal.
+bool read_fields(std::string_view rest, Fields& seen, Head& head) {
+    for (std::string_view line; next_line(rest, line, head) && !line.empty();) {
+        if (++seen.count > kMaxHeaders || line.size() > kMaxLineBytes) {
+            head = refuse(431, "At most 100 header fields of at most 8,000 bytes each are accepted.");
+            return false;
+        }
+        const std::size_t colon = line.find(':');
+        if (colon == std::string_view::npos || !is_token(line.substr(0, colon))) {
+            head = refuse(400, "A header field must be NAME: VALUE on one line, without a space before the colon.");
+            return false;
+        }
+        const std::string_view name = line.substr(0, colon);
+        if (!take_field(name, trim(line.substr(colon + 1)), seen, head)) return false;
+        if (is_kept(name)) head.clean.append(line).append("\r\n");
+    }
+    return head.state != Head::State::refused;
+}
+
+}  // namespace
+
+Head read_head(std::string_view input, std::size_t body_limit) {
+    const std::size_t end = input.find("\r\n\r\n");
+    if (end == std::string_view::npos || end + 4 > kMaxHeadBytes) {
+        const std::size_t line = input.substr(0, kMaxHeadBytes).find('\n');
+        if (line == std::string_view::npos && input.size() > kMaxLineBytes)
+            return refuse(414, "The request line may have at most 8,000 bytes.");
+        if (input.size() >= kMaxHeadBytes) return refuse(431, "The head of a request may have at most 16 KiB.");
+        return {};
+    }
+
+    Head head;
+    Fields seen;
+    std::string_view rest = input.substr(0, end + 4);
+    std::string_view line;
+    if (!next_line(rest, line, head)) return head;
+    if (line.size() > kMaxLineBytes) return refuse(414, "The request line may have at most 8,000 bytes.");
+    if (!read_request_line(line, seen, head)) return head;
+    head.clean.append(line).append("\r\n");
+    if (!read_fields(rest, seen, head)) return head;
+    head.clean.append("\r\n");
+
+    if (seen.hosts > 1 || (seen.hosts == 0 && !seen.http_1_0)) return refuse(400, "Exactly one Host field is needed.");
+    head.size = end + 4;
+    head.keep_alive = seen.http_1_0 ? has_word(seen.connection, "keep-alive") : !has_word(seen.connection, "close");
+    if (head.content_length > body_limit) {
+        Head refused = refuse(413, "The body has " + std::to_string(head.content_length) + " bytes; at most " +
+                                       std::to_string(body_limit) + " are accepted.");
+        refused.content_length = head.content_length;
+        refused.size = head.size;
+        return refused;
+    }
+    head.state = Head::State::complete;
+    return head;
+}
+
+}  // namespace tunewright::server::http

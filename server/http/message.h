@@ -1,0 +1,63 @@
+// A request and its answer, free of any library's types: what the handlers see.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tunewright::server::http {
+
+/// Compares header names without regard to case.
+struct CaseInsensitive {
+    using is_transparent = void;
+    bool operator()(std::string_view a, std::string_view b) const;
+};
+
+struct Request {
+    std::string method;
+    std::string target;                 ///< as sent: path and query, percent-encoded
+    std::vector<std::string> segments;  ///< of the path, decoded one by one: an encoded slash stays inside its segment
+    std::multimap<std::string, std::string> query;
+    std::multimap<std::string, std::string, CaseInsensitive> headers;
+    std::string body;
+    std::string remote_addr;
+
+    /// The first header of that name; "" if there is none.
+    std::string_view header(std::string_view name) const;
+
+    bool has_header(std::string_view name) const { return headers.contains(name); }
+
+    /// The path without the query, as sent.
+    std::string_view path() const;
+};
+
+struct Response {
+    int status = 200;
+    std::vector<std::pair<std::string, std::string>> headers;  ///< values must be free of control characters
+    std::string body;
+    bool close = false;         ///< close the connection after this answer
+    bool body_omitted = false;  ///< answer to HEAD: the length is told, the body is not sent
+
+    Response& set(std::string name, std::string value);
+};
+
+/// Gives the answer to one request, once, from any thread, now or later. Calling it again, or after the client has
+/// gone, does nothing.
+using Reply = std::function<void(Response)>;
+
+/// Takes a complete request. Runs on the thread of the event loop: whatever takes longer than some tens of
+/// microseconds goes elsewhere and replies from there.
+using Handler = std::function<void(Request, Reply)>;
+
+/// "Not Found" for 404 and so on.
+std::string_view reason_phrase(int status);
+
+/// Status line, headers and the blank line of a response, ready to be sent.
+std::string render_head(const Response& response, bool keep_alive);
+
+/// 200 with a JSON body.
+Response json_response(std::string body, int status = 200);
+
+}  // namespace tunewright::server::http

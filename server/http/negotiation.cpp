@@ -1,0 +1,104 @@
+#include "server/http/negotiation.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+namespace tunewright::server::http {
+namespace {
+
+constexpr std::chrono::seconds kLongestWait{60};
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t at = text.find(separator);
+        parts.push_back(trim(text.substr(0, at)));
+        if (at == std::string_view::npos) return parts;
+        text.remove_prefix(at + 1);
+    }
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::ranges::transform(out, out.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return out;
+}
+
+bool has_zero_quality(const std::vector<std::string_view>& parameters) {
+    return std::ranges::any_of(parameters, [](std::string_view parameter) {
+        const std::string text = lower(parameter);
+        return text.starts_with("q=0") && text.find_first_not_of("0.", 2) == std::string::npos;
+    });
+}
+
+}  // namespace
+
+bool accepts(const Request& request, std::string_view type) {
+    const std::string_view accept = request.header("Accept");
+    if (accept.empty()) return true;
+    const std::string family = std::string(type.substr(0, type.find('/'))) + "/*";
+    return std::ranges::any_of(split(accept, ','), [&](std::string_view range) {
+        const auto parts = split(range, ';');
+        const std::string name = lower(parts.front());
+        return (name == "*/*" || name == family || name == type) && !has_zero_quality(parts);
+    });
+}
+
+bool sends_json(const Request& request) {
+    const std::string_view header = request.header("Content-Type");
+    const std::string type = lower(trim(header.substr(0, header.find(';'))));
+    return type.empty() || type == "application/json" || type == "application/x-www-form-urlencoded" ||
+           type.ends_with("+json");
+}
+
+std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
+    const auto [first, last] = request.headers.equal_range("Prefer");
+    for (auto it = first; it != last; ++it) {
+        for (const std::string_view preference : split(it->second, ',')) {
+            const std::string_view word = split(preference, ';').front();
+            const std::size_t equals = word.find('=');
+            if (equals == std::string_view::npos || lower(trim(word.substr(0, equals))) != "wait") continue;
+            const std::string_view digits = trim(word.substr(equals + 1));
+            int seconds = 0;
+            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
+            if (error == std::errc::result_out_of_range && digits.front() != '-') return kLongestWait;
+            if (error != std::errc{} || end != digits.data() + digits.size() || seconds < 0) continue;
+            return std::min(std::chrono::seconds(seconds), kLongestWait);
+        }
+    }
+    return std::nullopt;
+}
+
+std::string entity_tag(std::string_view body) {
+    // FNV-1a, 64 bits: the same text gives the same tag in every process.
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const unsigned char c : body) hash = (hash ^ c) * 1099511628211ULL;
+    std::array<char, 24> text{};
+    std::snprintf(text.data(), text.size(), "\"%016llx\"", static_cast<unsigned long long>(hash));
+    return text.data();
+}
+
+void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {
+    response.set("ETag", tag);
+    const auto tags = split(request.header("If-None-Match"), ',');
+    const bool known = std::ranges::any_of(tags, [&](std::string_view candidate) {
+        if (candidate.starts_with("W/")) candidate.remove_prefix(2);
+        return candidate == "*" || candidate == tag;
+    });
+    if (!known) return;
+    response.status = 304;
+    response.body.clear();
+}
+
+}  // namespace tunewright::server::http

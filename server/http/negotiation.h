@@ -1,0 +1,29 @@
+// What a request says about forms and preferences: media types, conditional requests, Prefer.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http/message.h"
+
+namespace tunewright::server::http {
+
+/// True where the client takes `type` ("application/json"): no Accept, or a range of it with q > 0.
+bool accepts(const Request& request, std::string_view type);
+
+/// True for a body that may be JSON: application/json, anything ending in +json, no type at all, and
+/// application/x-www-form-urlencoded, which is what `curl -d` claims about every body.
+bool sends_json(const Request& request);
+
+/// `wait` of RFC 7240, at most 60 s; nothing where it is absent or not a whole number.
+std::optional<std::chrono::seconds> preferred_wait(const Request& request);
+
+/// A strong entity tag of the bytes, with its quotes.
+std::string entity_tag(std::string_view body);
+
+/// Sets ETag, and turns the answer into 304 where the request has that tag already.
+void apply_entity_tag(const Request& request, Response& response, const std::string& tag);
+
+}  // namespace tunewright::server::http

@@ -1,0 +1,61 @@
+#include "server/http/problems.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tunewright::server::http {
+namespace {
+
+struct Kind {
+    int status;
+    const char* type;
+};
+
+constexpr std::array kKinds{
+    Kind{400, "malformed-request"},
+    Kind{403, "cross-site-request"},
+    Kind{404, "not-found"},
+    Kind{405, "method-not-allowed"},
+    Kind{406, "not-acceptable"},
+    Kind{408, "request-timeout"},
+    Kind{409, "conflict"},
+    Kind{411, "length-required"},
+    Kind{413, "too-large"},
+    Kind{414, "uri-too-long"},
+    Kind{415, "unsupported-media-type"},
+    Kind{417, "expectation-failed"},
+    Kind{422, "invalid-request"},
+    Kind{429, "queue-full"},
+    Kind{431, "head-too-large"},
+    Kind{500, "internal"},
+    Kind{503, "unavailable"},
+    Kind{505, "http-version"},
+    Kind{507, "disk-full"},
+};
+
+}  // namespace
+
+api::Problem problem(int status, std::string detail) {
+    const auto it = std::ranges::find(kKinds, status, &Kind::status);
+    api::Problem made;
+    made.status = status;
+    made.type = it == kKinds.end() ? "about:blank" : it->type;
+    made.title = reason_phrase(status);
+    made.detail = std::move(detail);
+    return made;
+}
+
+Response problem_response(const api::Problem& problem) {
+    Response response;
+    response.status = problem.status;
+    response.body = api::to_json(problem);
+    response.set("Content-Type", "application/problem+json");
+    if (problem.status == 429 || problem.status == 503) response.set("Retry-After", "1");
+    return response;
+}
+
+Response problem_response(int status, std::string detail) {
+    return problem_response(problem(status, std::move(detail)));
+}
+
+}  // namespace tunewright::server::http

@@ -1,0 +1,17 @@
+// application/problem+json answers of the transport itself; those of requests and jobs come from api/.
+#pragma once
+
+#include <string>
+
+#include "api/problem.h"
+#include "server/http/message.h"
+
+namespace tunewright::server::http {
+
+/// The problem for a status that HTTP itself explains (404, 405, 413, 415, 429, ...): type and title from one table.
+api::Problem problem(int status, std::string detail);
+
+Response problem_response(const api::Problem& problem);
+Response problem_response(int status, std::string detail);
+
+}  // namespace tunewright::server::http

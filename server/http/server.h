@@ -1,0 +1,92 @@
+// The event loop: accepts connections, gathers whole requests, hands them to the handler, sends the answers. One
+// thread and no blocking call, so idle and slow clients cost a buffer each and nobody else's time. Every wait has an
+// absolute end and the bytes that are held for clients have a common budget.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "server/http/connection.h"
+#include "server/http/message.h"
+#include "server/http/parser.h"
+
+namespace tunewright::server::http {
+
+struct Limits {
+    std::size_t body = 8 * 1024 * 1024;        ///< bytes of one body
+    std::size_t buffered = 128 * 1024 * 1024;  ///< bytes of unfinished requests of all clients together
+    std::size_t connections = 4000;            ///< beyond it the longest idle one is closed
+    std::chrono::milliseconds idle{60'000};    ///< between two requests
+    std::chrono::milliseconds head{10'000};    ///< from the first byte of a request to the end of its head
+    std::chrono::milliseconds body_time{30'000};
+    std::chrono::milliseconds handling{150'000};  ///< longer than any handler takes; a safeguard
+    std::chrono::milliseconds writing{60'000};
+    std::chrono::milliseconds lingering{5'000};
+    std::chrono::milliseconds stopping{2'000};  ///< for answers under way when the loop is told to stop
+};
+
+/// Makes the answer to what never becomes a request (malformed, too large, too slow): status and sentence.
+using Refusal = std::function<Response(int status, const std::string& detail, const std::string& remote_addr)>;
+
+class Server {
+public:
+    Server(Limits limits, Handler handler, Refusal refusal);
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    /// Opens the port; 0 lets the system choose. Returns the port. Throws std::runtime_error with a sentence.
+    int listen(const std::string& host, int port);
+
+    /// Serves until stop(); then sends the answers that are under way and returns.
+    void run();
+
+    /// From any thread.
+    void stop();
+
+private:
+    class Mailbox;
+    using Id = std::uint64_t;
+
+    void accept_all();
+    bool make_room();
+    void pause_accepting();
+    void resume_accepting();
+    void on_event(Id id, std::uint32_t events);
+    void pump(Id id);
+    void collect_answers();
+    bool read_step(Id id, Connection& connection);
+    void dispatch(Id id, Connection& connection);
+    void refuse(Id id, Connection& connection, int status, const std::string& detail);
+    void answer(Id id, Connection& connection, Response response);
+    void flush(Id id, Connection& connection);
+    void enter(Connection& connection, Connection::State state, std::chrono::milliseconds limit);
+    void drop(Id id);
+    void sweep();
+    bool busy() const;
+
+    Limits limits_;
+    Handler handler_;
+    Refusal refusal_;
+    Parser parser_;
+    std::shared_ptr<Mailbox> mailbox_;
+    int listener_ = -1;
+    int epoll_ = -1;
+    bool accepting_ = false;
+    bool listener_open_ = true;
+    std::atomic<bool> stopping_ = false;
+    Id next_id_ = 2;
+    std::uint64_t next_ticket_ = 1;
+    SteadyTime now_{};
+    SteadyTime next_sweep_{};
+    std::unordered_map<Id, std::unique_ptr<Connection>> connections_;
+    std::vector<Id> ready_;
+    std::size_t buffered_ = 0;
+};
+
+}  // namespace tunewright::server::http

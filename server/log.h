@@ -1,0 +1,25 @@
+// One line for each request and each job, on standard error, plain or as JSON; written by a thread of its own, so that
+// a slow reader of the log never holds up an answer (the oldest lines are dropped instead).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tunewright::server {
+
+namespace http {
+struct Exchange;
+}
+struct JobRecord;
+
+/// Format: plain or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
+void start_log(const std::string& format, const std::string& level);
+/// Writes what is waiting.
+void stop_log();
+
+void log_info(std::string_view message);
+void log_error(std::string_view message);
+void log_exchange(const http::Exchange& exchange);
+void log_job(const JobRecord& job, double seconds);
+
+}  // namespace tunewright::server

@@ -1,0 +1,139 @@
+// The queue and its workers: takes tuning requests, has them computed, keeps what came out.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "api/service.h"
+#include "engine/progress.h"
+#include "server/jobs/timer.h"
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+/// What has been happening, for metrics; the callbacks run on the threads of workers and of the store.
+struct JobObserver {
+    std::function<void(const JobRecord& job, double seconds)> ended;  ///< once for each job that a worker ended
+};
+
+struct JobSettings {
+    std::size_t workers = 1;
+    std::size_t queue_limit = 10'000;
+    int most_attempts = 10;  ///< a job that was interrupted that often is given up
+    std::string version;
+    /// Computes a job: api::run_job, or a test's own.
+    std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
+    std::function<UnixMs()> now;  ///< wall clock
+    JobObserver observer;
+};
+
+/// A job as it is this moment.
+struct JobView {
+    JobRecord job;
+    std::optional<Progress> progress;  ///< of a running one
+};
+
+struct Submission {
+    enum class Kind { created, existing, conflict, queue_full, draining, store_failed };
+    Kind kind = Kind::store_failed;
+    JobRecord job;     ///< of created and existing (the latter without request and result)
+    StoreFault fault;  ///< of store_failed
+};
+
+class JobService {
+public:
+    /// Both must outlive the service.
+    JobService(JobStore& store, Timer& timer, JobSettings settings);
+    /// Stops as drain() does, without grace.
+    ~JobService();
+    JobService(const JobService&) = delete;
+    JobService& operator=(const JobService&) = delete;
+
+    /// Takes up what an earlier process left behind and starts the workers.
+    Recovery start();
+
+    /// `done` runs once, when the job is durable or refused. Where `wait` > 0 and the job is created, `ended` runs
+    /// after it, once: when the job has ended, or when `wait` is over.
+    void submit(api::PreparedJob job, std::string idempotency_key, std::chrono::duration<double> wait,
+                std::function<void(Submission)> done, std::function<void()> ended);
+
+    std::optional<JobView> find(const std::string& id);
+    JobPage list(const JobQuery& query) { return store_.list(query); }
+    /// A running job is asked to stop; it ends soon after, not necessarily before `done`.
+    void cancel(const std::string& id, Done<CancelEffect> done);
+    void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove(id, std::move(done)); }
+
+    /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
+    void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
+
+    /// Takes no more work; running jobs get `grace` to end, then they are stopped and go back to the queue.
+    /// Whoever waits is told. True where every worker has stopped within two seconds more.
+    bool drain(std::chrono::duration<double> grace);
+
+    bool draining() const { return draining_; }
+    std::size_t queued() const { return depth_; }
+    std::size_t running() const;
+    std::size_t workers() const { return settings_.workers; }
+
+private:
+    enum class StopReason { none, cancel, timeout, shutdown };
+    struct Running {
+        std::stop_source stop;
+        std::mutex mutex;
+        StopReason reason = StopReason::none;
+        Progress progress;
+
+        void request(StopReason why);
+        StopReason why();
+    };
+    struct Waiter {
+        std::function<void()> ended;
+        Timer::Key timeout;
+    };
+
+    void work(const std::stop_token& stop);
+    bool take_token(const std::stop_token& stop);
+    void add_token();
+    std::optional<JobRecord> claim();
+    void run_job(JobRecord job);
+    api::JobOutcome compute(const JobRecord& job, Running& running);
+    void end_job(std::shared_ptr<JobRecord> job, double seconds);
+    void put_back(const std::string& id);
+    void forget_running(const std::string& id);
+    void add_waiter(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
+    void tell_waiters(const std::string& id);
+    void tell_all_waiters();
+
+    JobStore& store_;
+    Timer& timer_;
+    JobSettings settings_;
+    std::atomic<bool> draining_ = false;
+    std::atomic<std::size_t> depth_ = 0;  ///< jobs accepted and not yet running, those being accepted included
+
+    std::mutex tokens_mutex_;
+    std::condition_variable_any tokens_changed_;
+    std::size_t tokens_ = 0;  ///< at least one for each queued job: a reason to ask the store
+
+    mutable std::mutex running_mutex_;
+    std::condition_variable running_changed_;
+    std::map<std::string, std::shared_ptr<Running>> running_;
+
+    std::mutex waiters_mutex_;
+    std::multimap<std::string, std::shared_ptr<Waiter>> waiters_;
+
+    std::vector<std::jthread> threads_;
+};
+
+/// 128 random bits from the system, as 26 letters and digits.
+std::string new_job_id();
+
+}  // namespace tunewright::server

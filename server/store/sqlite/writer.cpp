@@ -1,0 +1,88 @@
+#include "server/store/sqlite/writer.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+
+#include "server/log.h"
+
+namespace tunewright::server {
+namespace {
+
+/// Keeps the time that one transaction holds the others up, and the log it writes, within bounds.
+constexpr std::size_t kLargestGroup = 256;
+
+}  // namespace
+
+StoreFault fault_of(const std::exception& error) {
+    StoreFault fault{StoreFault::Kind::unavailable, error.what()};
+    const auto* sqlite = dynamic_cast<const SQLite::Exception*>(&error);
+    if (sqlite != nullptr && (sqlite->getErrorCode() & 0xff) == SQLITE_FULL) fault.kind = StoreFault::Kind::full;
+    return fault;
+}
+
+SqliteWriter::SqliteWriter(SQLite::Database& database) : database_(database), thread_([this] { work(); }) {}
+
+SqliteWriter::~SqliteWriter() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+}
+
+void SqliteWriter::submit(Change change) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(change));
+    }
+    changed_.notify_one();
+}
+
+void SqliteWriter::work() {
+    for (;;) {
+        std::vector<Change> group;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+            if (waiting_.empty()) return;
+            const auto count = static_cast<std::ptrdiff_t>(std::min(waiting_.size(), kLargestGroup));
+            group.assign(std::make_move_iterator(waiting_.begin()), std::make_move_iterator(waiting_.begin() + count));
+            waiting_.erase(waiting_.begin(), waiting_.begin() + count);
+        }
+        write_group(group);
+    }
+}
+
+void SqliteWriter::write_group(std::vector<Change>& group) {
+    if (!try_commit(group, 0, group.size())) {
+        healthy_ = true;
+        for (Change& change : group) change.done(std::nullopt);
+        return;
+    }
+    // Somebody's change cannot be made: each alone, so that the others are not lost with it.
+    for (std::size_t i = 0; i < group.size(); i++) {
+        const std::optional<StoreFault> fault = try_commit(group, i, 1);
+        healthy_ = !fault;
+        if (fault) log_error("the store cannot write: " + fault->detail);
+        group[i].done(fault);
+    }
+}
+
+std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
+    const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    try {
+        const bool durable = std::any_of(begin, end, [](const Change& change) { return change.durable; });
+        database_.exec(durable ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
+        SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
+        for (auto change = begin; change != end; ++change) change->apply(database_);
+        transaction.commit();
+        return std::nullopt;
+    } catch (const std::exception& error) {
+        return fault_of(error);
+    }
+}
+
+}  // namespace tunewright::server

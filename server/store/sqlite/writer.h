@@ -1,0 +1,60 @@
+// The one thread that writes to the database. What is asked for while a transaction is being made durable goes into
+// the next one together: one wait for the disk for many changes.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/store/store.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace tunewright::server {
+
+class SqliteWriter {
+public:
+    struct Change {
+        /// Runs inside a transaction. May run twice (a group that failed is repeated one by one), so it overwrites
+        /// whatever it reported before.
+        std::function<void(SQLite::Database&)> apply;
+        /// Runs after the commit, with the fault where there was one.
+        std::function<void(std::optional<StoreFault>)> done;
+        /// The commit waits for the disk. Without it the change survives a kill of the process, not of the machine.
+        bool durable = true;
+    };
+
+    explicit SqliteWriter(SQLite::Database& database);
+    /// Makes everything durable that was asked for, then joins.
+    ~SqliteWriter();
+    SqliteWriter(const SqliteWriter&) = delete;
+    SqliteWriter& operator=(const SqliteWriter&) = delete;
+
+    void submit(Change change);
+    bool healthy() const { return healthy_; }
+
+private:
+    void work();
+    void write_group(std::vector<Change>& group);
+    std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
+
+    SQLite::Database& database_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<Change> waiting_;
+    bool stopping_ = false;
+    std::atomic<bool> healthy_ = true;
+    std::jthread thread_;
+};
+
+/// What an SQLite error means to us.
+StoreFault fault_of(const std::exception& error);
+
+}  // namespace tunewright::server

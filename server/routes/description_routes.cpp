@@ -1,0 +1,41 @@
+#include "api/service.h"
+#include "server/http/negotiation.h"
+#include "server/routes/request_checks.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::Call;
+using http::Response;
+
+/// A text that does not change while the process lives.
+http::SyncHandler constant(std::string body) {
+    const std::string tag = http::entity_tag(body);
+    return [body = std::move(body), tag](const Call& call) {
+        if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+        Response response = http::json_response(body);
+        http::apply_entity_tag(call.request, response, tag);
+        return response.set("Cache-Control", "no-cache");
+    };
+}
+
+Response method(const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    api::Answer answer = api::method_json(call.path.at("id"));
+    Response response;
+    response.status = answer.status;
+    response.body = std::move(answer.body);
+    return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+}
+
+}  // namespace
+
+void add_description_routes(http::Router& router) {
+    router.quick("GET", "/openapi.json", constant(api::openapi_json()));
+    router.quick("GET", "/v1/methods", constant(api::methods_json()));
+    router.quick("GET", "/v1/examples", constant(api::examples_json()));
+    router.pooled("GET", "/v1/methods/{id}", method);
+}
+
+}  // namespace tunewright::server

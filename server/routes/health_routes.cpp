@@ -1,0 +1,31 @@
+#include "server/http/problems.h"
+#include "server/json_text.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::Call;
+using http::Response;
+
+Response ready(const JobService& jobs, const JobStore& store) {
+    if (jobs.draining()) return http::problem_response(503, "The service is being stopped.");
+    if (!store.healthy())
+        return http::problem_response(503, "The store could not be written to when it was last tried.");
+    return http::json_response(R"({"status":"ready"})");
+}
+
+}  // namespace
+
+void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Metrics& metrics) {
+    const std::string alive = std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
+    router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
+    router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store); });
+    router.pooled("GET", "/metrics", [&](const Call&) {
+        Response response;
+        response.body = metrics.text(jobs);
+        return response.set("Content-Type", "text/plain; version=0.0.4; charset=utf-8");
+    });
+}
+
+}  // namespace tunewright::server

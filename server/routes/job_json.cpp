@@ -1,0 +1,102 @@
+#include "server/routes/job_json.h"
+
+#include <charconv>
+#include <cstdio>
+
+#include "api/service.h"
+#include "server/json_text.h"
+
+namespace tunewright::server {
+namespace {
+
+std::string moment(const std::optional<UnixMs>& time) { return time ? json_string(iso_time(*time)) : "null"; }
+
+std::string links(const JobSummary& job) {
+    const std::string self = "/v1/jobs/" + job.id;
+    JsonObject object;
+    object.text("self", self);
+    if (!has_ended(job.status)) object.text("cancel", self + "/cancel");
+    return std::move(object).str();
+}
+
+std::string progress_of(const JobView& view) {
+    if (view.progress) return api::progress_json(*view.progress);
+    if (has_ended(view.job.status)) return "null";
+    Progress progress;
+    progress.stage = std::string(to_string(view.job.status));
+    progress.message = view.job.status == JobStatus::queued ? "Waits for a worker." : "Has just been started.";
+    return api::progress_json(progress);
+}
+
+JsonObject head_of(const JobSummary& job) {
+    JsonObject object;
+    object.text("id", job.id);
+    job.name.empty() ? object.null("name") : object.text("name", job.name);
+    object.text("status", to_string(job.status));
+    return object;
+}
+
+void add_times(JsonObject& object, const JobSummary& job) {
+    object.raw("created_at", moment(job.created_at))
+        .raw("started_at", moment(job.started_at))
+        .raw("finished_at", moment(job.finished_at))
+        .number("attempts", job.attempts);
+}
+
+std::string percent_encode(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+                           c == '_' || c == '.' || c == '~';
+        char code[4] = {c, 0, 0, 0};
+        if (!plain) std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        out.append(code);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string job_json(const JobView& view) {
+    const JobRecord& job = view.job;
+    JsonObject object = head_of(job);
+    object.raw("progress", progress_of(view));
+    add_times(object, job);
+    object.raw("request", job.request);
+    if (!job.result.empty()) object.raw("result", job.result);
+    if (!job.error.empty()) object.raw("error", job.error);
+    // Only a stopped search leaves a result behind without having succeeded.
+    if (!job.result.empty() && job.status != JobStatus::succeeded) object.boolean("partial", true);
+    object.raw("links", links(job));
+    return std::move(object).str();
+}
+
+std::string job_page_json(const JobPage& page, const JobQuery& query) {
+    std::string list = "[";
+    for (const JobSummary& job : page.jobs) {
+        JsonObject object = head_of(job);
+        add_times(object, job);
+        object.raw("links", links(job));
+        if (list.size() > 1) list.push_back(',');
+        list.append(std::move(object).str());
+    }
+    list.push_back(']');
+
+    JsonObject object;
+    object.raw("jobs", list);
+    if (!page.more) return std::move(object.null("next")).str();
+    std::string next = "/v1/jobs?limit=" + std::to_string(query.limit);
+    if (query.status) next.append("&status=").append(to_string(*query.status));
+    if (query.name) next.append("&name=").append(percent_encode(*query.name));
+    next.append("&cursor=").append(std::to_string(page.jobs.back().seq));
+    return std::move(object.text("next", next)).str();
+}
+
+std::optional<std::int64_t> parse_cursor(const std::string& cursor) {
+    std::int64_t seq = 0;
+    const auto [end, error] = std::from_chars(cursor.data(), cursor.data() + cursor.size(), seq);
+    if (error != std::errc{} || end != cursor.data() + cursor.size() || seq < 1) return std::nullopt;
+    return seq;
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,194 @@
+#include <charconv>
+#include <memory>
+
+#include "api/service.h"
+#include "server/http/negotiation.h"
+#include "server/http/problems.h"
+#include "server/routes/job_json.h"
+#include "server/routes/request_checks.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::Call;
+using http::problem_response;
+using http::Reply;
+using http::Response;
+
+constexpr int kLargestPage = 200;
+constexpr std::size_t kLongestKey = 200;
+
+Response not_found(const std::string& id) {
+    return problem_response(404, "There is no job " + id.substr(0, 64) + "; it may have been deleted.");
+}
+
+Response store_failed(const StoreFault& fault) {
+    if (fault.kind == StoreFault::Kind::full)
+        return problem_response(507,
+                                "The disk of the service is full; nothing was kept. Try again when there is room.");
+    return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
+}
+
+/// Runs what reads the store; its failure becomes 503.
+template <class Work>
+Response guarded(Work work) {
+    try {
+        return work();
+    } catch (const StoreError& error) {
+        return store_failed({error.kind, error.what()});
+    }
+}
+
+Response job_response(JobService& jobs, const std::string& id, int status) {
+    return guarded([&] {
+        const std::optional<JobView> view = jobs.find(id);
+        if (!view) return not_found(id);
+        return http::json_response(job_json(*view), status);
+    });
+}
+
+Response submitted(const Submission& submission) {
+    switch (submission.kind) {
+        case Submission::Kind::created: {
+            Response response = http::json_response(job_json({submission.job, std::nullopt}), 202);
+            return response.set("Location", "/v1/jobs/" + submission.job.id);
+        }
+        case Submission::Kind::conflict:
+            return problem_response(409, "This Idempotency-Key was used before with another request. Use a new key.");
+        case Submission::Kind::queue_full:
+            return problem_response(429, "The queue of jobs is full. Try again after a moment.");
+        case Submission::Kind::draining:
+            return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
+        case Submission::Kind::existing:
+        case Submission::Kind::store_failed: break;
+    }
+    return store_failed(submission.fault);
+}
+
+/// 200 with the job where it has ended, else 202: the end of a wait.
+Response waited(JobService& jobs, const std::string& id, std::chrono::seconds wait) {
+    return guarded([&] {
+        const std::optional<JobView> view = jobs.find(id);
+        if (!view) return not_found(id);
+        const bool ended = has_ended(view->job.status);
+        Response response = http::json_response(job_json(*view), ended ? 200 : 202);
+        response.set("Preference-Applied", "wait=" + std::to_string(wait.count()));
+        return response.set("Location", "/v1/jobs/" + id);
+    });
+}
+
+void post_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
+    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+    const std::string key(call.request.header("Idempotency-Key"));
+    if (key.size() > kLongestKey)
+        return reply(problem_response(
+            422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted."));
+    auto prepared = api::prepare_job(call.request.body);
+    if (const auto* problem = std::get_if<api::Problem>(&prepared)) return reply(http::problem_response(*problem));
+
+    const std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
+    // `created` runs before `ended`: it leaves the id behind.
+    auto id = std::make_shared<std::string>();
+    const auto ended = [&jobs, &pool, reply, id, wait] {
+        pool.post([&jobs, reply, id, wait] { reply(waited(jobs, *id, wait)); });
+    };
+    const auto done = [&jobs, &pool, reply, id, wait, ended](Submission submission) {
+        *id = submission.job.id;
+        if (submission.kind == Submission::Kind::created && wait.count() > 0) return;
+        pool.post([&jobs, reply, id, wait, ended, submission = std::move(submission)] {
+            if (submission.kind != Submission::Kind::existing) return reply(submitted(submission));
+            if (wait.count() > 0) return jobs.wait(*id, wait, ended);
+            Response response = job_response(jobs, *id, 202);
+            reply(response.set("Location", "/v1/jobs/" + *id));
+        });
+    };
+    jobs.submit(std::get<api::PreparedJob>(std::move(prepared)), key, wait, done, ended);
+}
+
+Response get_job(JobService& jobs, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    Response response = job_response(jobs, call.path.at("id"), 200);
+    if (response.status == 200) http::apply_entity_tag(call.request, response, http::entity_tag(response.body));
+    // It may be kept if it is asked for again each time.
+    return response.set("Cache-Control", "no-cache");
+}
+
+/// Reads the list's parameters into `query`; what is wrong with them into the problem.
+api::Problem read_query(const http::Request& request, JobQuery& query) {
+    api::Problem problem = http::problem(422, "The parameters of the list are not valid.");
+    for (const auto& [name, value] : request.query) {
+        const auto refuse = [&, &key = name](const std::string& rule) {
+            problem.errors.push_back({"/" + key, key + " is \"" + value.substr(0, 64) + "\"; " + rule});
+        };
+        if (name == "status") {
+            query.status = job_status(value);
+            if (!query.status) refuse("it must be one of queued, running, succeeded, failed, cancelled.");
+        } else if (name == "name") {
+            query.name = value;
+        } else if (name == "limit") {
+            const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), query.limit);
+            if (error != std::errc{} || end != value.data() + value.size() || query.limit < 1 ||
+                query.limit > kLargestPage)
+                refuse("it must be a whole number from 1 to 200.");
+        } else if (name == "cursor") {
+            query.before_seq = parse_cursor(value);
+            if (!query.before_seq) refuse("it must come from the next link of an earlier page.");
+        } else {
+            refuse("the list knows only status, name, limit and cursor.");
+        }
+    }
+    return problem;
+}
+
+Response list_jobs(JobService& jobs, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    JobQuery query;
+    const api::Problem problem = read_query(call.request, query);
+    if (!problem.errors.empty()) return http::problem_response(problem);
+    return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query)); });
+}
+
+void cancel_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
+    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+    const std::string& id = call.path.at("id");
+    jobs.cancel(id, [&jobs, &pool, id, reply](const Outcome<CancelEffect>& outcome) {
+        pool.post([&jobs, id, reply, outcome] {
+            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
+            reply(job_response(jobs, id, 202));
+        });
+    });
+}
+
+void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
+    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+    const std::string& id = call.path.at("id");
+    jobs.remove(id, [id, reply](const Outcome<RemoveEffect>& outcome) {
+        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
+        Response response;
+        switch (std::get<RemoveEffect>(outcome)) {
+            case RemoveEffect::none: return reply(not_found(id));
+            case RemoveEffect::not_ended:
+                return reply(
+                    problem_response(409, "The job has not ended. Cancel it first: POST /v1/jobs/" + id + "/cancel."));
+            case RemoveEffect::removed: break;
+        }
+        response.status = 204;
+        reply(std::move(response));
+    });
+}
+
+}  // namespace
+
+void add_job_routes(http::Router& router, JobService& jobs, Executor& pool) {
+    router.deferred("POST", "/v1/jobs",
+                    [&](const Call& call, const Reply& reply) { post_job(jobs, pool, call, reply); });
+    router.pooled("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
+    router.pooled("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
+    router.deferred("DELETE", "/v1/jobs/{id}",
+                    [&](const Call& call, const Reply& reply) { delete_job(jobs, call, reply); });
+    router.deferred("POST", "/v1/jobs/{id}/cancel",
+                    [&](const Call& call, const Reply& reply) { cancel_job(jobs, pool, call, reply); });
+}
+
+}  // namespace tunewright::server

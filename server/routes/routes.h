@@ -1,0 +1,26 @@
+// What the service answers: the routes of the contract, each translated between HTTP and the facade of api/.
+#pragma once
+
+#include <stop_token>
+
+#include "server/executor.h"
+#include "server/http/router.h"
+#include "server/jobs/service.h"
+#include "server/jobs/timer.h"
+#include "server/metrics.h"
+
+namespace tunewright::server {
+
+/// /v1/jobs and what is below it. Answers that come later are made on `pool`.
+void add_job_routes(http::Router& router, JobService& jobs, Executor& pool);
+
+/// /v1/evaluate and /v1/identify: computed on `lane` while the client waits, with a deadline, or until `closing`.
+void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);
+
+/// /v1/methods, /v1/examples, /openapi.json: the same for the life of the process.
+void add_description_routes(http::Router& router);
+
+/// /healthz, /readyz, /metrics.
+void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Metrics& metrics);
+
+}  // namespace tunewright::server

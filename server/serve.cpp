@@ -1,0 +1,223 @@
+#include "server/serve.h"
+
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+
+#include "server/executor.h"
+#include "server/http/problems.h"
+#include "server/http/router.h"
+#include "server/http/server.h"
+#include "server/http/static_files.h"
+#include "server/jobs/service.h"
+#include "server/log.h"
+#include "server/metrics.h"
+#include "server/routes/routes.h"
+#include "server/store/sqlite/sqlite_store.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr int kBadConfiguration = 2;
+constexpr int kPortFailed = 3;
+constexpr int kStoreFailed = 4;
+constexpr std::size_t kHttpThreads = 4;
+
+UnixMs wall_clock() {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+/// As many connections as the system allows this process.
+void raise_file_limit() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+std::size_t connection_limit() {
+    constexpr std::size_t own_files = 64;
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    return std::clamp<std::size_t>(limit.rlim_cur, 2 * own_files, 4000 + own_files) - own_files;
+}
+
+sigset_t stop_signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGINT);
+    return set;
+}
+
+/// The parts in the order in which they are made; stop() takes them down so that none calls one that is gone.
+class Service {
+public:
+    explicit Service(const Config& config)
+        : config_(config),
+          store_(open_sqlite_store(parse_store(config.store))),
+          jobs_(*store_, timer_, settings(config)),
+          lane_(core_count()),
+          pool_(kHttpThreads),
+          router_(pool_),
+          page_(config.web.empty() ? default_web_folder() : config.web),
+          server_(
+              limits(),
+              [this](http::Request request, http::Reply reply) { route(std::move(request), std::move(reply)); },
+              [this](int status, const std::string& detail, const std::string& from) {
+                  return refusal(status, detail, from);
+              }) {
+        add_routes();
+    }
+
+    int listen() {
+        const HostPort address = parse_listen(config_.listen);
+        return server_.listen(address.host, address.port);
+    }
+
+    void start() {
+        const Recovery recovery = jobs_.start();
+        if (recovery.queued > 0 || recovery.given_up > 0)
+            log_info(std::to_string(recovery.queued) + " jobs of an earlier run are waiting, " +
+                     std::to_string(recovery.interrupted) + " of them were interrupted; " +
+                     std::to_string(recovery.given_up) + " were given up");
+        loop_ = std::jthread([this] { server_.run(); });
+    }
+
+    /// False where a computation did not stop: the process must end without waiting for it.
+    bool stop() {
+        closing_.request_stop();
+        const bool idle = jobs_.drain(std::chrono::duration<double>(config_.grace_s));
+        server_.stop();
+        loop_.join();
+        lane_.stop();
+        pool_.stop();
+        timer_.stop();
+        if (idle) store_.reset();
+        return idle;
+    }
+
+private:
+    JobSettings settings(const Config& config) {
+        JobSettings made;
+        made.workers = config.workers == 0 ? core_count() : config.workers;
+        made.queue_limit = config.queue_limit;
+        made.version = TUNEWRIGHT_VERSION;
+        made.run = api::run_job;
+        made.now = wall_clock;
+        made.observer.ended = [this](const JobRecord& job, double seconds) {
+            metrics_.count(job, seconds);
+            log_job(job, seconds);
+        };
+        return made;
+    }
+
+    static http::Limits limits() {
+        http::Limits made;
+        made.connections = connection_limit();
+        return made;
+    }
+
+    void add_routes() {
+        add_health_routes(router_, jobs_, *store_, metrics_);
+        add_job_routes(router_, jobs_, pool_);
+        add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
+        add_description_routes(router_);
+        router_.otherwise([this](const http::Request& request) { return page_.find(request); });
+        router_.observe([this](const http::Exchange& exchange) {
+            metrics_.count(exchange);
+            log_exchange(exchange);
+        });
+    }
+
+    void route(http::Request request, http::Reply reply) const { router_.handle(std::move(request), std::move(reply)); }
+
+    http::Response refusal(int status, const std::string& detail, const std::string& from) {
+        http::Exchange exchange;
+        exchange.method = "refused";
+        exchange.remote_addr = from;
+        exchange.status = status;
+        metrics_.count(exchange);
+        log_exchange(exchange);
+        return http::problem_response(status, detail);
+    }
+
+    Config config_;
+    std::stop_source closing_;
+    Timer timer_;
+    Metrics metrics_;
+    std::unique_ptr<JobStore> store_;
+    JobService jobs_;
+    Executor lane_;
+    Executor pool_;
+    http::Router router_;
+    http::StaticFiles page_;
+    http::Server server_;
+    std::jthread loop_;
+};
+
+int failed(int code, const std::string& sentence) {
+    stop_log();
+    std::cerr << "tunewright: " << sentence << "\n";
+    return code;
+}
+
+std::string url_of(const std::string& listen, int port) {
+    const HostPort address = parse_listen(listen);
+    const bool v6 = address.host.find(':') != std::string::npos;
+    return "http://" + (v6 ? "[" + address.host + "]" : address.host) + ":" + std::to_string(port) + "/";
+}
+
+/// Blocks until SIGTERM or SIGINT; a second one ends the process at once.
+void wait_for_stop(const sigset_t& signals) {
+    int signal = 0;
+    sigwait(&signals, &signal);
+    std::signal(SIGTERM, SIG_DFL);
+    std::signal(SIGINT, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
+}  // namespace
+
+int serve(const Config& config) {
+    try {
+        parse_listen(config.listen);
+        parse_store(config.store);
+        start_log(config.log_format, config.log_level);
+    } catch (const std::invalid_argument& error) {
+        return failed(kBadConfiguration, error.what());
+    }
+    raise_file_limit();
+    // Blocked before any thread exists, so that only wait_for_stop sees them.
+    const sigset_t signals = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+    std::unique_ptr<Service> service;
+    int port = 0;
+    try {
+        service = std::make_unique<Service>(config);
+        port = service->listen();
+        service->start();
+    } catch (const StoreError& error) {
+        return failed(kStoreFailed, error.what());
+    } catch (const std::runtime_error& error) {
+        return failed(kPortFailed, error.what());
+    }
+    std::cout << "Tunewright " << TUNEWRIGHT_VERSION << " is ready at " << url_of(config.listen, port) << std::endl;
+
+    wait_for_stop(signals);
+    log_info("stopping: running jobs get " + std::to_string(static_cast<int>(config.grace_s)) + " s");
+    const bool idle = service->stop();
+    log_info(idle ? "stopped" : "stopped; a computation that did not listen runs again at the next start");
+    stop_log();
+    if (!idle) ::_exit(0);
+    return 0;
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,151 @@
+// Runs the page's tests and gives the browser tests what they need: the real service, a real browser, one page under watch.
+// `node harness.mjs unit` bundles unit/*.test.ts (Node 18 strips no types) and runs them; `node harness.mjs browser` runs browser/*.test.mjs.
+import { spawn, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const here = path.dirname(fileURLToPath(import.meta.url));
+export const root = path.resolve(here, "../..");
+// The tools are the front end's own; tests stand outside its folder.
+const fromWeb = createRequire(path.join(root, "web/package.json"));
+
+async function bundleUnitTests() {
+  const { build } = fromWeb("esbuild");
+  const outdir = path.join(root, "build/web-unit-tests");
+  rmSync(outdir, { recursive: true, force: true });
+  mkdirSync(outdir, { recursive: true });
+  const folder = path.join(here, "unit");
+  const entryPoints = readdirSync(folder)
+    .filter((name) => name.endsWith(".test.ts"))
+    .map((name) => path.join(folder, name));
+  await build({ entryPoints, outdir, bundle: true, platform: "node", format: "esm", target: "node18", outExtension: { ".js": ".mjs" }, logLevel: "warning" });
+  return readdirSync(outdir).map((name) => path.join(outdir, name));
+}
+
+function runTests(files, environment = {}) {
+  if (files.length === 0) throw new Error("There are no tests to run.");
+  const run = spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit", env: { ...process.env, TUNEWRIGHT_ROOT: root, ...environment } });
+  process.exitCode = run.status ?? 1;
+}
+
+/** The service's binary; fails with what to do if it is not there. */
+export function serviceBinary() {
+  const binary = process.env.TUNEWRIGHT_BIN ?? path.join(root, "build/release/tunewright");
+  if (!existsSync(binary)) throw new Error(`There is no service at ${binary}. Build it first, or name another with TUNEWRIGHT_BIN.`);
+  return binary;
+}
+
+function freePort() {
+  return new Promise((resolve, reject) => {
+    const server = createServer();
+    server.on("error", reject);
+    server.listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => resolve(port));
+    });
+  });
+}
+
+/** Starts the service on a free loopback port with an empty store. `stop` ends it and removes the store. */
+export async function startService() {
+  const web = path.join(root, "build/web");
+  if (!existsSync(path.join(web, "index.html"))) throw new Error("The page is not built: run `npm run build` in web/ first.");
+  const port = await freePort();
+  const folder = mkdtempSync(path.join(tmpdir(), "tunewright-web-test-"));
+  const base = `http://127.0.0.1:${port}`;
+  const child = spawn(serviceBinary(), ["serve", "--listen", `127.0.0.1:${port}`, "--store", `sqlite:${path.join(folder, "jobs.db")}`, "--web", web], {
+    stdio: ["ignore", "pipe", "pipe"],
+  });
+  let log = "";
+  let ended = null;
+  for (const stream of [child.stdout, child.stderr]) stream.on("data", (chunk) => (log += chunk));
+  const exit = new Promise((resolve) => {
+    child.on("error", (error) => resolve((ended = String(error))));
+    child.on("exit", (code, signal) => resolve((ended = `ended with ${code ?? signal}`)));
+  });
+  for (let attempt = 0; ; attempt += 1) {
+    if (ended !== null || attempt > 300) {
+      child.kill("SIGKILL");
+      throw new Error(`The service did not start (${ended ?? "no answer"}):\n${log}`);
+    }
+    try {
+      if ((await fetch(`${base}/healthz`)).ok) break;
+    } catch {
+      // Not listening yet.
+    }
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  return {
+    base,
+    log: () => log,
+    async stop() {
+      child.kill("SIGTERM");
+      const killer = setTimeout(() => child.kill("SIGKILL"), 10_000);
+      await exit;
+      clearTimeout(killer);
+      rmSync(folder, { recursive: true, force: true });
+    },
+  };
+}
+
+export function launchBrowser() {
+  const { chromium } = fromWeb("playwright-core");
+  return chromium.launch({ executablePath: process.env.CHROMIUM_BIN ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+}
+
+/**
+ * A page in a fresh context that keeps a list of everything that went wrong in it: console errors and warnings, uncaught
+ * exceptions, violations of the content security policy, answers of the service from 500 on.
+ */
+export async function openPage(browser, { scheme = "light", width = 1440, height = 900 } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(30_000);
+  const faults = [];
+  await page.addInitScript(() => {
+    globalThis.policyViolations = [];
+    document.addEventListener("securitypolicyviolation", (event) => globalThis.policyViolations.push(`${event.violatedDirective}: ${event.blockedURI || event.sample}`));
+  });
+  page.on("console", (message) => {
+    if (message.type() === "error" || message.type() === "warning") faults.push(`${message.type()}: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => faults.push(`exception: ${error.message}`));
+  page.on("response", (response) => {
+    if (response.status() >= 500) faults.push(`${response.status()} from ${response.url()}`);
+  });
+  return {
+    page,
+    async faults() {
+      return [...faults, ...(await page.evaluate(() => globalThis.policyViolations)).map((text) => `policy: ${text}`)];
+    },
+    close: () => context.close(),
+  };
+}
+
+/** What axe-core finds wrong with the page, one line each. */
+export async function accessibilityViolations(page) {
+  const source = readFileSync(fromWeb.resolve("axe-core/axe.min.js"), "utf8");
+  await page.evaluate(source);
+  const violations = await page.evaluate(async () => (await globalThis.axe.run(document)).violations);
+  return violations.map((violation) => `${violation.id}: ${violation.help} (${violation.nodes.map((item) => item.target.join(" ")).join(", ")})`);
+}
+
+if (process.argv[1] && import.meta.url === pathToFileURL(process.argv[1]).href) {
+  if (process.argv[2] === "unit") {
+    runTests(await bundleUnitTests());
+  } else if (process.argv[2] === "browser") {
+    const folder = path.join(here, "browser");
+    runTests(
+      readdirSync(folder)
+        .filter((name) => name.endsWith(".test.mjs"))
+        .map((name) => path.join(folder, name)),
+    );
+  } else {
+    console.error("Say which tests: unit or browser.");
+    process.exitCode = 2;
+  }
+}

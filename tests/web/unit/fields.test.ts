@@ -1,0 +1,97 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { Schema } from "../../../web/src/api/types.ts";
+import { matchPointer } from "../../../web/src/form/errors.ts";
+import { fieldsOf, pick, place, readField, typedText } from "../../../web/src/form/fields.ts";
+import { formOf, PLANT_FORMS, readPlant } from "../../../web/src/form/plant.ts";
+import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+
+const schema: Schema = {
+  type: "object",
+  $defs: { positive: { type: "number", exclusiveMinimum: 0 } },
+  properties: {
+    Ms: { oneOf: [{ const: "free" }, { type: "number" }], default: 1.4, description: "limit of |S|" },
+    controller: { type: "string", enum: ["PI", "PID"], default: "PID" },
+    order: { type: ["integer", "null"] },
+    surface: { type: "boolean" },
+    poles: { type: "array", items: { type: "number" } },
+    scenarios: { type: "array", items: { type: "object" } },
+    filter: { type: "object", properties: { Tf: { $ref: "#/$defs/positive", "x-unit": "time" } } },
+  },
+};
+
+test("a method's schema becomes fields; nested objects are opened, shapes without a field left out", () => {
+  const fields = fieldsOf(schema);
+  assert.deepEqual(fields.map((field) => [field.label, field.kind]), [
+    ["Ms", "number"], ["controller", "choice"], ["order", "integer"], ["surface", "boolean"], ["poles", "numbers"], ["filter Tf", "number"],
+  ]);
+  assert.deepEqual(fields[0]!.words, ["free"]);
+  assert.equal(fields[0]!.defaultText, "1.4");
+  assert.equal(fields[0]!.hint, "limit of |S|");
+  assert.deepEqual(fields[1]!.choices, ["PI", "PID"]);
+  assert.equal(fields[5]!.unit, "time");
+  assert.deepEqual(fieldsOf(undefined), []);
+});
+
+test("what is typed becomes values at their paths; empty fields send nothing", () => {
+  const [Ms, controller, order, surface, poles, Tf] = fieldsOf(schema);
+  const entry: Record<string, unknown> = { method: "robust" };
+  for (const [field, text] of [[Ms, "free"], [controller, ""], [order, "2"], [surface, "true"], [poles, "-1 -2"], [Tf, "0,1"]] as const) {
+    const parsed = readField(field!, text);
+    assert.ok(parsed.ok);
+    place(entry, field!.path, parsed.value);
+  }
+  assert.deepEqual(entry, { method: "robust", Ms: "free", order: 2, surface: true, poles: [-1, -2], filter: { Tf: 0.1 } });
+  assert.equal(pick(entry, ["filter", "Tf"]), 0.1);
+  assert.equal(typedText(pick(entry, ["poles"])), "-1 -2");
+  assert.equal(readField(order!, "2.5").ok, false);
+  assert.equal(readField(Tf!, "x").ok, false);
+});
+
+test("a pointer goes to its own field, else to the field around it, else to one inside", () => {
+  const known = ["/plant/K", "/plant/den", null, "/tune/0/filter/Tf", "/baseline/Kp"];
+  assert.equal(matchPointer("/plant/K", known), 0);
+  assert.equal(matchPointer("/plant/den/2", known), 1);
+  assert.equal(matchPointer("/tune/0/filter", known), 3);
+  assert.equal(matchPointer("/plant/Kx", known), -1);
+  assert.equal(matchPointer("", known), -1);
+  assert.equal(matchPointer("/timeout_s", known), -1);
+});
+
+test("each plant form writes the contract's plant and reads it back", () => {
+  for (const form of PLANT_FORMS) {
+    const examples = Object.fromEntries(form.fields.map((field) => [field.name, field.example]));
+    const { plant, errors } = readPlant(form, (name) => examples[name] ?? "");
+    assert.deepEqual(errors, [], form.id);
+    assert.equal(plant.type, form.type);
+    assert.equal(formOf(plant)?.id, form.id);
+    const again = readPlant(form, (name) => form.fields.find((field) => field.name === name)!.write(plant[name]));
+    assert.deepEqual(again.plant, plant, form.id);
+  }
+});
+
+test("faults of a plant name their field", () => {
+  const { errors } = readPlant(PLANT_FORMS[0]!, (name) => (name === "T" ? "forty" : ""));
+  assert.deepEqual(errors.map((error) => error.pointer), ["/plant/K", "/plant/T", "/plant/L"]);
+  assert.match(errors[1]!.detail, /T "forty" is not a number/);
+});
+
+test("plants that no form shows are not forced into one", () => {
+  assert.equal(formOf({ type: "nonlinear" }), null);
+  assert.equal(formOf({ type: "fopdt", K: 1, T: 1, L: 1, uncertainty: {} }), null);
+});
+
+test("addresses are read back as the routes they came from", () => {
+  for (const route of [
+    { screen: "start" },
+    { screen: "new", plant: "fopdt", values: { K: "1,25", T: "40", L: "8" } },
+    { screen: "example", id: "a b/c" },
+    { screen: "edit", job: "x1" },
+    { screen: "design", job: "x1", entry: null },
+    { screen: "design", job: "x1", entry: 2 },
+  ] as const) {
+    assert.deepEqual(parseRoute(formatRoute(route)), route);
+  }
+  assert.deepEqual(parseRoute("#/nowhere/%E0%A4%A"), { screen: "start" });
+  assert.deepEqual(parseRoute(""), { screen: "start" });
+});

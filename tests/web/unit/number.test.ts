@@ -1,0 +1,64 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { parseMatrix, parseNumber, parseNumbers, parseRoots } from "../../../web/src/form/number.ts";
+
+const value = (text: string): unknown => {
+  const parsed = parseNumber(text, "K");
+  return parsed.ok ? parsed.value : parsed.sentence;
+};
+
+test("numbers are read with a point, a comma, an exponent, and a true minus", () => {
+  assert.equal(value("1.25"), 1.25);
+  assert.equal(value("2,5"), 2.5);
+  assert.equal(value("1e-3"), 1e-3);
+  assert.equal(value("−4"), -4);
+  assert.equal(value("  +.5 "), 0.5);
+  assert.equal(value("1,5E2"), 150);
+});
+
+test("what is not a number is refused with its text and a cure", () => {
+  for (const text of ["1,2,3", "abc", "1.2.3", "--1", "0x10", "Infinity", "NaN", "1e", "1 2", "1.234,5"]) {
+    assert.match(String(value(text)), /is not a number\. Write for example/, text);
+    assert.ok(String(value(text)).includes(text));
+  }
+  assert.match(String(value("")), /K is empty/);
+  assert.match(String(value("1e999")), /too large/);
+});
+
+test("lists are separated by spaces, semicolons or commas with a space; a bare comma is asked about", () => {
+  const list = (text: string): unknown => {
+    const parsed = parseNumbers(text, "den");
+    return parsed.ok ? parsed.value : parsed.sentence;
+  };
+  assert.deepEqual(list("1 3 3 1"), [1, 3, 3, 1]);
+  assert.deepEqual(list("[1, 2.5, 1]"), [1, 2.5, 1]);
+  assert.deepEqual(list("1;2"), [1, 2]);
+  assert.deepEqual(list("2,5 1"), [2.5, 1]);
+  assert.match(String(list("1,2")), /may be one number or several/);
+  assert.match(String(list("1 x")), /"x" is not a number/);
+  assert.match(String(list(" ")), /empty/);
+});
+
+test("matrices have rows of one length", () => {
+  const matrix = (text: string): unknown => {
+    const parsed = parseMatrix(text, "A");
+    return parsed.ok ? parsed.value : parsed.sentence;
+  };
+  assert.deepEqual(matrix("-1 0; 1 -2"), [[-1, 0], [1, -2]]);
+  assert.deepEqual(matrix("1\n0"), [[1], [0]]);
+  assert.deepEqual(matrix("0,5"), [[0.5]]);
+  assert.match(String(matrix("1 2; 3")), /Row 2 of A has 1 numbers, the first has 2/);
+});
+
+test("roots are real, complex, or pairs", () => {
+  const roots = (text: string): unknown => {
+    const parsed = parseRoots(text, "poles");
+    return parsed.ok ? parsed.value : parsed.sentence;
+  };
+  assert.deepEqual(roots(""), []);
+  assert.deepEqual(roots("-1 -2±1i"), [-1, [-2, 1], [-2, -1]]);
+  assert.deepEqual(roots("-0,5+2i; -0,5-2j"), [[-0.5, 2], [-0.5, -2]]);
+  assert.deepEqual(roots("2i -i"), [[0, 2], [0, -1]]);
+  assert.deepEqual(roots("-1 + 2i"), [[-1, 2]]);
+  assert.match(String(roots("-1 q")), /"q" is not a number/);
+});

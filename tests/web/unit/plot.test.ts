@@ -1,0 +1,127 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { nearestIndex } from "../../../web/src/plot/cursor.ts";
+import { columnExtremes, drawableRuns } from "../../../web/src/plot/dense.ts";
+import { frameToCsv, frameToSvg } from "../../../web/src/plot/export.ts";
+import type { Frame } from "../../../web/src/plot/frame.ts";
+import { layoutFrame, wholeView } from "../../../web/src/plot/layout.ts";
+import { drawLayout, tracePath } from "../../../web/src/plot/marks.ts";
+import { zoomAbout, zoomToRectangle } from "../../../web/src/plot/zoom.ts";
+
+const plane: Frame = {
+  title: "Curve <&> circle",
+  description: 'Says "nothing" & more.',
+  x: { kind: "linear", label: "Re", range: [-2, 1] },
+  panes: [
+    {
+      y: { kind: "linear", label: "Im", range: [-1, 1] },
+      traces: [1, 2, 3, 4].map((look) => ({ name: `trace ${look}`, look: look as 1 | 2 | 3 | 4, x: [-1, 0, null, 0.5], y: [0, 0.5, 1, NaN], parameter: [1, 2, 3, 4] })),
+      marks: [
+        { kind: "circle", x: -1, y: 0, radius: 0.7, label: "Ms 1.4", labelAt: "above" },
+        { kind: "point", x: -1, y: 0, label: "−1" },
+        { kind: "level", value: 0.2, role: "limit", label: "limit" },
+        { kind: "upright", value: 0, role: "zero" },
+      ],
+    },
+  ],
+  equal: true,
+  link: "omega",
+  cursorLabel: "ω (rad/s)",
+  cursorKind: "log",
+  fileName: "plane",
+};
+
+const times: Frame = {
+  ...plane,
+  equal: false,
+  x: { kind: "linear", label: "time (s)" },
+  panes: [
+    { y: { kind: "linear", label: "y" }, traces: [{ name: "a", look: 1, x: [0, 1, 2], y: [0, 1, 0.5] }], weight: 2 },
+    { y: { kind: "log", label: "u" }, traces: [{ name: "a", look: 1, x: [0, 1, 2], y: [0, 1, 10] }] },
+  ],
+};
+
+const empty: Frame = { ...times, panes: [{ y: { kind: "log", label: "|S|" }, traces: [] }], x: { kind: "log", label: "ω" } };
+
+test("an exported SVG holds no class, style, variable or unescaped text, and has title, description and the circle's transparency", () => {
+  const svg = frameToSvg(plane, wholeView(plane), 500, 300, (token) => (token === "--surface" ? "#ffffff" : "#123456"));
+  assert.doesNotMatch(svg, /\sclass=|\sstyle=|<style|var\(/);
+  assert.match(svg, /<title>Curve &lt;&amp;&gt; circle<\/title>/);
+  assert.match(svg, /<desc>Says "nothing" &amp; more\.<\/desc>/);
+  assert.match(svg, /fill-opacity="0\.07"/);
+  assert.match(svg, /stroke-dasharray="12 3"/);
+  assert.doesNotMatch(svg, /NaN|undefined|Infinity|null/);
+  assert.match(svg, /^<svg xmlns="http:\/\/www\.w3\.org\/2000\/svg"/);
+});
+
+test("every colour that drawings use is a token", () => {
+  const asked = new Set<string>();
+  frameToSvg(plane, wholeView(plane), 500, 300, (token) => {
+    asked.add(token);
+    return "#000000";
+  });
+  for (const token of ["--series-1", "--series-2", "--series-3", "--series-4", "--limit", "--grid", "--text", "--muted", "--surface", "--bad"]) assert.ok(asked.has(token), token);
+});
+
+test("a plot without data is drawn with axes and no broken number", () => {
+  const svg = frameToSvg(empty, wholeView(empty), 400, 200, () => "#000000");
+  assert.doesNotMatch(svg, /NaN|undefined|Infinity/);
+  assert.ok(drawLayout(empty, layoutFrame(empty, 400, 200, wholeView(empty)), "c").length > 0);
+});
+
+test("equal axes are equal at first and stay so through every zoom", () => {
+  const unit = (layout: ReturnType<typeof layoutFrame>): [number, number] => {
+    const box = layout.boxes[0]!;
+    return [box.x.toPixel(1) - box.x.toPixel(0), box.y.toPixel(0) - box.y.toPixel(1)];
+  };
+  let view = wholeView(plane);
+  for (let step = 0; step < 4; step += 1) {
+    const layout = layoutFrame(plane, 640, 300, view);
+    const [x, y] = unit(layout);
+    assert.ok(Math.abs(x / y - 1) < 1e-9, `step ${step}: ${x} ${y}`);
+    const box = layout.boxes[0]!;
+    view =
+      step % 2 === 0
+        ? zoomToRectangle(plane, layout, view, box, { x: box.left + 50, y: box.top + 20 }, { x: box.left + 250, y: box.top + 60 })
+        : zoomAbout(plane, layout, view, box.left + 100, 0.5);
+  }
+});
+
+test("panes of one plot share their x axis, and a flat drag zooms x alone", () => {
+  const layout = layoutFrame(times, 500, 300, wholeView(times));
+  assert.deepEqual(layout.boxes[0]!.x.range, layout.boxes[1]!.x.range);
+  assert.ok(layout.boxes[0]!.height > 1.9 * layout.boxes[1]!.height);
+  const box = layout.boxes[0]!;
+  const view = zoomToRectangle(times, layout, wholeView(times), box, { x: box.left + 50, y: 40 }, { x: box.left + 150, y: 44 });
+  assert.notEqual(view.x, null);
+  assert.deepEqual(view.y, [null, null]);
+});
+
+test("a logarithmic pane skips zero, gaps break the line", () => {
+  const layout = layoutFrame(times, 500, 300, wholeView(times));
+  const path = tracePath(layout.boxes[1]!, times.panes[1]!.traces[0]!);
+  assert.equal(path.match(/[ML]/g)?.length, 2);
+  assert.deepEqual(drawableRuns([0, 1, null, 3], [1, 1, 1, 1], false, false), [[0, 1], [3, 3]]);
+  assert.deepEqual(drawableRuns([], [], false, false), []);
+});
+
+test("long traces keep the extremes of each pixel column", () => {
+  const values = Array.from({ length: 100 }, (_, index) => (index === 57 ? 9 : index === 12 ? -9 : Math.sin(index)));
+  const kept = columnExtremes(values.map((_, index) => Math.floor(index / 50)), values);
+  assert.ok(kept.includes(57) && kept.includes(12) && kept.includes(0) && kept.includes(99));
+  assert.ok(kept.length <= 8);
+  assert.deepEqual(kept, [...kept].sort((a, b) => a - b));
+});
+
+test("a cursor finds the nearest sample", () => {
+  assert.equal(nearestIndex([0, 1, 2], 1.4), 1);
+  assert.equal(nearestIndex([null, 5], -3), 1);
+  assert.equal(nearestIndex([], 1), -1);
+});
+
+test("the CSV export has every sample with its trace and axis", () => {
+  const lines = frameToCsv(times).trim().split("\r\n");
+  assert.equal(lines.length, 7);
+  assert.equal(lines[0], "trace,axis,time (s),value");
+  assert.equal(lines[2], "a,y,1,1");
+});

@@ -1,0 +1,37 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+const css = readFileSync(path.join(process.env["TUNEWRIGHT_ROOT"]!, "web/src/style/tokens.css"), "utf8");
+const blocks = [...css.matchAll(/\{([^{}]*--bg:[^{}]*)\}/g)].map((match) => Object.fromEntries([...match[1]!.matchAll(/--([\w-]+):\s*(#[0-9a-f]{6})/g)].map((pair) => [pair[1]!, pair[2]!])));
+
+/** Contrast ratio as WCAG 2.2 defines it. */
+function contrast(a: string, b: string): number {
+  const luminance = (colour: string): number => {
+    const [r, g, blue] = [1, 3, 5].map((at) => {
+      const channel = parseInt(colour.slice(at, at + 2), 16) / 255;
+      return channel <= 0.04045 ? channel / 12.92 : ((channel + 0.055) / 1.055) ** 2.4;
+    });
+    return 0.2126 * r! + 0.7152 * g! + 0.0722 * blue!;
+  };
+  const [high, low] = [luminance(a), luminance(b)].sort((x, y) => y - x);
+  return (high! + 0.05) / (low! + 0.05);
+}
+
+test("there are a light palette and two equal dark ones", () => {
+  assert.equal(blocks.length, 3);
+  assert.deepEqual(blocks[1], blocks[2]);
+  assert.deepEqual(Object.keys(blocks[0]!).sort(), Object.keys(blocks[1]!).sort());
+});
+
+test("text, lines and borders have enough contrast on both palettes", () => {
+  for (const colours of blocks) {
+    for (const name of ["text", "muted", "accent", "good", "warn", "bad", "series-1", "series-2", "series-3", "series-4", "setpoint", "limit"]) {
+      assert.ok(contrast(colours[name]!, colours["surface"]!) >= 4.5, `${name} ${colours[name]}`);
+    }
+    for (const name of ["text", "muted"]) assert.ok(contrast(colours[name]!, colours["bg"]!) >= 4.5, `${name} on bg`);
+    assert.ok(contrast(colours["on-accent"]!, colours["accent"]!) >= 4.5);
+    for (const name of ["control", "focus"]) assert.ok(contrast(colours[name]!, colours["surface"]!) >= 3, name);
+  }
+});

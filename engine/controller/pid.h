@@ -68,14 +68,17 @@ ParallelPid to_parallel(const Pid& pid);
 
 /// Exact. Errors: Kp = 0 with Ki or Kd != 0 has no ideal form (use the parallel form itself in the loop).
 Expected<Pid> to_ideal(const ParallelPid& pid);
-Pid to_ideal(const SeriesPid& pid);
+
+/// Exact, the set-point weight included: the series form's proportional kick is Kp b, so b becomes b Kp/Kp_ideal.
+/// Errors: Ti = 0; Ti + Td = Tf with a derivative filter (no proportional part is left).
+Expected<Pid> to_ideal(const SeriesPid& pid);
 
 /// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it
 /// exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
 /// which rule fails.
 Expected<SeriesPid> to_series(const Pid& pid);
 
-/// The gains of any form, which the loop and the simulation work with: exact and total.
+/// The gains of any form, which the loop and the simulation work with: exact and total (Ti != 0).
 ParallelPid gains(const Controller& controller);
 
 }  // namespace tunewright

@@ -1,0 +1,119 @@
+#include <cmath>
+
+#include "engine/controller/pid.h"
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kRounding = 1e-13;
+
+// With `derivative` the series form's filter covers the whole lead (1 + s Td)/(1 + s Tf), the ideal form's only Td s;
+// the measurement filters stand outside the law in both forms, as if Tf were 0 here.
+double lead_filter(const Filter& filter) { return filter.type == FilterType::derivative ? filter.Tf : 0; }
+
+struct Roots {
+    double larger, smaller;
+};
+
+// x^2 - sum x + product = 0 without cancellation; `discriminant` = sum^2 - 4 product >= 0.
+Roots real_roots(double sum, double product, double discriminant) {
+    const double root = std::sqrt(discriminant);
+    if (sum >= 0) {
+        const double larger = (sum + root) / 2;
+        return {larger, larger == 0 ? 0 : product / larger};
+    }
+    const double smaller = (sum - root) / 2;
+    return {product / smaller, smaller};
+}
+
+Error no_series(const Pid& pid, double Tf) {
+    std::string message = "No series form: ";
+    if (Tf > 0) {
+        message += "(Ti + Tf)^2 = " + text(std::pow(pid.Ti + Tf, 2)) +
+                   " is below 4 Ti (Td + Tf) = " + text(4 * pid.Ti * (pid.Td + Tf)) + ", so its zeros are complex.";
+    } else {
+        message += "Ti = " + text(pid.Ti) + " is below 4 Td = " + text(4 * pid.Td) + ", so its zeros are complex.";
+    }
+    return {ErrorKind::unsupported, "", message + " Use the ideal or the parallel form."};
+}
+
+}  // namespace
+
+ParallelPid to_parallel(const Pid& pid) {
+    return {.Kp = pid.Kp, .Ki = pid.Kp / pid.Ti, .Kd = pid.Kp * pid.Td, .b = pid.b, .c = pid.c, .filter = pid.filter};
+}
+
+Expected<Pid> to_ideal(const ParallelPid& pid) {
+    Pid ideal{.Kp = pid.Kp, .b = pid.b, .c = pid.c, .filter = pid.filter};
+    if (pid.Kp == 0) {
+        if (pid.Ki == 0 && pid.Kd == 0) return ideal;
+        return Error{ErrorKind::unsupported, "",
+                     "No ideal form: Kp is 0 while Ki = " + text(pid.Ki) + " and Kd = " + text(pid.Kd) +
+                         "; Ti and Td are ratios to Kp. Keep the parallel form."};
+    }
+    if (pid.Ki != 0) ideal.Ti = pid.Kp / pid.Ki;
+    ideal.Td = pid.Kd / pid.Kp;
+    return ideal;
+}
+
+Expected<Pid> to_ideal(const SeriesPid& pid) {
+    if (pid.Ti == 0)
+        return Error{ErrorKind::invalid_argument, "Ti", "Ti is 0; it must be above 0, or null for no integral action."};
+    const double Tf = lead_filter(pid.filter);
+    const double factor = 1 + (pid.Td - Tf) / pid.Ti;
+    if (factor == 0)
+        return Error{ErrorKind::unsupported, "",
+                     "No ideal form: Ti + Td = Tf = " + text(Tf) +
+                         ", so no proportional part is left. Choose a shorter filter or the parallel form."};
+    // Without integral action Ti stays infinite whatever the factor's sign.
+    const double Ti = std::isinf(pid.Ti) ? pid.Ti : pid.Ti * factor;
+    return Pid{.Kp = pid.Kp * factor,
+               .Ti = Ti,
+               .Td = pid.Td / factor - Tf,
+               .b = pid.b / factor,
+               .c = pid.c,
+               .filter = pid.filter};
+}
+
+Expected<SeriesPid> to_series(const Pid& pid) {
+    const double Tf = lead_filter(pid.filter);
+    SeriesPid series{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td + Tf, .b = pid.b, .c = pid.c, .filter = pid.filter};
+    if (!pid.has_integral()) return series;
+    const double sum = pid.Ti + Tf;
+    // Equals sum^2 - 4 Ti (Td + Tf), written so that Td = 0 gives a square exactly.
+    double discriminant = std::pow(pid.Ti - Tf, 2) - 4 * pid.Ti * pid.Td;
+    // Two equal zeros (Ti = 4 Td, as of equal lags) may miss 0 by rounding.
+    if (std::abs(discriminant) < kRounding * sum * sum) discriminant = 0;
+    if (!(discriminant >= 0) || pid.Ti == 0) return no_series(pid, Tf);
+    const Roots roots = real_roots(sum, pid.Ti * (pid.Td + Tf), discriminant);
+    series.Ti = roots.larger;
+    series.Td = roots.smaller;
+    series.b_equivalent = roots.larger / pid.Ti;
+    series.Kp = pid.Kp * series.b_equivalent;
+    return series;
+}
+
+namespace {
+
+ParallelPid gains_of(const Pid& pid) { return to_parallel(pid); }
+ParallelPid gains_of(const ParallelPid& pid) { return pid; }
+
+ParallelPid gains_of(const SeriesPid& pid) {
+    const double Tf = lead_filter(pid.filter);
+    const double factor = 1 + (pid.Td - Tf) / pid.Ti;
+    return {.Kp = pid.Kp * factor,
+            .Ki = pid.Kp / pid.Ti,
+            .Kd = pid.Kp * (pid.Td - Tf * factor),
+            .b = factor == 0 ? pid.b : pid.b / factor,
+            .c = pid.c,
+            .filter = pid.filter};
+}
+
+}  // namespace
+
+ParallelPid gains(const Controller& controller) {
+    return std::visit([](const auto& pid) { return gains_of(pid); }, controller);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,83 @@
+#include "engine/identification/reduction.h"
+
+#include <cmath>
+#include <optional>
+
+#include "engine/identification/half_rule.h"
+#include "engine/identification/tangent.h"
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kUndamped = 1e-9;  // damping below which a mode counts as lying on the axis
+
+Error no_rule(const std::string& reason) {
+    return {ErrorKind::unsupported, "plant",
+            reason + " Rules that work on a reduced model do not cover this; use the method robust."};
+}
+
+// What no reduction here can express.
+std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder order) {
+    for (const auto pole : plant.poles()) {
+        if (pole.real() > kUndamped * std::abs(pole))
+            return no_rule("The plant is unstable (a pole at " + text(pole.real()) +
+                           (pole.imag() != 0 ? " with imaginary part" : "") + ").");
+        if (pole.real() > -kUndamped * std::abs(pole))
+            return no_rule("The plant has an undamped oscillation at " + text(std::abs(pole)) + " rad per time unit.");
+    }
+    if (plant.integrators() < 0)
+        return no_rule("The plant has a zero at s = 0: it has no static gain, so integral action cannot hold it.");
+    const int most = order == ReducedOrder::first ? 1 : 2;
+    if (plant.integrators() > most)
+        return no_rule("The plant has " + std::to_string(plant.integrators()) + " integrators; the model can carry " +
+                       std::to_string(most) + ".");
+    return std::nullopt;
+}
+
+Expected<ReducedModel> reduce_by(ReductionMethod method, const LinearPlant& plant, const ReductionRequest& request) {
+    if (method == ReductionMethod::half_rule || plant.integrators() > 1) return half_rule(plant, request.order);
+    return tangent(plant, request.tangent_time);
+}
+
+// A plant that has the asked form already is taken as it is, whichever method is named.
+bool has_form(const LinearPlant& plant, ReducedOrder order) {
+    if (!plant.zeros().empty()) return false;
+    for (const auto pole : plant.poles())
+        if (pole.imag() != 0) return false;
+    const int lags = static_cast<int>(plant.poles().size()) + plant.integrators();
+    return lags <= (order == ReducedOrder::first ? 1 : 2);
+}
+
+}  // namespace
+
+const char* to_string(ReductionMethod method) {
+    switch (method) {
+        case ReductionMethod::automatic: return "auto";
+        case ReductionMethod::half_rule: return "half_rule";
+        case ReductionMethod::tangent: return "tangent";
+    }
+    return "auto";
+}
+
+Plant ReducedModel::plant() const {
+    if (integrators == 2) return TransferFunction{.num = {K}, .den = {1, 0, 0}, .L = L};
+    if (integrators == 1) return Ipdt{.K = K, .L = L, .T = T1};
+    if (T2 > 0) return Sopdt{.K = K, .T1 = T1, .T2 = T2, .L = L};
+    return Fopdt{.K = K, .T = T1, .L = L};
+}
+
+Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request) {
+    if (const auto error = beyond_reduction(plant, request.order)) return *error;
+    if (has_form(plant, request.order)) return half_rule(plant, request.order);
+    if (request.method != ReductionMethod::automatic) return reduce_by(request.method, plant, request);
+
+    auto first = reduce_by(request.preferred, plant, request);
+    if (first) return first;
+    const auto other =
+        request.preferred == ReductionMethod::tangent ? ReductionMethod::half_rule : ReductionMethod::tangent;
+    auto second = reduce_by(other, plant, request);
+    return second ? second : first;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,27 @@
+#include <algorithm>
+
+#include "engine/tuning/amigo.h"
+#include "engine/tuning/lambda.h"
+#include "engine/tuning/method.h"
+#include "engine/tuning/simc.h"
+#include "engine/tuning/ziegler_nichols_step.h"
+
+namespace tunewright {
+
+const std::vector<TuningMethod>& method_registry() {
+    static const std::vector<TuningMethod> methods = {
+        amigo_method(),
+        simc_method(),
+        lambda_method(),
+        ziegler_nichols_step_method(),
+    };
+    return methods;
+}
+
+const TuningMethod* find_method(const std::string& id) {
+    const auto& methods = method_registry();
+    const auto at = std::ranges::find(methods, id, &TuningMethod::id);
+    return at == methods.end() ? nullptr : &*at;
+}
+
+}  // namespace tunewright

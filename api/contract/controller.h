@@ -1,0 +1,16 @@
+// The controllers of the contract: ideal, parallel and series form, with their filters.
+#pragma once
+
+#include <string>
+
+#include "api/describe/union.h"
+#include "engine/evaluate.h"
+
+namespace tunewright::api {
+
+/// By `form`; ideal if it is not given.
+const Union<Controller>& controller_contract();
+
+const Description<Equivalents>& equivalents_contract();
+
+}  // namespace tunewright::api

@@ -1,0 +1,18 @@
+// What is known about one controller on one plant, as answers carry it.
+#pragma once
+
+#include "api/describe/description.h"
+#include "engine/evaluate.h"
+
+namespace tunewright::api {
+
+const Description<Robustness>& robustness_contract();
+const Description<Performance>& performance_contract();
+const Description<Responses>& responses_contract();
+const Description<FrequencyTraces>& frequency_contract();
+const Description<Verification>& verification_contract();
+
+/// {"code", "detail"}.
+const Description<Warning>& warning_contract();
+
+}  // namespace tunewright::api

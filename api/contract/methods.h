@@ -1,0 +1,23 @@
+// Tuning methods of the contract: options are read, written and described from the engine's registry, so that a new method needs no line here.
+#pragma once
+
+#include <string>
+
+#include "api/describe/codec.h"
+#include "engine/tune.h"
+
+namespace tunewright::api {
+
+/// {"method": "...", options...}; unknown methods and options are refused, ranges checked.
+Codec<MethodRequest> method_request();
+
+/// An array of those, or "all".
+Codec<std::vector<MethodRequest>> tune_list();
+
+/// Options given, over the defaults of those that have one.
+void write_options(const std::string& method, const MethodOptions& options, Writer& out);
+
+/// The options of a method as a JSON Schema.
+Json options_schema(const std::vector<OptionDescription>& options);
+
+}  // namespace tunewright::api

@@ -1,0 +1,42 @@
+// Recorded tests of the contract: arrays or CSV text.
+#pragma once
+
+#include "api/csv/record.h"
+#include "api/describe/description.h"
+#include "engine/identification/identify.h"
+
+namespace tunewright::api {
+
+constexpr std::size_t kMostSamples = 200'000;
+
+struct Units {
+    std::optional<std::string> time, u, y;
+
+    std::string time_or_default() const { return time.value_or("s"); }
+};
+
+/// A record as sent.
+struct GivenRecord {
+    std::optional<std::vector<double>> t, u, y;
+    std::optional<double> dt;
+    std::optional<std::string> csv;
+    std::optional<ColumnChoices> columns;
+    RecordKind kind = RecordKind::automatic;
+    std::optional<double> u0, y0;
+};
+
+/// A record as the engine takes it, and what reading it has found.
+struct ReadRecord {
+    Record record;
+    int dropped = 0;
+    std::vector<std::string> notes;
+};
+
+const Description<Units>& units_contract();
+const Description<GivenRecord>& record_contract();
+const Description<IdentifyOptions>& identify_contract();
+
+/// Reports to the reader, which stands at the record.
+ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader);
+
+}  // namespace tunewright::api

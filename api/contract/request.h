@@ -1,0 +1,48 @@
+// Requests of the contract: a tuning job, an evaluation, an identification.
+#pragma once
+
+#include "api/contract/record.h"
+#include "engine/tune.h"
+
+namespace tunewright::api {
+
+struct JobRequest {
+    std::optional<std::string> name;
+    std::optional<Units> units;
+    std::optional<Plant> plant;
+    std::optional<GivenRecord> record;
+    IdentifyOptions identify;
+    std::vector<MethodRequest> tune = {MethodRequest{}};
+    std::optional<Controller> baseline;
+    EvaluateOptions evaluate;
+    std::string uncertainty = "none";
+    double timeout_s = 60;
+    ReadRecord read;  ///< of `record`
+};
+
+struct EvaluateRequest {
+    std::optional<std::string> name;
+    std::optional<Units> units;
+    std::optional<Plant> plant;
+    std::vector<Controller> controllers;
+    EvaluateOptions evaluate;
+};
+
+struct IdentifyRequest {
+    std::optional<std::string> name;
+    std::optional<Units> units;
+    std::optional<GivenRecord> record;
+    IdentifyOptions identify;
+    ReadRecord read;
+};
+
+/// Their checks include what the engine says about plant and controllers at once.
+const Description<JobRequest>& job_contract();
+const Description<EvaluateRequest>& evaluate_request_contract();
+const Description<IdentifyRequest>& identify_request_contract();
+
+const Description<EvaluateOptions>& evaluate_options_contract();
+
+TuningRequest to_engine(JobRequest request);
+
+}  // namespace tunewright::api

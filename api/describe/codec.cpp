@@ -1,0 +1,197 @@
+#include "api/describe/codec.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace tunewright::api {
+namespace {
+
+// A text that is a number in quotes tells its own cure; so do the words for "no number".
+std::string cure_for(const Json& value) {
+    if (!value.is_string()) return {};
+    const auto& content = value.get_ref<const std::string&>();
+    double number = 0;
+    const auto [end, error] = std::from_chars(content.data(), content.data() + content.size(), number);
+    if (error == std::errc() && end == content.data() + content.size() && std::isfinite(number)) {
+        return " Write " + content + " without quotes.";
+    }
+    std::string lower;
+    for (const char c : content) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (lower.find("nan") != lower.npos || lower.find("inf") != lower.npos) {
+        return " NaN and Infinity are not accepted: give a finite number or leave the field out.";
+    }
+    if (content.find(',') != content.npos) return " JSON's decimal sign is the point.";
+    return {};
+}
+
+std::string broken_rule(double value, const NumberRule& rule) {
+    if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
+    const bool low = (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
+    const bool high = (rule.maximum && value > *rule.maximum) || (rule.exclusive_maximum && value >= *rule.exclusive_maximum);
+    if (low || high) {
+        std::string text;
+        if (rule.minimum) text = ">= " + full_digits(*rule.minimum);
+        if (rule.exclusive_minimum) text = "> " + full_digits(*rule.exclusive_minimum);
+        if (!text.empty() && (rule.maximum || rule.exclusive_maximum)) text += " and ";
+        if (rule.maximum) text += "<= " + full_digits(*rule.maximum);
+        if (rule.exclusive_maximum) text += "< " + full_digits(*rule.exclusive_maximum);
+        return text;
+    }
+    if (rule.not_zero && value == 0) return "different from 0";
+    return {};
+}
+
+}  // namespace
+
+std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader) {
+    const std::string what = value.is_null() ? "null" : value.is_structured() ? kind_of(value) : shown(value) + ", " + kind_of(value);
+    return reader.name() + " is " + what + "; it must be " + wanted + "." + cure_for(value);
+}
+
+std::optional<double> read_number(const Json& value, const NumberRule& rule, Reader& reader) {
+    if (!value.is_number()) {
+        reader.fault(wrong_kind(value, "a number", reader));
+        return std::nullopt;
+    }
+    const double number = value.get<double>();
+    if (const std::string broken = broken_rule(number, rule); !broken.empty()) {
+        reader.fault(reader.name() + " is " + full_digits(number) + "; it must be " + broken + "." + (rule.cure.empty() ? "" : " " + rule.cure));
+        return std::nullopt;
+    }
+    return number;
+}
+
+Json number_schema(const NumberRule& rule) {
+    Json out{{"type", "number"}};
+    if (rule.minimum) out["minimum"] = *rule.minimum;
+    if (rule.exclusive_minimum) out["exclusiveMinimum"] = *rule.exclusive_minimum;
+    if (rule.maximum) out["maximum"] = *rule.maximum;
+    if (rule.exclusive_maximum) out["exclusiveMaximum"] = *rule.exclusive_maximum;
+    if (rule.not_zero) out["not"] = Json{{"const", 0}};
+    return out;
+}
+
+Codec<double> number(NumberRule rule) {
+    return {[rule](const Json& value, double& target, Reader& reader) {
+                if (const auto read = read_number(value, rule, reader)) target = *read;
+            },
+            [](const double& value, Writer& out) { out.number(value); }, [rule](SchemaBook&) { return number_schema(rule); }};
+}
+
+Codec<int> integer(int minimum, int maximum) {
+    const NumberRule rule{.minimum = minimum, .maximum = maximum};
+    return {[rule](const Json& value, int& target, Reader& reader) {
+                const auto read = read_number(value, rule, reader);
+                if (!read) return;
+                if (*read != std::trunc(*read)) return reader.fault(reader.name() + " is " + shown(value) + "; it must be a whole number.");
+                target = static_cast<int>(*read);
+            },
+            [](const int& value, Writer& out) { out.integer(value); },
+            [rule](SchemaBook&) {
+                Json out = number_schema(rule);
+                out["type"] = "integer";
+                return out;
+            }};
+}
+
+Codec<bool> boolean() {
+    return {[](const Json& value, bool& target, Reader& reader) {
+                if (!value.is_boolean()) return reader.fault(wrong_kind(value, "true or false", reader));
+                target = value.get<bool>();
+            },
+            [](const bool& value, Writer& out) { out.boolean(value); }, [](SchemaBook&) { return Json{{"type", "boolean"}}; }};
+}
+
+Codec<std::string> text(std::size_t longest) {
+    return {[longest](const Json& value, std::string& target, Reader& reader) {
+                if (!value.is_string()) return reader.fault(wrong_kind(value, "a text", reader));
+                const auto& content = value.get_ref<const std::string&>();
+                if (content.size() > longest) {
+                    return reader.fault(reader.name() + " has " + std::to_string(content.size()) + " bytes; it must have at most " + std::to_string(longest) + ".");
+                }
+                target = content;
+            },
+            [](const std::string& value, Writer& out) { out.text(value); },
+            [longest](SchemaBook&) { return Json{{"type", "string"}, {"maxLength", longest}}; }};
+}
+
+Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null) {
+    return {[rule](const Json& value, double& target, Reader& reader) {
+                if (value.is_null()) {
+                    target = std::numeric_limits<double>::infinity();
+                } else if (const auto read = read_number(value, rule, reader)) {
+                    target = *read;
+                }
+            },
+            [](const double& value, Writer& out) { out.number(value); },
+            [rule, meaning_of_null](SchemaBook&) {
+                Json out = number_schema(rule);
+                out["type"] = {"number", "null"};
+                out["x-null"] = meaning_of_null;
+                return out;
+            }};
+}
+
+Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRule rule) {
+    constexpr std::size_t kFaultsListed = 5;
+    return {[least, most, rule](const Json& value, std::vector<double>& target, Reader& reader) {
+                if (!value.is_array()) return reader.fault(wrong_kind(value, "an array of numbers", reader));
+                if (value.size() < least || value.size() > most) {
+                    return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " numbers; it must have " +
+                                        std::to_string(least) + " to " + std::to_string(most) + "." + (rule.cure.empty() ? "" : " " + rule.cure));
+                }
+                target.assign(value.size(), 0);
+                const std::size_t before = reader.count();
+                for (std::size_t i = 0; i < value.size() && reader.count() < before + kFaultsListed; ++i) {
+                    const Reader::At at(reader, i);
+                    if (const auto read = read_number(value[i], rule, reader)) target[i] = *read;
+                }
+            },
+            [](const std::vector<double>& values, Writer& out) {
+                out.begin_array();
+                for (const double value : values) out.number(value);
+                out.end_array();
+            },
+            [least, most, rule](SchemaBook&) {
+                return Json{{"type", "array"}, {"items", number_schema(rule)}, {"minItems", least}, {"maxItems", most}};
+            }};
+}
+
+Codec<std::vector<double>> trace() {
+    return {{},
+            [](const std::vector<double>& values, Writer& out) { out.trace(values); },
+            [](SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}; }};
+}
+
+Codec<std::optional<double>> figure() {
+    return {{},
+            [](const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); },
+            [](SchemaBook&) { return Json{{"type", {"number", "null"}}}; },
+            {},
+            [](const std::optional<double>& value) { return !value || !std::isfinite(*value); }};
+}
+
+Codec<std::optional<bool>> truth_figure() {
+    return {{},
+            [](const std::optional<bool>& value, Writer& out) { value ? out.boolean(*value) : out.null(); },
+            [](SchemaBook&) { return Json{{"type", {"boolean", "null"}}}; },
+            {},
+            [](const std::optional<bool>& value) { return !value.has_value(); }};
+}
+
+Codec<std::map<std::string, double>> numbers_by_name(std::string keys) {
+    return {{},
+            [](const std::map<std::string, double>& values, Writer& out) {
+                out.begin_object();
+                for (const auto& [name, value] : values) {
+                    out.key(name);
+                    out.number(value);
+                }
+                out.end_object();
+            },
+            [keys](SchemaBook&) {
+                return Json{{"type", "object"}, {"propertyNames", {{"description", keys}}}, {"additionalProperties", {{"type", {"number", "null"}}}}};
+            }};
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,69 @@
+#include "api/describe/reader.h"
+
+#include "api/json/parse.h"
+
+namespace tunewright::api {
+
+void Reader::fault(std::string detail) {
+    constexpr std::size_t kListed = 50;
+    if (++count_ <= kListed) faults_.push_back({pointer(), std::move(detail)});
+}
+
+void Reader::fault_at(std::string_view name, std::string detail) {
+    const At at(*this, name);
+    fault(std::move(detail));
+}
+
+std::string Reader::pointer() const {
+    std::string out;
+    for (const Segment& segment : path_) {
+        out += '/';
+        out += segment.name.empty() ? std::to_string(segment.index) : pointer_segment(segment.name);
+    }
+    return out;
+}
+
+std::string Reader::name() const {
+    std::string indices;
+    for (auto segment = path_.rbegin(); segment != path_.rend(); ++segment) {
+        if (!segment->name.empty()) return std::string(segment->name) + indices;
+        indices = "[" + std::to_string(segment->index) + "]" + indices;
+    }
+    return indices.empty() ? "the request" : indices;
+}
+
+std::optional<Problem> Reader::problem() const {
+    if (count_ == 0) return std::nullopt;
+    Problem problem{422, "invalid-request", "The request is not valid", {}, faults_, {}};
+    if (count_ == 1) {
+        problem.detail = faults_.front().detail;
+    } else {
+        problem.detail = std::to_string(count_) + " values need mending" +
+                         (count_ > faults_.size() ? ", the first " + std::to_string(faults_.size()) + " are listed" : "") +
+                         ". The first: " + faults_.front().detail;
+    }
+    return problem;
+}
+
+std::string shown(const Json& value) {
+    constexpr std::size_t kLength = 40;
+    if (value.is_structured() && value.size() > kLength) return value.is_array() ? "[...]" : "{...}";
+    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (text.size() <= kLength) return text;
+    std::size_t end = kLength;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return text.substr(0, end) + "...";
+}
+
+std::string kind_of(const Json& value) {
+    switch (value.type()) {
+        case Json::value_t::null: return "null";
+        case Json::value_t::object: return "an object";
+        case Json::value_t::array: return "an array";
+        case Json::value_t::string: return "a text";
+        case Json::value_t::boolean: return "a truth value";
+        default: return "a number";
+    }
+}
+
+}  // namespace tunewright::api

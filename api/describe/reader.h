@@ -1,0 +1,60 @@
+// What decoding carries along: where it is in the request, and every fault found so far.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/json/json.h"
+#include "api/problem.h"
+
+namespace tunewright::api {
+
+class Reader {
+public:
+    /// Enters a member or an element for its own lifetime. `name` must outlive it.
+    class At {
+    public:
+        At(Reader& reader, std::string_view name) : reader_(reader) { reader.path_.push_back({name, 0}); }
+        At(Reader& reader, std::size_t index) : reader_(reader) { reader.path_.push_back({{}, index}); }
+        ~At() { reader_.path_.pop_back(); }
+        At(const At&) = delete;
+        At& operator=(const At&) = delete;
+
+    private:
+        Reader& reader_;
+    };
+
+    /// A fault at the place where the reader is.
+    void fault(std::string detail);
+    /// A fault at the member `name` of that place.
+    void fault_at(std::string_view name, std::string detail);
+
+    /// The JSON Pointer of the place; the last name of it, with indices: "num[2]"; "the request" at the top.
+    std::string pointer() const;
+    std::string name() const;
+
+    std::size_t count() const { return count_; }
+    bool clean_since(std::size_t count) const { return count_ == count; }
+
+    /// 422 with everything found; empty if there is none.
+    std::optional<Problem> problem() const;
+
+private:
+    struct Segment {
+        std::string_view name;
+        std::size_t index;
+    };
+    std::vector<Segment> path_;
+    std::vector<FieldError> faults_;
+    std::size_t count_ = 0;
+};
+
+/// The value as a sentence quotes it: its JSON, cut after 40 characters.
+std::string shown(const Json& value);
+
+/// What kind of JSON value this is, with its article: "a text", "an object", "null".
+std::string kind_of(const Json& value);
+
+}  // namespace tunewright::api

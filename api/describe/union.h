@@ -1,0 +1,97 @@
+// One of several described types, told apart by a word: plants by `type`, controllers by `form`.
+#pragma once
+
+#include <variant>
+
+#include "api/describe/description.h"
+
+namespace tunewright::api {
+
+/// `V` is a std::variant of the described types.
+template <class V>
+class Union {
+public:
+    /// `otherwise` is the word that a missing tag stands for; empty: the tag is required.
+    Union(std::string name, std::string sentence, std::string tag, std::string otherwise = {})
+        : name_(std::move(name)), sentence_(std::move(sentence)), tag_(std::move(tag)), otherwise_(std::move(otherwise)) {}
+
+    /// Alternatives of one word are tried in order: the first whose `matches` holds (empty: always) is taken.
+    template <class T>
+    Union& alternative(const Description<T>& description, std::function<bool(const Json&)> matches = {}) {
+        const Description<T>* what = &description;
+        if (words_.empty() || words_.back() != what->tag_value()) words_.push_back(what->tag_value());
+        alternatives_.push_back({what->tag_value(), std::move(matches),
+                                 [what](const Json& value, V& target, Reader& reader) {
+                                     T content{};
+                                     what->read(value, content, reader);
+                                     target = std::move(content);
+                                 },
+                                 [what](SchemaBook& book) { return what->schema(book); }});
+        writers_.push_back([what](const V& value, Writer& out) {
+            if (const T* content = std::get_if<T>(&value)) what->write(*content, out);
+        });
+        return *this;
+    }
+
+    /// A word of the contract's future: refused with its own sentence.
+    Union& refuse(std::string word, std::string sentence) {
+        refused_.emplace_back(std::move(word), std::move(sentence));
+        return *this;
+    }
+
+    void read(const Json& value, V& target, Reader& reader) const {
+        if (!value.is_object()) return reader.fault(wrong_kind(value, "an object", reader));
+        const auto at = value.find(tag_);
+        if (at == value.end() && otherwise_.empty()) {
+            return reader.fault_at(tag_, tag_ + " is missing; it must be " + listed(words_) + ".");
+        }
+        const Json word = at == value.end() ? Json(otherwise_) : *at;
+        if (word.is_string()) {
+            for (const Alternative& alternative : alternatives_) {
+                if (word == alternative.word && (!alternative.matches || alternative.matches(value))) return alternative.read(value, target, reader);
+            }
+            for (const auto& [name, sentence] : refused_) {
+                if (word == name) return reader.fault_at(tag_, sentence);
+            }
+        }
+        const std::string meant = word.is_string() ? nearest(word.get_ref<const std::string&>(), words_) : "";
+        reader.fault_at(tag_, tag_ + " is " + shown(word) + "; it must be " + listed(words_) + "." + (meant.empty() ? "" : " Did you mean " + meant + "?"));
+    }
+
+    void write(const V& value, Writer& out) const {
+        for (const auto& writer : writers_) writer(value, out);
+    }
+
+    Json schema(SchemaBook& book) const {
+        if (!book.components.contains(name_)) {
+            book.components[name_] = nullptr;
+            Json choices = Json::array();
+            for (const Alternative& alternative : alternatives_) choices.push_back(alternative.schema(book));
+            book.components[name_] = {{"title", name_}, {"description", sentence_}, {"oneOf", std::move(choices)}};
+        }
+        return {{"$ref", "#/components/schemas/" + name_}};
+    }
+
+private:
+    struct Alternative {
+        std::string word;
+        std::function<bool(const Json&)> matches;
+        std::function<void(const Json&, V&, Reader&)> read;
+        std::function<Json(SchemaBook&)> schema;
+    };
+
+    std::string name_, sentence_, tag_, otherwise_;
+    std::vector<std::string> words_;
+    std::vector<Alternative> alternatives_;
+    std::vector<std::function<void(const V&, Writer&)>> writers_;
+    std::vector<std::pair<std::string, std::string>> refused_;
+};
+
+template <class V>
+Codec<V> one_of(const Union<V>& choices) {
+    const Union<V>* what = &choices;
+    return {[what](const Json& value, V& target, Reader& reader) { what->read(value, target, reader); },
+            [what](const V& value, Writer& out) { what->write(value, out); }, [what](SchemaBook& book) { return what->schema(book); }};
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,29 @@
+// Strict reading of JSON text: what the grammar allows but a request must not contain is refused here.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "api/json/json.h"
+#include "api/problem.h"
+
+namespace tunewright::api {
+
+constexpr std::size_t kMaxBodyBytes = 8u << 20;    ///< of a request; the server refuses earlier, the command line here
+constexpr std::size_t kMaxDepth = 32;              ///< of nested objects and arrays; the contract needs 6
+constexpr std::size_t kMaxMembers = 1000;          ///< of one object; the contract needs about 20
+
+/// The value that `text` spells. Problems: 413 longer than kMaxBodyBytes; 400 not JSON (with line and column);
+/// 422 a member written twice, a number beyond double, nested deeper than kMaxDepth, more than kMaxMembers in one object.
+std::variant<Json, Problem> parse(std::string_view text);
+
+/// `text` without the white space between its tokens. `text` must be JSON.
+std::string compact(std::string_view text);
+
+/// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
+std::string canonical(const Json& value);
+
+/// JSON Pointer segment (RFC 6901): ~ and / escaped.
+std::string pointer_segment(std::string_view name);
+
+}  // namespace tunewright::api

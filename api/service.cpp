@@ -1,0 +1,139 @@
+#include "api/service.h"
+
+#include "api/contract/controller.h"
+#include "api/contract/request.h"
+#include "api/contract/result.h"
+#include "api/json/digest.h"
+#include "api/json/parse.h"
+
+namespace tunewright::api {
+namespace {
+
+template <class Request>
+std::variant<Request, Problem> decode(const Json& value, const Description<Request>& contract) {
+    Request request;
+    Reader reader;
+    contract.read(value, request, reader);
+    if (auto problem = reader.problem()) return std::move(*problem);
+    return request;
+}
+
+Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
+
+JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
+
+double now(const RunControl& control) { return control.now_ms ? control.now_ms() : 0; }
+
+// What reading the CSV has found belongs to the data's quality too.
+void add_reading(const ReadRecord& read, DataQuality& quality) {
+    quality.samples_dropped += read.dropped;
+    quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
+    if (read.dropped > 0) quality.notes.push_back(std::to_string(read.dropped) + " lines without a number in t, u or y were dropped.");
+}
+
+// The engine speaks of "controller/..."; the request has a list of them.
+Problem at_controller(const Error& error, std::size_t index) {
+    constexpr std::string_view kPrefix = "controller";
+    Error placed = error;
+    if (placed.where.rfind(kPrefix, 0) == 0) placed.where = "controllers/" + std::to_string(index) + placed.where.substr(kPrefix.size());
+    return to_problem(placed);
+}
+
+}  // namespace
+
+std::variant<PreparedJob, Problem> prepare_job(std::string_view body) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    const Json& value = std::get<Json>(parsed);
+    const auto decoded = decode(value, job_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
+    const auto& request = std::get<JobRequest>(decoded);
+    return PreparedJob{request.name.value_or(""), request.timeout_s, compact(body), sha256_hex(canonical(value))};
+}
+
+JobOutcome run_job(std::string_view request_json, const RunControl& control) {
+    const auto parsed = parse(request_json);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
+    const Json& value = std::get<Json>(parsed);
+    auto decoded = decode(value, job_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
+    auto& request = std::get<JobRequest>(decoded);
+
+    ReadRecord read{{}, request.read.dropped, request.read.notes};
+    const std::optional<Units> units = request.units;
+    auto result = tune(to_engine(std::move(request)), control);
+    if (!result) {
+        JobOutcome outcome = failure(to_problem(result.error()));
+        if (result.error().kind == ErrorKind::cancelled) outcome = {JobOutcome::Status::cancelled, {}, {}};
+        return outcome;
+    }
+    if (result->model) add_reading(read, result->model->data_quality);
+    const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
+    Writer out;
+    result_contract().write({std::move(*result), units, sha256_hex(canonical(value))}, out);
+    return {status, out.take(), {}};
+}
+
+std::string progress_json(const Progress& progress) {
+    Writer out;
+    out.begin_object();
+    out.key("fraction");
+    out.number(progress.fraction);
+    out.key("stage");
+    out.text(progress.stage);
+    out.key("message");
+    out.text(progress.message);
+    out.key("best");
+    if (progress.best) {
+        out.begin_object();
+        out.key("controller");
+        controller_contract().write(progress.best->controller, out);
+        for (const auto& [name, figure] : {std::pair{"load_IAE", progress.best->load_IAE}, {"Ms", progress.best->Ms}, {"Mt", progress.best->Mt}}) {
+            out.key(name);
+            out.number(figure);
+        }
+        out.end_object();
+    } else {
+        out.null();
+    }
+    out.end_object();
+    return out.take();
+}
+
+Answer evaluate_call(std::string_view body, const RunControl& control) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
+    const auto decoded = decode(std::get<Json>(parsed), evaluate_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<EvaluateRequest>(decoded);
+
+    EvaluateAnswer answer;
+    for (std::size_t i = 0; i < request.controllers.size(); ++i) {
+        if (control.stop.stop_requested()) return refusal(to_problem({ErrorKind::timeout, {}, "The time allowed was over after " + std::to_string(i) + " controllers; send fewer, or fewer points."}));
+        const double start = now(control);
+        auto evaluation = evaluate(*request.plant, request.controllers[i], request.evaluate);
+        if (!evaluation) return refusal(at_controller(evaluation.error(), i));
+        evaluation->compute_ms = now(control) - start;
+        answer.controllers.emplace_back().evaluation = std::move(*evaluation);
+    }
+    Writer out;
+    evaluate_answer_contract().write(answer, out);
+    return {200, out.take()};
+}
+
+Answer identify_call(std::string_view body, const RunControl& control) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
+    const auto decoded = decode(std::get<Json>(parsed), identify_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<IdentifyRequest>(decoded);
+
+    auto model = identify(request.read.record, request.identify, control);
+    if (!model) return refusal(to_problem(model.error()));
+    add_reading(request.read, model->data_quality);
+    Writer out;
+    identify_answer_contract().write({std::move(*model)}, out);
+    return {200, out.take()};
+}
+
+}  // namespace tunewright::api

@@ -7,8 +7,12 @@ namespace tunewright::api {
 namespace {
 
 Json to_json(const TuningMethod& method) {
-    return {{"id", method.id},         {"title", method.title},       {"formula", method.formula},
-            {"needs", method.needs},   {"validity", method.validity}, {"source", method.source},
+    return {{"id", method.id},
+            {"title", method.title},
+            {"formula", method.formula},
+            {"needs", method.needs},
+            {"validity", method.validity},
+            {"source", method.source},
             {"options", options_schema(method.options)}};
 }
 

@@ -28,14 +28,16 @@ double now(const RunControl& control) { return control.now_ms ? control.now_ms()
 void add_reading(const ReadRecord& read, DataQuality& quality) {
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
-    if (read.dropped > 0) quality.notes.push_back(std::to_string(read.dropped) + " lines without a number in t, u or y were dropped.");
+    if (read.dropped > 0)
+        quality.notes.push_back(std::to_string(read.dropped) + " lines without a number in t, u or y were dropped.");
 }
 
 // The engine speaks of "controller/..."; the request has a list of them.
 Problem at_controller(const Error& error, std::size_t index) {
     constexpr std::string_view kPrefix = "controller";
     Error placed = error;
-    if (placed.where.rfind(kPrefix, 0) == 0) placed.where = "controllers/" + std::to_string(index) + placed.where.substr(kPrefix.size());
+    if (placed.where.rfind(kPrefix, 0) == 0)
+        placed.where = "controllers/" + std::to_string(index) + placed.where.substr(kPrefix.size());
     return to_problem(placed);
 }
 
@@ -88,7 +90,8 @@ std::string progress_json(const Progress& progress) {
         out.begin_object();
         out.key("controller");
         controller_contract().write(progress.best->controller, out);
-        for (const auto& [name, figure] : {std::pair{"load_IAE", progress.best->load_IAE}, {"Ms", progress.best->Ms}, {"Mt", progress.best->Mt}}) {
+        for (const auto& [name, figure] :
+             {std::pair{"load_IAE", progress.best->load_IAE}, {"Ms", progress.best->Ms}, {"Mt", progress.best->Mt}}) {
             out.key(name);
             out.number(figure);
         }
@@ -109,7 +112,11 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
 
     EvaluateAnswer answer;
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
-        if (control.stop.stop_requested()) return refusal(to_problem({ErrorKind::timeout, {}, "The time allowed was over after " + std::to_string(i) + " controllers; send fewer, or fewer points."}));
+        if (control.stop.stop_requested())
+            return refusal(to_problem({ErrorKind::timeout,
+                                       {},
+                                       "The time allowed was over after " + std::to_string(i) +
+                                           " controllers; send fewer, or fewer points."}));
         const double start = now(control);
         auto evaluation = evaluate(*request.plant, request.controllers[i], request.evaluate);
         if (!evaluation) return refusal(at_controller(evaluation.error(), i));

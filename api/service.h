@@ -12,7 +12,7 @@ namespace tunewright::api {
 
 /// A tuning request that has been read and found valid.
 struct PreparedJob {
-    std::string name;          ///< "" if none
+    std::string name;  ///< "" if none
     double timeout_s = 60;
     std::string request_json;  ///< the request as sent, compact: what the store keeps and run_job takes
     std::string request_hash;  ///< of the canonical request, hexadecimal
@@ -42,9 +42,9 @@ std::string progress_json(const Progress& progress);
 Answer evaluate_call(std::string_view body, const RunControl& control);  ///< POST /v1/evaluate
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
 
-std::string methods_json();                ///< GET /v1/methods
-Answer method_json(std::string_view id);   ///< GET /v1/methods/{id}; 404 for none
-std::string examples_json();               ///< GET /v1/examples
-std::string openapi_json();                ///< GET /openapi.json (OpenAPI 3.1)
+std::string methods_json();               ///< GET /v1/methods
+Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none
+std::string examples_json();              ///< GET /v1/examples
+std::string openapi_json();               ///< GET /openapi.json (OpenAPI 3.1)
 
 }  // namespace tunewright::api

@@ -19,16 +19,19 @@ struct GivenFilter {
 };
 
 void check_filter(const Json&, GivenFilter& filter, Reader& reader) {
-    if (filter.N && filter.Tf) return reader.fault_at("N", "N and Tf are both given; one of them sets the filter (Tf = Td/N). Remove one.");
+    if (filter.N && filter.Tf)
+        return reader.fault_at("N", "N and Tf are both given; one of them sets the filter (Tf = Td/N). Remove one.");
     if (filter.type == FilterType::none) {
         if (filter.Tf || filter.N) {
             reader.fault(std::string("filter has ") + (filter.Tf ? "Tf" : "N") +
-                         " but its type is none; choose derivative, measurement_first_order or measurement_second_order, or remove it.");
+                         " but its type is none; choose derivative, measurement_first_order or "
+                         "measurement_second_order, or remove it.");
         }
         return;
     }
     if (filter.N && filter.type != FilterType::derivative) {
-        return reader.fault_at("N", "N is given for a measurement filter; N = Td/Tf belongs to type derivative. Give Tf.");
+        return reader.fault_at("N",
+                               "N is given for a measurement filter; N = Td/Tf belongs to type derivative. Give Tf.");
     }
     if (!filter.Tf && !filter.N) {
         reader.fault_at("Tf", std::string("Tf is missing; a filter needs its time constant Tf > 0") +
@@ -38,12 +41,15 @@ void check_filter(const Json&, GivenFilter& filter, Reader& reader) {
 
 const Description<GivenFilter>& filter_contract() {
     static const auto description = [] {
-        Description<GivenFilter> d("Filter",
-                                   "derivative: Td s becomes Td s/(1 + s Tf), acting on c r - y. measurement_first_order: y_f = y/(1 + s Tf). "
-                                   "measurement_second_order: y_f = y/(1 + s Tf + (s Tf)^2/2); these act on y only.");
+        Description<GivenFilter> d(
+            "Filter",
+            "derivative: Td s becomes Td s/(1 + s Tf), acting on c r - y. measurement_first_order: y_f = y/(1 + s Tf). "
+            "measurement_second_order: y_f = y/(1 + s Tf + (s Tf)^2/2); these act on y only.");
         d.field("type", &GivenFilter::type, filter_type(), "Which filter.")
-            .field("Tf", &GivenFilter::Tf, maybe(number({.exclusive_minimum = 0})), "Filter time constant, > 0.", {.unit = "time"})
-            .field("N", &GivenFilter::N, maybe(number({.exclusive_minimum = 0})), "Instead of Tf, for type derivative: Tf = Td/N.")
+            .field("Tf", &GivenFilter::Tf, maybe(number({.exclusive_minimum = 0})), "Filter time constant, > 0.",
+                   {.unit = "time"})
+            .field("N", &GivenFilter::N, maybe(number({.exclusive_minimum = 0})),
+                   "Instead of Tf, for type derivative: Tf = Td/N.")
             .check(check_filter);
         return d;
     }();
@@ -81,32 +87,44 @@ void write_filter(const Filter& filter, Writer& out) {
 }
 
 template <class Form>
-double sign_of(const Form& pid) { return pid.Kp; }
+double sign_of(const Form& pid) {
+    return pid.Kp;
+}
 double sign_of(const ParallelPid& pid) { return pid.Kp != 0 ? pid.Kp : pid.Ki != 0 ? pid.Ki : pid.Kd; }
 
 template <class Form>
 Description<Form>& with_weights(Description<Form>& description) {
     return description.field("b", &Form::b, number(), "Set-point weight of the proportional part.")
-        .field("c", &Form::c, number(), "Set-point weight of the derivative part; different from 0 only with a derivative filter.")
-        .field("filter", read_filter<Form>, [](const Form& pid, Writer& out) { write_filter(pid.filter, out); },
-               [](SchemaBook& book) {
-                   Json schema = filter_contract().schema(book);
-                   schema["default"] = {{"type", "none"}};
-                   return schema;
-               },
-               "How the derivative or the measurement is filtered.")
-        .field("action", {}, [](const Form& pid, Writer& out) { out.text(sign_of(pid) < 0 ? "direct" : "reverse"); },
-               [](SchemaBook&) { return Json{{"type", "string"}, {"enum", {"reverse", "direct"}}}; },
-               "reverse for Kp > 0, direct for Kp < 0. Follows from the sign; in requests it is ignored.", {.answer_only = true})
+        .field("c", &Form::c, number(),
+               "Set-point weight of the derivative part; different from 0 only with a derivative filter.")
+        .field(
+            "filter", read_filter<Form>, [](const Form& pid, Writer& out) { write_filter(pid.filter, out); },
+            [](SchemaBook& book) {
+                Json schema = filter_contract().schema(book);
+                schema["default"] = {{"type", "none"}};
+                return schema;
+            },
+            "How the derivative or the measurement is filtered.")
+        .field(
+            "action", {}, [](const Form& pid, Writer& out) { out.text(sign_of(pid) < 0 ? "direct" : "reverse"); },
+            [](SchemaBook&) {
+                return Json{{"type", "string"}, {"enum", {"reverse", "direct"}}};
+            },
+            "reverse for Kp > 0, direct for Kp < 0. Follows from the sign; in requests it is ignored.",
+            {.answer_only = true})
         .check([](const Json&, Form& pid, Reader& reader) {
             if (pid.c != 0 && derivative_acts(pid) && pid.filter.type != FilterType::derivative) {
-                reader.fault_at("c", "c is " + full_digits(pid.c) + " and the filter is not derivative: the set-point step would give an infinite kick. "
-                                     "Use c = 0 or filter {\"type\": \"derivative\", \"N\": 10}.");
+                reader.fault_at(
+                    "c", "c is " + full_digits(pid.c) +
+                             " and the filter is not derivative: the set-point step would give an infinite kick. "
+                             "Use c = 0 or filter {\"type\": \"derivative\", \"N\": 10}.");
             }
         });
 }
 
-NumberRule proportional_rule() { return {.not_zero = true, .cure = "Pure integral action is the form parallel with Kp 0 and a Ki."}; }
+NumberRule proportional_rule() {
+    return {.not_zero = true, .cure = "Pure integral action is the form parallel with Kp 0 and a Ki."};
+}
 NumberRule integral_rule() { return {.exclusive_minimum = 0, .cure = "No integral action is \"Ti\": null."}; }
 const char* kNoIntegral = "No integral action.";
 
@@ -114,8 +132,10 @@ const Description<Pid>& ideal() {
     static const auto description = [] {
         Description<Pid> d("IdealController", "u = Kp [(b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f)].");
         d.tag("form", "ideal", false)
-            .field("Kp", &Pid::Kp, number(proportional_rule()), "Proportional gain, of the sign that the plant needs.", {.required = true, .unit = "u/y"})
-            .field("Ti", &Pid::Ti, number_or_infinite(integral_rule(), kNoIntegral), "Integral time, > 0; null: no integral action.", {.unit = "time"})
+            .field("Kp", &Pid::Kp, number(proportional_rule()), "Proportional gain, of the sign that the plant needs.",
+                   {.required = true, .unit = "u/y"})
+            .field("Ti", &Pid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
+                   "Integral time, > 0; null: no integral action.", {.unit = "time"})
             .field("Td", &Pid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
         return with_weights(d).example({{"form", "ideal"}, {"Kp", 1.2}, {"Ti", 10}, {"Td", 0}});
     }();
@@ -124,13 +144,15 @@ const Description<Pid>& ideal() {
 
 const Description<ParallelPid>& parallel() {
     static const auto description = [] {
-        Description<ParallelPid> d("ParallelController", "Kp + Ki/s + Kd s, weights and filter as in the ideal form; carries Kp = 0 too.");
+        Description<ParallelPid> d("ParallelController",
+                                   "Kp + Ki/s + Kd s, weights and filter as in the ideal form; carries Kp = 0 too.");
         d.tag("form", "parallel")
             .field("Kp", &ParallelPid::Kp, number(), "Proportional gain.", {.unit = "u/y"})
             .field("Ki", &ParallelPid::Ki, number(), "Integral gain.", {.unit = "u/(y time)"})
             .field("Kd", &ParallelPid::Kd, number(), "Derivative gain.", {.unit = "u time/y"});
         return with_weights(d).check([](const Json&, ParallelPid& pid, Reader& reader) {
-            if (pid.Kp == 0 && pid.Ki == 0 && pid.Kd == 0) reader.fault_at("Kp", "Kp, Ki and Kd are all 0; one of them must differ from 0.");
+            if (pid.Kp == 0 && pid.Ki == 0 && pid.Kd == 0)
+                reader.fault_at("Kp", "Kp, Ki and Kd are all 0; one of them must differ from 0.");
         });
     }();
     return description;
@@ -138,13 +160,18 @@ const Description<ParallelPid>& parallel() {
 
 const Description<SeriesPid>& series() {
     static const auto description = [] {
-        Description<SeriesPid> d("SeriesController", "Kp (1 + 1/(s Ti))(1 + s Td); with a derivative filter (1 + s Td)/(1 + s Tf).");
+        Description<SeriesPid> d("SeriesController",
+                                 "Kp (1 + 1/(s Ti))(1 + s Td); with a derivative filter (1 + s Td)/(1 + s Tf).");
         d.tag("form", "series")
-            .field("Kp", &SeriesPid::Kp, number(proportional_rule()), "Gain of the series form.", {.required = true, .unit = "u/y"})
-            .field("Ti", &SeriesPid::Ti, number_or_infinite(integral_rule(), kNoIntegral), "Integral time, > 0; null: no integral action.", {.required = true, .unit = "time"})
+            .field("Kp", &SeriesPid::Kp, number(proportional_rule()), "Gain of the series form.",
+                   {.required = true, .unit = "u/y"})
+            .field("Ti", &SeriesPid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
+                   "Integral time, > 0; null: no integral action.", {.required = true, .unit = "time"})
             .field("Td", &SeriesPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
-        return with_weights(d).field("b_equivalent", &SeriesPid::b_equivalent, number(),
-                                     "Ti'/Ti: what b = 1 in the series form amounts to in the ideal one. Only in answers.", {.answer_only = true});
+        return with_weights(d).field(
+            "b_equivalent", &SeriesPid::b_equivalent, number(),
+            "Ti'/Ti: what b = 1 in the series form amounts to in the ideal one. Only in answers.",
+            {.answer_only = true});
     }();
     return description;
 }
@@ -165,19 +192,28 @@ const Description<Equivalents>& equivalents_contract() {
     static const auto description = [] {
         Description<Equivalents> d("Equivalents", "The same loop in the other forms, exactly.");
         d.field("parallel", &Equivalents::parallel, answer(parallel()), "Kp + Ki/s + Kd s.")
-            .field("series", {},
-                   [](const Equivalents& value, Writer& out) { value.series ? series().write(*value.series, out) : out.null(); },
-                   [](SchemaBook& book) { return Json{{"oneOf", Json::array({series().schema(book), Json{{"type", "null"}}})}}; },
-                   "The interacting form; null where it does not exist.")
-            .field("why_null", {},
-                   [](const Equivalents& value, Writer& out) {
-                       out.begin_object();
-                       out.key("series");
-                       out.text(value.why_no_series.empty() ? "The series form of this controller does not exist." : value.why_no_series);
-                       out.end_object();
-                   },
-                   [](SchemaBook&) { return Json{{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}; },
-                   "Why there is no series form.", {}, [](const Equivalents& value) { return value.series.has_value(); });
+            .field(
+                "series", {},
+                [](const Equivalents& value, Writer& out) {
+                    value.series ? series().write(*value.series, out) : out.null();
+                },
+                [](SchemaBook& book) {
+                    return Json{{"oneOf", Json::array({series().schema(book), Json{{"type", "null"}}})}};
+                },
+                "The interacting form; null where it does not exist.")
+            .field(
+                "why_null", {},
+                [](const Equivalents& value, Writer& out) {
+                    out.begin_object();
+                    out.key("series");
+                    out.text(value.why_no_series.empty() ? "The series form of this controller does not exist."
+                                                         : value.why_no_series);
+                    out.end_object();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "object"}, {"additionalProperties", {{"type", "string"}}}};
+                },
+                "Why there is no series form.", {}, [](const Equivalents& value) { return value.series.has_value(); });
         return d;
     }();
     return description;

@@ -44,12 +44,19 @@ void write_tolerates(const Robustness& robustness, Writer& out) {
 
 Json tolerates_schema(SchemaBook&) {
     const Json figure{{"type", {"number", "null"}}};
-    Json gain{{"type", "array"}, {"items", figure}, {"minItems", 2}, {"maxItems", 2}, {"description", "Factors of the plant's gain, lowest and highest."}};
+    Json gain{{"type", "array"},
+              {"items", figure},
+              {"minItems", 2},
+              {"maxItems", 2},
+              {"description", "Factors of the plant's gain, lowest and highest."}};
     Json dead_time = figure;
     dead_time["description"] = "Dead time that may come on top.";
     dead_time["x-unit"] = "time";
     return {{"type", "object"},
-            {"properties", {{"gain", gain}, {"extra_dead_time", dead_time}, {"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
+            {"properties",
+             {{"gain", gain},
+              {"extra_dead_time", dead_time},
+              {"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
             {"required", {"gain", "extra_dead_time"}},
             {"additionalProperties", false}};
 }
@@ -61,7 +68,8 @@ const Description<SetpointPerformance>& setpoint_contract() {
         d.field("IAE", &P::IAE, figure(), "Integral of |r - y|.", {.unit = "y time"})
             .field("ISE", &P::ISE, figure(), "Integral of (r - y)^2.", {.unit = "y^2 time"})
             .field("ITAE", &P::ITAE, figure(), "Integral of t |r - y|.", {.unit = "y time^2"})
-            .field("overshoot_percent", &P::overshoot_percent, figure(), "Beyond r, in percent of the step.", {.unit = "%"})
+            .field("overshoot_percent", &P::overshoot_percent, figure(), "Beyond r, in percent of the step.",
+                   {.unit = "%"})
             .field("rise_time", &P::rise_time, figure(), "From 10 to 90 % of the step.", {.unit = "time"})
             .field("rise_time_5_95", &P::rise_time_5_95, figure(), "From 5 to 95 % of the step.", {.unit = "time"})
             .field("settling_time", &P::settling_time, figure(), "Last time outside 2 % of the step.", {.unit = "time"})
@@ -125,7 +133,10 @@ void write_loop_gain(const FrequencyTraces& traces, Writer& out) {
 
 Json loop_gain_schema(SchemaBook& book) {
     const Json column = trace().schema(book);
-    return {{"type", "object"}, {"properties", {{"re", column}, {"im", column}, {"phase_deg", column}}}, {"required", {"re", "im", "phase_deg"}}, {"additionalProperties", false}};
+    return {{"type", "object"},
+            {"properties", {{"re", column}, {"im", column}, {"phase_deg", column}}},
+            {"required", {"re", "im", "phase_deg"}},
+            {"additionalProperties", false}};
 }
 
 }  // namespace
@@ -145,10 +156,16 @@ const Description<Robustness>& robustness_contract() {
             .field("phase_margin_deg", &R::phase_margin_deg, figure(), "Smallest over all crossings.", {.unit = "deg"})
             .field("delay_margin", &R::delay_margin, figure(), "Smallest over all crossings.", {.unit = "time"})
             .field("gain_crossover", &R::gain_crossover, figure(), "Where |P C| = 1.", {.unit = "rad/time"})
-            .field("phase_crossover", &R::phase_crossover, figure(), "Where P C crosses -180 degrees.", {.unit = "rad/time"})
-            .field("binding", {}, [](const R& value, Writer& out) { out.text(value.binding); }, [](SchemaBook&) { return Json{{"type", "string"}}; },
-                   "Which limit holds the design.", {}, [](const R& value) { return value.binding.empty(); })
-            .field("tolerates", {}, write_tolerates, tolerates_schema, "Model errors that leave the loop stable, one at a time.")
+            .field("phase_crossover", &R::phase_crossover, figure(), "Where P C crosses -180 degrees.",
+                   {.unit = "rad/time"})
+            .field(
+                "binding", {}, [](const R& value, Writer& out) { out.text(value.binding); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}};
+                },
+                "Which limit holds the design.", {}, [](const R& value) { return value.binding.empty(); })
+            .field("tolerates", {}, write_tolerates, tolerates_schema,
+                   "Model errors that leave the loop stable, one at a time.")
             .why_null(&R::why_null, kNoFigure);
         return d;
     }();
@@ -157,7 +174,8 @@ const Description<Robustness>& robustness_contract() {
 
 const Description<Performance>& performance_contract() {
     static const auto description = [] {
-        Description<Performance> d("Performance", "Figures of the two step responses and, where noise was asked for, of the noise.");
+        Description<Performance> d("Performance",
+                                   "Figures of the two step responses and, where noise was asked for, of the noise.");
         d.field("setpoint", &Performance::setpoint, answer(setpoint_contract()), "Of the set-point step.")
             .field("load", &Performance::load, answer(load_contract()), "Of the load step.")
             .field("noise", &Performance::noise, maybe(answer(noise_contract())), "Of the measurement noise.");
@@ -171,7 +189,8 @@ const Description<Responses>& responses_contract() {
         Description<Responses> d("Responses", "Both step responses, from t = 0 at the step.");
         d.field("setpoint", &Responses::setpoint, answer(trace_contract()), "To the set-point step.")
             .field("load", &Responses::load, answer(trace_contract()), "To the load step.")
-            .field("settles", &Responses::settles, Codec<bool>{{}, boolean().write, boolean().schema}, "False: the horizon ends before the responses do.");
+            .field("settles", &Responses::settles, Codec<bool>{{}, boolean().write, boolean().schema},
+                   "False: the horizon ends before the responses do.");
         return d;
     }();
     return description;
@@ -195,10 +214,13 @@ const Description<Verification>& verification_contract() {
     static const auto description = [] {
         using V = Verification;
         Description<V> d("Verification", "How the figures were checked.");
-        d.field("iae_step_halving", &V::iae_step_halving, figure(), "Relative change of the load IAE when the time step is halved.")
+        d.field("iae_step_halving", &V::iae_step_halving, figure(),
+                "Relative change of the load IAE when the time step is halved.")
             .field("ie_identity", &V::ie_identity, figure(), "Relative difference of the integral of y and d Ti/Kp.")
-            .field("ms_grid_difference", &V::ms_grid_difference, figure(), "Relative difference of Ms on an independent grid.")
-            .field("stability_methods_agree", &V::stability_methods_agree, truth_figure(), "Whether two independent stability tests agree.")
+            .field("ms_grid_difference", &V::ms_grid_difference, figure(),
+                   "Relative difference of Ms on an independent grid.")
+            .field("stability_methods_agree", &V::stability_methods_agree, truth_figure(),
+                   "Whether two independent stability tests agree.")
             .why_null("This check does not apply to this loop.");
         return d;
     }();
@@ -208,8 +230,11 @@ const Description<Verification>& verification_contract() {
 const Description<Warning>& warning_contract() {
     static const auto description = [] {
         Description<Warning> d("Warning", "A remark: a code for programs, a sentence for people.");
-        const auto words = [] { return Codec<std::string>{{}, text(0).write, [](SchemaBook&) { return Json{{"type", "string"}}; }}; };
-        d.field("code", &Warning::code, words(), "Stable, in kebab-case.").field("detail", &Warning::detail, words(), "One sentence with the figures.");
+        const auto words = [] {
+            return Codec<std::string>{{}, text(0).write, [](SchemaBook&) { return Json{{"type", "string"}}; }};
+        };
+        d.field("code", &Warning::code, words(), "Stable, in kebab-case.")
+            .field("detail", &Warning::detail, words(), "One sentence with the figures.");
         return d;
     }();
     return description;

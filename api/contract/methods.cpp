@@ -15,10 +15,11 @@ std::vector<std::string> names_of(const std::vector<OptionDescription>& options)
     return names;
 }
 
-void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix, const std::string& owner,
-                  MethodOptions& target, Reader& reader);
+void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix,
+                  const std::string& owner, MethodOptions& target, Reader& reader);
 
-void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target, Reader& reader) {
+void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
+                 Reader& reader) {
     switch (option.type) {
         case OptionType::number:
             if (const auto number = read_number(value, rule_of(option), reader)) target.set(path, *number);
@@ -26,7 +27,8 @@ void read_option(const Json& value, const OptionDescription& option, const std::
         case OptionType::integer: {
             const auto number = read_number(value, rule_of(option), reader);
             if (!number) return;
-            if (*number != static_cast<double>(static_cast<long long>(*number))) return reader.fault(reader.name() + " is " + shown(value) + "; it must be a whole number.");
+            if (*number != static_cast<double>(static_cast<long long>(*number)))
+                return reader.fault(reader.name() + " is " + shown(value) + "; it must be a whole number.");
             target.set(path, *number);
             return;
         }
@@ -47,20 +49,23 @@ void read_option(const Json& value, const OptionDescription& option, const std::
             return;
         }
         case OptionType::object:
-            if (!value.is_object()) return reader.fault(wrong_kind(value, "an object with " + listed(names_of(option.fields)), reader));
+            if (!value.is_object())
+                return reader.fault(wrong_kind(value, "an object with " + listed(names_of(option.fields)), reader));
             if (option.at_most_fields > 0 && value.size() > static_cast<std::size_t>(option.at_most_fields)) {
-                return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " fields; it must have at most " +
-                                    std::to_string(option.at_most_fields) + " of " + listed(names_of(option.fields)) + ".");
+                return reader.fault(reader.name() + " has " + std::to_string(value.size()) +
+                                    " fields; it must have at most " + std::to_string(option.at_most_fields) + " of " +
+                                    listed(names_of(option.fields)) + ".");
             }
             read_options(value, option.fields, path + "/", reader.name(), target, reader);
     }
 }
 
-void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix, const std::string& owner,
-                  MethodOptions& target, Reader& reader) {
+void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix,
+                  const std::string& owner, MethodOptions& target, Reader& reader) {
     for (const auto& [name, member] : value.items()) {
         if (prefix.empty() && name == "method") continue;
-        const auto option = std::find_if(described.begin(), described.end(), [&given = name](const OptionDescription& o) { return o.name == given; });
+        const auto option = std::find_if(described.begin(), described.end(),
+                                         [&given = name](const OptionDescription& o) { return o.name == given; });
         if (option != described.end()) {
             const Reader::At at(reader, name);
             read_option(member, *option, prefix + name, target, reader);
@@ -69,7 +74,9 @@ void read_options(const Json& value, const std::vector<OptionDescription>& descr
         const auto names = names_of(described);
         const std::string meant = nearest(name, names);
         reader.fault_at(name, name + " is not an option of " + owner + "; " +
-                                  (!meant.empty() ? "did you mean " + meant + "?" : names.empty() ? "it has none." : "its options are " + listed(names, "and") + "."));
+                                  (!meant.empty()  ? "did you mean " + meant + "?"
+                                   : names.empty() ? "it has none."
+                                                   : "its options are " + listed(names, "and") + "."));
     }
 }
 
@@ -80,14 +87,17 @@ std::vector<std::string> method_ids() {
 }
 
 void read_method(const Json& value, MethodRequest& target, Reader& reader) {
-    if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"method\": \"robust\"}", reader));
+    if (!value.is_object())
+        return reader.fault(wrong_kind(value, "an object such as {\"method\": \"robust\"}", reader));
     const auto word = value.find("method");
-    if (word == value.end()) return reader.fault_at("method", "method is missing; it must be " + listed(method_ids()) + ".");
+    if (word == value.end())
+        return reader.fault_at("method", "method is missing; it must be " + listed(method_ids()) + ".");
     const TuningMethod* method = word->is_string() ? find_method(word->get<std::string>()) : nullptr;
     if (!method) {
         const auto ids = method_ids();
         const std::string meant = word->is_string() ? nearest(word->get<std::string>(), ids) : "";
-        return reader.fault_at("method", "method is " + shown(*word) + "; it must be " + listed(ids) + "." + (meant.empty() ? "" : " Did you mean " + meant + "?"));
+        return reader.fault_at("method", "method is " + shown(*word) + "; it must be " + listed(ids) + "." +
+                                             (meant.empty() ? "" : " Did you mean " + meant + "?"));
     }
     target.method = method->id;
     read_options(value, method->options, "", method->id, target.options, reader);
@@ -150,11 +160,17 @@ Codec<MethodRequest> method_request() {
                     Json schema = options_schema(method.options);
                     Json properties{{"method", {{"type", "string"}, {"const", method.id}}}};
                     for (const auto& [option, content] : schema["properties"].items()) properties[option] = content;
-                    book.components[name] = {{"type", "object"}, {"title", method.title}, {"description", method.formula + " Source: " + method.source},
-                                             {"properties", std::move(properties)}, {"required", {"method"}}, {"additionalProperties", false}};
+                    book.components[name] = {{"type", "object"},
+                                             {"title", method.title},
+                                             {"description", method.formula + " Source: " + method.source},
+                                             {"properties", std::move(properties)},
+                                             {"required", {"method"}},
+                                             {"additionalProperties", false}};
                     choices.push_back({{"$ref", "#/components/schemas/" + name}});
                 }
-                book.components["Method"] = {{"title", "Method"}, {"description", "A tuning method with its options."}, {"oneOf", std::move(choices)}};
+                book.components["Method"] = {{"title", "Method"},
+                                             {"description", "A tuning method with its options."},
+                                             {"oneOf", std::move(choices)}};
                 return Json{{"$ref", "#/components/schemas/Method"}};
             }};
 }
@@ -169,10 +185,13 @@ Codec<std::vector<MethodRequest>> tune_list() {
         } else if (value.is_array()) {
             list(value, target, reader);
         } else {
-            reader.fault(wrong_kind(value, "an array of methods such as [{\"method\": \"robust\"}], or \"all\"", reader));
+            reader.fault(
+                wrong_kind(value, "an array of methods such as [{\"method\": \"robust\"}], or \"all\"", reader));
         }
     };
-    codec.schema = [list = codec.schema](SchemaBook& book) { return Json{{"oneOf", Json::array({list(book), Json{{"type", "string"}, {"const", "all"}}})}}; };
+    codec.schema = [list = codec.schema](SchemaBook& book) {
+        return Json{{"oneOf", Json::array({list(book), Json{{"type", "string"}, {"const", "all"}}})}};
+    };
     return codec;
 }
 

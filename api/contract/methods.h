@@ -1,4 +1,5 @@
-// Tuning methods of the contract: options are read, written and described from the engine's registry, so that a new method needs no line here.
+// Tuning methods of the contract: options are read, written and described from the engine's registry, so that a new
+// method needs no line here.
 #pragma once
 
 #include <string>

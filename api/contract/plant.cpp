@@ -13,12 +13,14 @@ NumberRule gain_rule() { return {.not_zero = true, .cure = "A plant with gain 0 
 NumberRule dead_time_rule() { return {.minimum = 0, .cure = "A dead time cannot be negative."}; }
 
 const char* kUncertainty =
-    "uncertainty is not available yet; leave it out. To be safe against a wrong model, lower Ms and Mt (1.4 tolerates gain errors of at least 3.5 times).";
+    "uncertainty is not available yet; leave it out. To be safe against a wrong model, lower Ms and Mt (1.4 tolerates "
+    "gain errors of at least 3.5 times).";
 
 template <class T>
 Description<T>& with_dead_time(Description<T>& description, bool required) {
     return description
-        .field("L", &T::L, number(dead_time_rule()), "Dead time at the plant's input, >= 0; exact everywhere.", {.required = required, .unit = "time"})
+        .field("L", &T::L, number(dead_time_rule()), "Dead time at the plant's input, >= 0; exact everywhere.",
+               {.required = required, .unit = "time"})
         .refuse("uncertainty", kUncertainty);
 }
 
@@ -27,8 +29,10 @@ const Description<Fopdt>& fopdt() {
         Description<Fopdt> d("Fopdt", "First order plus dead time: K e^(-Ls)/(T s + 1).");
         d.tag("type", "fopdt")
             .field("K", &Fopdt::K, number(gain_rule()), "Static gain, any sign.", {.required = true, .unit = "y/u"})
-            .field("T", &Fopdt::T, number(), "Time constant; negative: an unstable plant (k/(tau s - 1) is K = -k, T = -tau); 0: a pure dead time.",
-                   {.required = true, .unit = "time"});
+            .field(
+                "T", &Fopdt::T, number(),
+                "Time constant; negative: an unstable plant (k/(tau s - 1) is K = -k, T = -tau); 0: a pure dead time.",
+                {.required = true, .unit = "time"});
         return with_dead_time(d, true).example({{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}});
     }();
     return description;
@@ -39,7 +43,8 @@ const Description<Sopdt>& sopdt() {
         Description<Sopdt> d("Sopdt", "Second order plus dead time with real lags: K e^(-Ls)/((T1 s + 1)(T2 s + 1)).");
         d.tag("type", "sopdt")
             .field("K", &Sopdt::K, number(gain_rule()), "Static gain, any sign.", {.required = true, .unit = "y/u"})
-            .field("T1", &Sopdt::T1, number(), "First time constant; negative: unstable. (Oscillatory plants: T and zeta instead of T1 and T2.)",
+            .field("T1", &Sopdt::T1, number(),
+                   "First time constant; negative: unstable. (Oscillatory plants: T and zeta instead of T1 and T2.)",
                    {.required = true, .unit = "time"})
             .field("T2", &Sopdt::T2, number(), "Second time constant.", {.required = true, .unit = "time"});
         return with_dead_time(d, true).example({{"type", "sopdt"}, {"K", 1.5}, {"T1", 12}, {"T2", 4}, {"L", 2}});
@@ -49,12 +54,17 @@ const Description<Sopdt>& sopdt() {
 
 const Description<OscillatorySopdt>& oscillatory_sopdt() {
     static const auto description = [] {
-        Description<OscillatorySopdt> d("OscillatorySopdt", "Second order plus dead time with any damping: K e^(-Ls)/(T^2 s^2 + 2 zeta T s + 1).");
+        Description<OscillatorySopdt> d(
+            "OscillatorySopdt", "Second order plus dead time with any damping: K e^(-Ls)/(T^2 s^2 + 2 zeta T s + 1).");
         d.tag("type", "sopdt")
-            .field("K", &OscillatorySopdt::K, number(gain_rule()), "Static gain, any sign.", {.required = true, .unit = "y/u"})
-            .field("T", &OscillatorySopdt::T, number({.exclusive_minimum = 0}), "1/T is the undamped angular frequency.", {.required = true, .unit = "time"})
-            .field("zeta", &OscillatorySopdt::zeta, number(), "Relative damping; below 0 the plant is unstable.", {.required = true});
-        return with_dead_time(d, true).example({{"type", "sopdt"}, {"K", 1}, {"T", 0.333}, {"zeta", 0.167}, {"L", 0.1}});
+            .field("K", &OscillatorySopdt::K, number(gain_rule()), "Static gain, any sign.",
+                   {.required = true, .unit = "y/u"})
+            .field("T", &OscillatorySopdt::T, number({.exclusive_minimum = 0}),
+                   "1/T is the undamped angular frequency.", {.required = true, .unit = "time"})
+            .field("zeta", &OscillatorySopdt::zeta, number(), "Relative damping; below 0 the plant is unstable.",
+                   {.required = true});
+        return with_dead_time(d, true).example(
+            {{"type", "sopdt"}, {"K", 1}, {"T", 0.333}, {"zeta", 0.167}, {"L", 0.1}});
     }();
     return description;
 }
@@ -62,7 +72,9 @@ const Description<OscillatorySopdt>& oscillatory_sopdt() {
 const Description<Ipdt>& ipdt() {
     static const auto description = [] {
         Description<Ipdt> d("Ipdt", "Integrator plus dead time, with an optional lag: K e^(-Ls)/(s (T s + 1)).");
-        d.tag("type", "ipdt").field("K", &Ipdt::K, number(gain_rule()), "Slope of y per unit of u, any sign.", {.required = true, .unit = "y/(u time)"});
+        d.tag("type", "ipdt")
+            .field("K", &Ipdt::K, number(gain_rule()), "Slope of y per unit of u, any sign.",
+                   {.required = true, .unit = "y/(u time)"});
         with_dead_time(d, true).field("T", &Ipdt::T, number(), "Lag.", {.unit = "time"});
         return d.example({{"type", "ipdt"}, {"K", 0.05}, {"L", 4}});
     }();
@@ -83,7 +95,8 @@ void check_transfer_function(const Json&, TransferFunction& plant, Reader& reade
     if (above < 0) reader.fault_at("num", "num has only zeros; a plant with gain 0 cannot be controlled.");
     if (below >= 0 && above > below) {
         reader.fault_at("num", "num has degree " + std::to_string(above) + " and den degree " + std::to_string(below) +
-                                   "; the plant must be proper (degree of num <= degree of den). Coefficients stand in descending powers of s.");
+                                   "; the plant must be proper (degree of num <= degree of den). Coefficients stand in "
+                                   "descending powers of s.");
     }
 }
 
@@ -91,8 +104,10 @@ const Description<TransferFunction>& transfer_function() {
     static const auto description = [] {
         Description<TransferFunction> d("TransferFunction", "num(s)/den(s) e^(-Ls), proper.");
         d.tag("type", "transfer_function")
-            .field("num", &TransferFunction::num, numbers(1, kMaxOrder + 1), "Numerator, descending powers of s.", {.required = true})
-            .field("den", &TransferFunction::den, numbers(1, kMaxOrder + 1), "Denominator, descending powers of s.", {.required = true});
+            .field("num", &TransferFunction::num, numbers(1, kMaxOrder + 1), "Numerator, descending powers of s.",
+                   {.required = true})
+            .field("den", &TransferFunction::den, numbers(1, kMaxOrder + 1), "Denominator, descending powers of s.",
+                   {.required = true});
         return with_dead_time(d, false)
             .check(check_transfer_function)
             .example({{"type", "transfer_function"}, {"num", {1}}, {"den", {1, 3, 3, 1}}, {"L", 0.5}});
@@ -104,9 +119,11 @@ const Description<TransferFunction>& transfer_function() {
 Codec<std::vector<std::complex<double>>> roots() {
     using Roots = std::vector<std::complex<double>>;
     return {[](const Json& value, Roots& target, Reader& reader) {
-                if (!value.is_array()) return reader.fault(wrong_kind(value, "an array of numbers or [re, im] pairs", reader));
+                if (!value.is_array())
+                    return reader.fault(wrong_kind(value, "an array of numbers or [re, im] pairs", reader));
                 if (value.size() > kMaxOrder) {
-                    return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; at most " + std::to_string(kMaxOrder) + " are accepted.");
+                    return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; at most " +
+                                        std::to_string(kMaxOrder) + " are accepted.");
                 }
                 target.clear();
                 for (std::size_t i = 0; i < value.size(); ++i) {
@@ -138,7 +155,9 @@ Codec<std::vector<std::complex<double>>> roots() {
             },
             [](SchemaBook&) {
                 const Json pair{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
-                return Json{{"type", "array"}, {"maxItems", kMaxOrder}, {"items", {{"oneOf", Json::array({Json{{"type", "number"}}, pair})}}}};
+                return Json{{"type", "array"},
+                            {"maxItems", kMaxOrder},
+                            {"items", {{"oneOf", Json::array({Json{{"type", "number"}}, pair})}}}};
             }};
 }
 
@@ -155,7 +174,8 @@ void check_conjugates(const char* field, const std::vector<std::complex<double>>
             const Reader::At at(reader, field);
             const Reader::At element(reader, i);
             reader.fault(reader.name() + " is [" + full_digits(roots[i].real()) + ", " + full_digits(roots[i].imag()) +
-                         "]; complex ones must come in conjugate pairs. Add [" + full_digits(roots[i].real()) + ", " + full_digits(-roots[i].imag()) + "].");
+                         "]; complex ones must come in conjugate pairs. Add [" + full_digits(roots[i].real()) + ", " +
+                         full_digits(-roots[i].imag()) + "].");
             return;
         }
     }
@@ -165,7 +185,8 @@ void check_zpk(const Json&, Zpk& plant, Reader& reader) {
     check_conjugates("zeros", plant.zeros, reader);
     check_conjugates("poles", plant.poles, reader);
     if (plant.zeros.size() > plant.poles.size()) {
-        reader.fault_at("zeros", "zeros has " + std::to_string(plant.zeros.size()) + " elements and poles " + std::to_string(plant.poles.size()) +
+        reader.fault_at("zeros", "zeros has " + std::to_string(plant.zeros.size()) + " elements and poles " +
+                                     std::to_string(plant.poles.size()) +
                                      "; the plant must be proper (no more zeros than poles).");
     }
 }
@@ -176,17 +197,22 @@ const Description<Zpk>& zpk() {
         d.tag("type", "zpk")
             .field("K", &Zpk::K, number(gain_rule()), "Factor in front; not the static gain.", {.required = true})
             .field("zeros", &Zpk::zeros, roots(), "Zeros: numbers, or [re, im] in conjugate pairs.", {.unit = "1/time"})
-            .field("poles", &Zpk::poles, roots(), "Poles: numbers, or [re, im] in conjugate pairs.", {.required = true, .unit = "1/time"});
-        return with_dead_time(d, false)
-            .check(check_zpk)
-            .example({{"type", "zpk"}, {"K", 6}, {"zeros", {-1}}, {"poles", Json::array({-3, Json::array({-1, 2}), Json::array({-1, -2})})}, {"L", 0.2}});
+            .field("poles", &Zpk::poles, roots(), "Poles: numbers, or [re, im] in conjugate pairs.",
+                   {.required = true, .unit = "1/time"});
+        return with_dead_time(d, false).check(check_zpk).example(
+            {{"type", "zpk"},
+             {"K", 6},
+             {"zeros", {-1}},
+             {"poles", Json::array({-3, Json::array({-1, 2}), Json::array({-1, -2})})},
+             {"L", 0.2}});
     }();
     return description;
 }
 
 // Also [[1], [0]] for a column and [[1, 0]] for a row, as matrix programs write them.
 void read_vector(const Json& value, std::vector<double>& target, Reader& reader) {
-    if (value.is_array() && !value.empty() && value.size() <= kMaxOrder && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_array(); })) {
+    if (value.is_array() && !value.empty() && value.size() <= kMaxOrder &&
+        std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_array(); })) {
         Json flat = Json::array();
         const bool column = std::all_of(value.begin(), value.end(), [](const Json& v) { return v.size() == 1; });
         if (column || value.size() == 1) {
@@ -203,7 +229,10 @@ Codec<std::vector<double>> vector() {
     Codec<std::vector<double>> codec = numbers(1, kMaxOrder);
     codec.schema = [](SchemaBook&) {
         const Json row{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}, {"maxItems", kMaxOrder}};
-        return Json{{"type", "array"}, {"items", {{"oneOf", Json::array({Json{{"type", "number"}}, row})}}}, {"minItems", 1}, {"maxItems", kMaxOrder}};
+        return Json{{"type", "array"},
+                    {"items", {{"oneOf", Json::array({Json{{"type", "number"}}, row})}}},
+                    {"minItems", 1},
+                    {"maxItems", kMaxOrder}};
     };
     codec.read = read_vector;
     return codec;
@@ -225,10 +254,13 @@ void check_state_space(const Json&, StateSpace& plant, Reader& reader) {
         if (plant.A[i].size() == n) continue;
         const Reader::At at(reader, "A");
         const Reader::At row(reader, i);
-        reader.fault("A has " + std::to_string(n) + " rows, and row " + std::to_string(i) + " has " + std::to_string(plant.A[i].size()) + " numbers; A must be square.");
+        reader.fault("A has " + std::to_string(n) + " rows, and row " + std::to_string(i) + " has " +
+                     std::to_string(plant.A[i].size()) + " numbers; A must be square.");
     }
     const auto length = [&](const char* name, std::size_t size) {
-        if (size != n) reader.fault_at(name, std::string(name) + " has " + std::to_string(size) + " numbers and A " + std::to_string(n) + " rows; they must be equally many.");
+        if (size != n)
+            reader.fault_at(name, std::string(name) + " has " + std::to_string(size) + " numbers and A " +
+                                      std::to_string(n) + " rows; they must be equally many.");
     };
     length("B", plant.B.size());
     length("C", plant.C.size());
@@ -238,13 +270,17 @@ const Description<StateSpace>& state_space() {
     static const auto description = [] {
         Description<StateSpace> d("StateSpace", "x' = A x + B u(t - L), y = C x + D u(t - L).");
         d.tag("type", "state_space")
-            .field("A", &StateSpace::A, list_of(numbers(1, kMaxOrder), 1, kMaxOrder), "System matrix, n x n, row by row.", {.required = true, .unit = "1/time"})
+            .field("A", &StateSpace::A, list_of(numbers(1, kMaxOrder), 1, kMaxOrder),
+                   "System matrix, n x n, row by row.", {.required = true, .unit = "1/time"})
             .field("B", &StateSpace::B, vector(), "Input column, n numbers.", {.required = true})
             .field("C", &StateSpace::C, vector(), "Output row, n numbers.", {.required = true})
             .field("D", &StateSpace::D, direct_term(), "Direct term.", kOptional);
         return with_dead_time(d, false)
             .check(check_state_space)
-            .example({{"type", "state_space"}, {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})}, {"B", {1, 0}}, {"C", {0, 1}}});
+            .example({{"type", "state_space"},
+                      {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
+                      {"B", {1, 0}},
+                      {"C", {0, 1}}});
     }();
     return description;
 }
@@ -252,14 +288,16 @@ const Description<StateSpace>& state_space() {
 bool has_lags(const Json& value) { return !value.contains("T") && !value.contains("zeta"); }
 
 std::string later(const std::string& type) {
-    return "type " + type + " is not available yet; the types are fopdt, sopdt, ipdt, transfer_function, zpk and state_space.";
+    return "type " + type +
+           " is not available yet; the types are fopdt, sopdt, ipdt, transfer_function, zpk and state_space.";
 }
 
 }  // namespace
 
 const Union<Plant>& plant_contract() {
     static const auto contract = [] {
-        Union<Plant> plant("Plant", "A linear plant y = P(s)(u + d) with dead time, in deviations from the operating point.", "type");
+        Union<Plant> plant(
+            "Plant", "A linear plant y = P(s)(u + d) with dead time, in deviations from the operating point.", "type");
         plant.alternative(fopdt())
             .alternative(sopdt(), has_lags)
             .alternative(oscillatory_sopdt())

@@ -5,29 +5,36 @@
 namespace tunewright::api {
 namespace {
 
+constexpr int kMostColumns = 1000;
+constexpr std::size_t kLongestHeading = 200;
+
 Codec<ColumnChoice> column_choice() {
-    constexpr int kMostColumns = 1000;
-    constexpr std::size_t kLongest = 200;
-    return {[](const Json& value, ColumnChoice& target, Reader& reader) {
-                if (value.is_string()) {
-                    target = value.get<std::string>();
-                } else if (value.is_number_integer() && value.get<double>() >= 1 && value.get<double>() <= kMostColumns) {
-                    target = value.get<int>();
-                } else {
-                    reader.fault(reader.name() + " is " + shown(value) + "; it must be a heading, or a column's number from 1.");
-                }
-            },
-            [](const ColumnChoice& choice, Writer& out) {
-                std::holds_alternative<int>(choice) ? out.integer(std::get<int>(choice)) : out.text(std::get<std::string>(choice));
-            },
-            [](SchemaBook&) {
-                return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"maxLength", kLongest}}, Json{{"type", "integer"}, {"minimum", 1}, {"maximum", kMostColumns}}})}};
-            }};
+    return {
+        [](const Json& value, ColumnChoice& target, Reader& reader) {
+            if (value.is_string()) {
+                target = value.get<std::string>();
+            } else if (value.is_number_integer() && value.get<double>() >= 1 && value.get<double>() <= kMostColumns) {
+                target = value.get<int>();
+            } else {
+                reader.fault(reader.name() + " is " + shown(value) +
+                             "; it must be a heading, or a column's number from 1.");
+            }
+        },
+        [](const ColumnChoice& choice, Writer& out) {
+            std::holds_alternative<int>(choice) ? out.integer(std::get<int>(choice))
+                                                : out.text(std::get<std::string>(choice));
+        },
+        [](SchemaBook&) {
+            return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"maxLength", kLongestHeading}},
+                                               Json{{"type", "integer"}, {"minimum", 1}, {"maximum", kMostColumns}}})}};
+        }};
 }
 
 const Description<ColumnChoices>& columns_contract() {
     static const auto description = [] {
-        Description<ColumnChoices> d("Columns", "Which columns of the csv hold what: headings, or numbers from 1. Found by itself where headings are plain.");
+        Description<ColumnChoices> d("Columns",
+                                     "Which columns of the csv hold what: headings, or numbers from 1. Found by itself "
+                                     "where headings are plain.");
         d.field("t", &ColumnChoices::t, maybe(column_choice()), "Time.")
             .field("u", &ColumnChoices::u, maybe(column_choice()), "Controller output.")
             .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.");
@@ -38,7 +45,8 @@ const Description<ColumnChoices>& columns_contract() {
 
 void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.csv) {
-        for (const auto& [name, given] : {std::pair{"t", record.t.has_value()}, {"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
+        for (const auto& [name, given] :
+             {std::pair{"t", record.t.has_value()}, {"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
             if (given) reader.fault_at(name, std::string(name) + " is given beside csv; give one of them.");
         }
         return;
@@ -46,15 +54,19 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.columns) reader.fault_at("columns", "columns belongs to csv, which is missing.");
     if (!record.u || !record.y) {
         for (const auto& [name, given] : {std::pair{"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
-            if (!given) reader.fault_at(name, std::string(name) + " is missing; a record is t (or dt), u and y as arrays, or csv text.");
+            if (!given)
+                reader.fault_at(
+                    name, std::string(name) + " is missing; a record is t (or dt), u and y as arrays, or csv text.");
         }
         return;
     }
     if (record.t && record.dt) reader.fault_at("dt", "dt and t are both given; remove one.");
-    if (!record.t && !record.dt) reader.fault_at("t", "t is missing; give the times as an array, or the spacing as dt.");
+    if (!record.t && !record.dt)
+        reader.fault_at("t", "t is missing; give the times as an array, or the spacing as dt.");
     const auto length = [&](const char* name, const std::vector<double>& column) {
         if (column.size() != record.y->size()) {
-            reader.fault_at(name, std::string(name) + " has " + std::to_string(column.size()) + " numbers and y " + std::to_string(record.y->size()) + "; they must be equally many.");
+            reader.fault_at(name, std::string(name) + " has " + std::to_string(column.size()) + " numbers and y " +
+                                      std::to_string(record.y->size()) + "; they must be equally many.");
         }
     };
     length("u", *record.u);
@@ -73,7 +85,8 @@ const Description<Units>& units_contract() {
     constexpr std::size_t kLongest = 40;
     static const auto description = [] {
         Description<Units> d("Units", "Labels, echoed in the result. ISO time stamps are converted to units.time.");
-        d.field("time", &Units::time, maybe(text(kLongest)), "Unit of every time of the request and the result; s if not given.")
+        d.field("time", &Units::time, maybe(text(kLongest)),
+                "Unit of every time of the request and the result; s if not given.")
             .field("u", &Units::u, maybe(text(kLongest)), "Unit of the controller output.")
             .field("y", &Units::y, maybe(text(kLongest)), "Unit of the measurement.");
         return d;
@@ -83,17 +96,27 @@ const Description<Units>& units_contract() {
 
 const Description<GivenRecord>& record_contract() {
     static const auto description = [] {
-        Description<GivenRecord> d("Record", "A recorded test: t (or dt), u and y as arrays, or csv text. u holds from its sample to the next.");
-        const auto column = [] { return maybe(numbers(2, kMostSamples, {.cure = "Thin the record out: a few thousand samples identify as well."})); };
+        Description<GivenRecord> d(
+            "Record",
+            "A recorded test: t (or dt), u and y as arrays, or csv text. u holds from its sample to the next.");
+        const auto column = [] {
+            return maybe(
+                numbers(2, kMostSamples, {.cure = "Thin the record out: a few thousand samples identify as well."}));
+        };
         d.field("t", &GivenRecord::t, column(), "Times, any start, any spacing.", {.unit = "time"})
-            .field("dt", &GivenRecord::dt, maybe(number({.exclusive_minimum = 0})), "Spacing, instead of t.", {.unit = "time"})
+            .field("dt", &GivenRecord::dt, maybe(number({.exclusive_minimum = 0})), "Spacing, instead of t.",
+                   {.unit = "time"})
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
             .field("csv", &GivenRecord::csv, maybe(text(std::size_t{8} << 20)),
-                   "CSV text instead of the arrays: separator , ; or tab, decimal point or comma, a heading line, numbers or ISO time stamps. Lines with a blank cell are dropped and counted.")
+                   "CSV text instead of the arrays: separator , ; or tab, decimal point or comma, a heading line, "
+                   "numbers or ISO time stamps. Lines with a blank cell are dropped and counted.")
             .field("columns", &GivenRecord::columns, maybe(object(columns_contract())), "Columns of the csv.")
             .field("kind", &GivenRecord::kind,
-                   choice<RecordKind>({{"auto", RecordKind::automatic}, {"step", RecordKind::step}, {"relay", RecordKind::relay}, {"general", RecordKind::general}}),
+                   choice<RecordKind>({{"auto", RecordKind::automatic},
+                                       {"step", RecordKind::step},
+                                       {"relay", RecordKind::relay},
+                                       {"general", RecordKind::general}}),
                    "What the test was.")
             .field("u0", &GivenRecord::u0, maybe(number()), "Controller output before the first sample.", {.unit = "u"})
             .field("y0", &GivenRecord::y0, maybe(number()), "Measurement before the first sample.", {.unit = "y"})
@@ -107,12 +130,21 @@ const Description<IdentifyOptions>& identify_contract() {
     static const auto description = [] {
         Description<IdentifyOptions> d("Identify", "How the record becomes a model.");
         d.field("model", &IdentifyOptions::model,
-                choice<ModelChoice>({{"auto", ModelChoice::automatic}, {"fopdt", ModelChoice::fopdt}, {"sopdt", ModelChoice::sopdt}, {"sopdt_zero", ModelChoice::sopdt_zero}, {"ipdt", ModelChoice::ipdt}, {"ipdt_lag", ModelChoice::ipdt_lag}}),
+                choice<ModelChoice>({{"auto", ModelChoice::automatic},
+                                     {"fopdt", ModelChoice::fopdt},
+                                     {"sopdt", ModelChoice::sopdt},
+                                     {"sopdt_zero", ModelChoice::sopdt_zero},
+                                     {"ipdt", ModelChoice::ipdt},
+                                     {"ipdt_lag", ModelChoice::ipdt_lag}}),
                 "Structure of the model; auto picks one and says why.")
             .field("method", &IdentifyOptions::method,
-                   choice<IdentifyMethod>({{"auto", IdentifyMethod::automatic}, {"output_error", IdentifyMethod::output_error}, {"relay_fourier", IdentifyMethod::relay_fourier}, {"two_point", IdentifyMethod::two_point}}),
+                   choice<IdentifyMethod>({{"auto", IdentifyMethod::automatic},
+                                           {"output_error", IdentifyMethod::output_error},
+                                           {"relay_fourier", IdentifyMethod::relay_fourier},
+                                           {"two_point", IdentifyMethod::two_point}}),
                    "How it is found.")
-            .field("shift", &IdentifyOptions::shift, maybe(number({.exclusive_minimum = 0})), "Shift of the relay test's Fourier integrals.", {.unit = "1/time"});
+            .field("shift", &IdentifyOptions::shift, maybe(number({.exclusive_minimum = 0})),
+                   "Shift of the relay test's Fourier integrals.", {.unit = "1/time"});
         return d;
     }();
     return description;
@@ -129,7 +161,8 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         out.record.y = std::move(*given.y);
         return out;
     }
-    const CsvOptions options{given.columns.value_or(ColumnChoices{}), units.time_or_default(), units.time.has_value(), given.dt, kMostSamples};
+    const CsvOptions options{given.columns.value_or(ColumnChoices{}), units.time_or_default(), units.time.has_value(),
+                             given.dt, kMostSamples};
     auto read = read_csv_record(*given.csv, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
         for (const CsvFault& fault : *faults) {

@@ -17,11 +17,14 @@ Codec<int> points() {
         const auto read = read_number(value, {}, reader);
         if (!read) return;
         if (*read != 0 && !(*read >= 2 && *read <= kMostPoints && *read == static_cast<int>(*read))) {
-            return reader.fault("points is " + shown(value) + "; it must be 0 (no traces) or a whole number from 2 to 20000.");
+            return reader.fault("points is " + shown(value) +
+                                "; it must be 0 (no traces) or a whole number from 2 to 20000.");
         }
         target = static_cast<int>(*read);
     };
-    codec.schema = [](SchemaBook&) { return Json{{"type", "integer"}, {"minimum", 0}, {"maximum", kMostPoints}, {"not", {{"const", 1}}}}; };
+    codec.schema = [](SchemaBook&) {
+        return Json{{"type", "integer"}, {"minimum", 0}, {"maximum", kMostPoints}, {"not", {{"const", 1}}}};
+    };
     return codec;
 }
 
@@ -36,20 +39,28 @@ Codec<std::optional<double>> horizon() {
             target = *read;
         }
     };
-    codec.write = [](const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.text("auto"); };
+    codec.write = [](const std::optional<double>& value, Writer& out) {
+        value ? out.number(*value) : out.text("auto");
+    };
     codec.schema = [](SchemaBook&) {
-        return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"const", "auto"}}, Json{{"type", "number"}, {"exclusiveMinimum", 0}}})}};
+        return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"const", "auto"}},
+                                           Json{{"type", "number"}, {"exclusiveMinimum", 0}}})}};
     };
     return codec;
 }
 
 const Description<ActuatorLimits>& actuator_contract() {
     static const auto description = [] {
-        Description<ActuatorLimits> d("Actuator", "Limits of u, as deviations from the operating point; anti-windup is part of the simulation.");
-        d.field("min", &ActuatorLimits::min, number({.maximum = 0}), "Lower limit, <= 0.", {.required = true, .unit = "u"})
-            .field("max", &ActuatorLimits::max, number({.minimum = 0}), "Upper limit, >= 0 and > min.", {.required = true, .unit = "u"})
+        Description<ActuatorLimits> d(
+            "Actuator", "Limits of u, as deviations from the operating point; anti-windup is part of the simulation.");
+        d.field("min", &ActuatorLimits::min, number({.maximum = 0}), "Lower limit, <= 0.",
+                {.required = true, .unit = "u"})
+            .field("max", &ActuatorLimits::max, number({.minimum = 0}), "Upper limit, >= 0 and > min.",
+                   {.required = true, .unit = "u"})
             .check([](const Json&, ActuatorLimits& limits, Reader& reader) {
-                if (!(limits.min < limits.max)) reader.fault_at("max", "max is " + full_digits(limits.max) + " and min " + full_digits(limits.min) + "; max must be > min.");
+                if (!(limits.min < limits.max))
+                    reader.fault_at("max", "max is " + full_digits(limits.max) + " and min " + full_digits(limits.min) +
+                                               "; max must be > min.");
             });
         return d;
     }();
@@ -58,9 +69,11 @@ const Description<ActuatorLimits>& actuator_contract() {
 
 const Description<NoiseOptions>& noise_contract() {
     static const auto description = [] {
-        Description<NoiseOptions> d("Noise", "White measurement noise; it is reported apart and never enters IAE or TV.");
+        Description<NoiseOptions> d("Noise",
+                                    "White measurement noise; it is reported apart and never enters IAE or TV.");
         d.field("std", &NoiseOptions::std, number({.minimum = 0}), "Standard deviation, >= 0.", {.unit = "y"})
-            .field("sample_time", &NoiseOptions::sample_time, number({.minimum = 0}), "Time between samples; 0: 1/100 of the shorter of the loop's own times.", {.unit = "time"});
+            .field("sample_time", &NoiseOptions::sample_time, number({.minimum = 0}),
+                   "Time between samples; 0: 1/100 of the shorter of the loop's own times.", {.unit = "time"});
         return d;
     }();
     return description;
@@ -90,15 +103,20 @@ void resolve_record(const Json&, Request& request, Reader& reader) {
 
 void check_source(const Json& value, JobRequest&, Reader& reader) {
     const bool plant = value.contains("plant"), record = value.contains("record");
-    if (plant && record) reader.fault_at("record", "record and plant are both given; a request is about one of them. Remove one.");
+    if (plant && record)
+        reader.fault_at("record", "record and plant are both given; a request is about one of them. Remove one.");
     if (!plant && !record) {
-        reader.fault("plant or record is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}, or a recorded test.");
+        reader.fault(
+            "plant or record is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}, or "
+            "a recorded test.");
     }
 }
 
 void check_job(const Json&, JobRequest& request, Reader& reader) {
     if (request.uncertainty == "identified") {
-        reader.fault_at("uncertainty", "uncertainty \"identified\" is not available yet; use \"none\" and lower Ms and Mt to be safe against a wrong model.");
+        reader.fault_at("uncertainty",
+                        "uncertainty \"identified\" is not available yet; use \"none\" and lower Ms and Mt to be safe "
+                        "against a wrong model.");
     }
     check_plant(request.plant, reader);
 }
@@ -114,30 +132,43 @@ void add_labels(Description<Request>& d) {
 const Description<EvaluateOptions>& evaluate_options_contract() {
     static const auto description = [] {
         Description<EvaluateOptions> d("Evaluate", "What is simulated and how much of it is answered.");
-        d.field("setpoint_step", &EvaluateOptions::setpoint_step, number({.not_zero = true}), "Size of the set-point step.", {.unit = "y"})
-            .field("load_step", &EvaluateOptions::load_step, number({.not_zero = true}), "Size of the load step at the plant's input.", {.unit = "u"})
-            .field("horizon", &EvaluateOptions::horizon, horizon(), "Length of the responses; a number also ends the indices, which are integrals to infinity with auto.", {.unit = "time"})
+        d.field("setpoint_step", &EvaluateOptions::setpoint_step, number({.not_zero = true}),
+                "Size of the set-point step.", {.unit = "y"})
+            .field("load_step", &EvaluateOptions::load_step, number({.not_zero = true}),
+                   "Size of the load step at the plant's input.", {.unit = "u"})
+            .field(
+                "horizon", &EvaluateOptions::horizon, horizon(),
+                "Length of the responses; a number also ends the indices, which are integrals to infinity with auto.",
+                {.unit = "time"})
             .field("points", &EvaluateOptions::points, points(), "Points of each trace: 0 (no traces) or 2 to 20000.")
             .field("actuator", &EvaluateOptions::actuator, maybe(object(actuator_contract())), "Limits of u.")
             .field("noise", &EvaluateOptions::noise, maybe(object(noise_contract())), "Measurement noise.")
-            .field("rank_limits", [](const Json& value, EvaluateOptions& options, Reader& reader) {
-                       if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"Ms\": 2}", reader));
-                       for (const auto& [name, member] : value.items()) {
-                           const Reader::At at(reader, name);
-                           if (name != "Ms") {
-                               reader.fault(name + " is not a field here; known is Ms.");
-                           } else if (const auto read = read_number(member, {.exclusive_minimum = 1}, reader)) {
-                               options.rank_Ms = *read;
-                           }
-                       }
-                   }, [](const EvaluateOptions& options, Writer& out) {
-                       out.begin_object();
-                       out.key("Ms");
-                       out.number(options.rank_Ms);
-                       out.end_object();
-                   }, [](SchemaBook&) {
-                       return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", 2}}}}}, {"additionalProperties", false}};
-                   }, "Entries above these limits rank last.");
+            .field(
+                "rank_limits",
+                [](const Json& value, EvaluateOptions& options, Reader& reader) {
+                    if (!value.is_object())
+                        return reader.fault(wrong_kind(value, "an object such as {\"Ms\": 2}", reader));
+                    for (const auto& [name, member] : value.items()) {
+                        const Reader::At at(reader, name);
+                        if (name != "Ms") {
+                            reader.fault(name + " is not a field here; known is Ms.");
+                        } else if (const auto read = read_number(member, {.exclusive_minimum = 1}, reader)) {
+                            options.rank_Ms = *read;
+                        }
+                    }
+                },
+                [](const EvaluateOptions& options, Writer& out) {
+                    out.begin_object();
+                    out.key("Ms");
+                    out.number(options.rank_Ms);
+                    out.end_object();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "object"},
+                                {"properties", {{"Ms", {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", 2}}}}},
+                                {"additionalProperties", false}};
+                },
+                "Entries above these limits rank last.");
         return d;
     }();
     return description;
@@ -145,21 +176,32 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
 
 const Description<JobRequest>& job_contract() {
     static const auto description = [] {
-        Description<JobRequest> d("TuningRequest", "A plant or a recorded test, and how its controllers are to be found and judged.");
+        Description<JobRequest> d("TuningRequest",
+                                  "A plant or a recorded test, and how its controllers are to be found and judged.");
         add_labels(d);
         constexpr double kLongest = 3600;
-        d.field("plant", &JobRequest::plant, maybe(one_of(plant_contract())), "The plant; exactly one of plant and record.")
-            .field("record", &JobRequest::record, maybe(object(record_contract())), "The recorded test; exactly one of plant and record.")
+        d.field("plant", &JobRequest::plant, maybe(one_of(plant_contract())),
+                "The plant; exactly one of plant and record.")
+            .field("record", &JobRequest::record, maybe(object(record_contract())),
+                   "The recorded test; exactly one of plant and record.")
             .field("identify", &JobRequest::identify, object(identify_contract()), "How the record becomes a model.")
-            .field("tune", &JobRequest::tune, tune_list(), "The methods, one entry of the answer each; \"all\": every one.")
-            .field("baseline", &JobRequest::baseline, maybe(one_of(controller_contract())), "Today's settings, answered as the last entry.")
-            .field("evaluate", &JobRequest::evaluate, object(evaluate_options_contract()), "What is simulated and answered.")
-            .field("uncertainty", &JobRequest::uncertainty, choice<std::string>({{"none", "none"}, {"identified", "identified"}}), "\"identified\" is not available yet.")
-            .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}), "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
+            .field("tune", &JobRequest::tune, tune_list(),
+                   "The methods, one entry of the answer each; \"all\": every one.")
+            .field("baseline", &JobRequest::baseline, maybe(one_of(controller_contract())),
+                   "Today's settings, answered as the last entry.")
+            .field("evaluate", &JobRequest::evaluate, object(evaluate_options_contract()),
+                   "What is simulated and answered.")
+            .field("uncertainty", &JobRequest::uncertainty,
+                   choice<std::string>({{"none", "none"}, {"identified", "identified"}}),
+                   "\"identified\" is not available yet.")
+            .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
+                   "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .check_presence(check_source)
             .check(check_job)
             .check(resolve_record<JobRequest>)
-            .example({{"name", "TIC-101"}, {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}}, {"tune", Json::array({Json{{"method", "robust"}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
+            .example({{"name", "TIC-101"},
+                      {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
+                      {"tune", Json::array({Json{{"method", "robust"}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
         return d;
     }();
     return description;
@@ -171,10 +213,13 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
         Description<EvaluateRequest> d("EvaluateRequest", "A plant and controllers for it.");
         add_labels(d);
         d.field("plant", &EvaluateRequest::plant, maybe(one_of(plant_contract())), "The plant.", {.required = true})
-            .field("controllers", &EvaluateRequest::controllers, list_of(one_of(controller_contract()), 1, kMostControllers), "The controllers.", {.required = true})
-            .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()), "What is simulated and answered.")
+            .field("controllers", &EvaluateRequest::controllers,
+                   list_of(one_of(controller_contract()), 1, kMostControllers), "The controllers.", {.required = true})
+            .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
+                   "What is simulated and answered.")
             .check([](const Json&, EvaluateRequest& request, Reader& reader) { check_plant(request.plant, reader); })
-            .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}}, {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
+            .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
+                      {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
         return d;
     }();
     return description;
@@ -184,8 +229,10 @@ const Description<IdentifyRequest>& identify_request_contract() {
     static const auto description = [] {
         Description<IdentifyRequest> d("IdentifyRequest", "A recorded test.");
         add_labels(d);
-        d.field("record", &IdentifyRequest::record, maybe(object(record_contract())), "The recorded test.", {.required = true})
-            .field("identify", &IdentifyRequest::identify, object(identify_contract()), "How the record becomes a model.")
+        d.field("record", &IdentifyRequest::record, maybe(object(record_contract())), "The recorded test.",
+                {.required = true})
+            .field("identify", &IdentifyRequest::identify, object(identify_contract()),
+                   "How the record becomes a model.")
             .check(resolve_record<IdentifyRequest>);
         return d;
     }();

@@ -9,7 +9,11 @@ namespace tunewright::api {
 namespace {
 
 Codec<std::string> words() {
-    return {{}, [](const std::string& value, Writer& out) { out.text(value); }, [](SchemaBook&) { return Json{{"type", "string"}}; }};
+    return {{},
+            [](const std::string& value, Writer& out) { out.text(value); },
+            [](SchemaBook&) {
+                return Json{{"type", "string"}};
+            }};
 }
 
 template <class T>
@@ -20,9 +24,15 @@ Codec<T> only_answered(Codec<T> codec) {
 
 // Reads a member of the entry's evaluation; left out where there is none.
 template <class M>
-void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluation::*member, const Codec<M>& codec, const char* sentence) {
-    d.field(name, {}, [member, codec](const TuningEntry& entry, Writer& out) { codec.write((*entry.evaluation).*member, out); }, codec.schema, sentence, {},
-            [member, codec](const TuningEntry& entry) { return !entry.evaluation || (codec.skip && codec.skip((*entry.evaluation).*member)); });
+void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluation::*member, const Codec<M>& codec,
+                      const char* sentence) {
+    d.field(
+        name, {},
+        [member, codec](const TuningEntry& entry, Writer& out) { codec.write((*entry.evaluation).*member, out); },
+        codec.schema, sentence, {},
+        [member, codec](const TuningEntry& entry) {
+            return !entry.evaluation || (codec.skip && codec.skip((*entry.evaluation).*member));
+        });
 }
 
 Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
@@ -32,17 +42,22 @@ const Description<CostSurface>& surface_contract() {
         Description<CostSurface> d("CostSurface", "The least cost over the (Ti, Td) plane.");
         d.field("Ti", &CostSurface::Ti, trace(), "Integral times.", {.unit = "time"})
             .field("Td", &CostSurface::Td, trace(), "Derivative times.", {.unit = "time"})
-            .field("cost", {}, [](const CostSurface& surface, Writer& out) {
-                       out.begin_array();
-                       for (const auto& row : surface.cost) {
-                           out.begin_array();
-                           for (const auto& cost : row) cost ? out.trace_number(*cost) : out.null();
-                           out.end_array();
-                       }
-                       out.end_array();
-                   }, [](SchemaBook&) {
-                       return Json{{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}}};
-                   }, "cost[i][j] belongs to Ti[i] and Td[j]; null where no gain keeps the limits.");
+            .field(
+                "cost", {},
+                [](const CostSurface& surface, Writer& out) {
+                    out.begin_array();
+                    for (const auto& row : surface.cost) {
+                        out.begin_array();
+                        for (const auto& cost : row) cost ? out.trace_number(*cost) : out.null();
+                        out.end_array();
+                    }
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"},
+                                {"items", {{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}}};
+                },
+                "cost[i][j] belongs to Ti[i] and Td[j]; null where no gain keeps the limits.");
         return d;
     }();
     return description;
@@ -52,13 +67,23 @@ bool no_method(const TuningEntry& entry) { return entry.method.empty(); }
 
 void add_method_fields(Description<TuningEntry>& d) {
     const auto word = [](SchemaBook&) { return Json{{"type", "string"}}; };
-    d.field("method", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.method); }, word, "Id of the method; baseline for today's settings.", {}, no_method)
-        .field("title", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.title); }, word, "Its name.", {}, no_method)
-        .field("source", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.source); }, word, "Where it was published.", {},
-               [](const TuningEntry& entry) { return entry.source.empty(); })
-        .field("options", {}, [](const TuningEntry& entry, Writer& out) { write_options(entry.method, entry.options, out); },
-               [](SchemaBook&) { return Json{{"type", "object"}}; }, "Options given, over the defaults.", {},
-               [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
+    d.field(
+         "method", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.method); }, word,
+         "Id of the method; baseline for today's settings.", {}, no_method)
+        .field(
+            "title", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.title); }, word, "Its name.", {},
+            no_method)
+        .field(
+            "source", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.source); }, word,
+            "Where it was published.", {}, [](const TuningEntry& entry) { return entry.source.empty(); })
+        .field(
+            "options", {},
+            [](const TuningEntry& entry, Writer& out) { write_options(entry.method, entry.options, out); },
+            [](SchemaBook&) {
+                return Json{{"type", "object"}};
+            },
+            "Options given, over the defaults.", {},
+            [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
 }
 
 const Description<TuningEntry>& entry_contract() {
@@ -66,18 +91,27 @@ const Description<TuningEntry>& entry_contract() {
         Description<TuningEntry> d("Entry", "One controller with everything known about it, or why there is none.");
         add_method_fields(d);
         evaluation_field(d, "warnings", &Evaluation::warnings, list_of(answer(warning_contract())), "Remarks.");
-        d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))), "The simpler model that the rule used.");
+        d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))),
+                "The simpler model that the rule used.");
         evaluation_field(d, "controller", &Evaluation::controller, one_of(controller_contract()), "The controller.");
-        evaluation_field(d, "equivalents", &Evaluation::equivalents, object(equivalents_contract()), "The same loop in other forms.");
+        evaluation_field(d, "equivalents", &Evaluation::equivalents, object(equivalents_contract()),
+                         "The same loop in other forms.");
         evaluation_field(d, "robustness", &Evaluation::robustness, object(robustness_contract()), "Peaks and margins.");
-        evaluation_field(d, "performance", &Evaluation::performance, object(performance_contract()), "Figures of the responses.");
-        evaluation_field(d, "responses", &Evaluation::responses, maybe(answer(responses_contract())), "Traces over time; left out with points 0 and for unstable loops.");
-        evaluation_field(d, "frequency", &Evaluation::frequency, maybe(answer(frequency_contract())), "Traces over frequency; left out with points 0.");
-        evaluation_field(d, "verification", &Evaluation::verification, object(verification_contract()), "How the figures were checked.");
-        d.field("surface", &TuningEntry::surface, maybe(answer(surface_contract())), "Cost over the (Ti, Td) plane, where asked for.");
+        evaluation_field(d, "performance", &Evaluation::performance, object(performance_contract()),
+                         "Figures of the responses.");
+        evaluation_field(d, "responses", &Evaluation::responses, maybe(answer(responses_contract())),
+                         "Traces over time; left out with points 0 and for unstable loops.");
+        evaluation_field(d, "frequency", &Evaluation::frequency, maybe(answer(frequency_contract())),
+                         "Traces over frequency; left out with points 0.");
+        evaluation_field(d, "verification", &Evaluation::verification, object(verification_contract()),
+                         "How the figures were checked.");
+        d.field("surface", &TuningEntry::surface, maybe(answer(surface_contract())),
+                "Cost over the (Ti, Td) plane, where asked for.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
-        d.field("error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); }, problem_reference,
-                "Why the method has no controller.", {}, [](const TuningEntry& entry) { return !entry.error; });
+        d.field(
+            "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },
+            problem_reference, "Why the method has no controller.", {},
+            [](const TuningEntry& entry) { return !entry.error; });
         return d;
     }();
     return description;
@@ -89,8 +123,10 @@ const Description<Candidate>& candidate_contract() {
     static const auto description = [] {
         Description<Candidate> d("Candidate", "A structure that was tried.");
         d.field("plant", &Candidate::plant, only_answered(one_of(plant_contract())), "The model.")
-            .field("fit_percent", &Candidate::fit_percent, only_answered(number()), "100 (1 - |y - yhat|/|y - mean(y)|), free run.")
-            .field("criterion", &Candidate::criterion, only_answered(number()), "Information criterion; smaller is better.")
+            .field("fit_percent", &Candidate::fit_percent, only_answered(number()),
+                   "100 (1 - |y - yhat|/|y - mean(y)|), free run.")
+            .field("criterion", &Candidate::criterion, only_answered(number()),
+                   "Information criterion; smaller is better.")
             .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.");
         return d;
     }();
@@ -116,7 +152,8 @@ const Description<DataQuality>& quality_contract() {
         const auto size = [] { return only_answered(number()); };
         const auto truth = [] { return only_answered(boolean()); };
         d.field("samples", &Q::samples, count(), "Samples used.")
-            .field("samples_dropped", &Q::samples_dropped, count(), "Samples left out: blank cells, repeated or backward times.")
+            .field("samples_dropped", &Q::samples_dropped, count(),
+                   "Samples left out: blank cells, repeated or backward times.")
             .field("sample_time", &Q::sample_time, size(), "Median spacing.", {.unit = "time"})
             .field("irregular", &Q::irregular, truth(), "Whether the spacing varies.")
             .field("noise_std", &Q::noise_std, size(), "High-frequency part of y, standard deviation.", {.unit = "y"})
@@ -134,7 +171,8 @@ const Description<IdentifiedModel>& model_contract() {
         using M = IdentifiedModel;
         Description<M> d("Model", "The plant that was found in the record.");
         d.field("plant", &M::plant, only_answered(one_of(plant_contract())), "The model.")
-            .field("fit_percent", &M::fit_percent, only_answered(number()), "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
+            .field("fit_percent", &M::fit_percent, only_answered(number()),
+                   "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
             .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
             .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
             .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
@@ -153,20 +191,45 @@ const Description<ResultAnswer>& result_contract() {
         Description<ResultAnswer> d("TuningResult", "The answer to a tuning request.");
         const auto none = FieldOptions{};
         d.field("units", &ResultAnswer::units, only_answered(maybe(object(units_contract()))), "As sent.")
-            .field("model", {}, [](const ResultAnswer& a, Writer& out) { model_contract().write(*a.result.model, out); },
-                   [](SchemaBook& book) { return model_contract().schema(book); }, "Of a record.", none, [](const ResultAnswer& a) { return !a.result.model; })
-            .field("controllers", {}, [](const ResultAnswer& a, Writer& out) { list_of(answer(entry_contract())).write(a.result.controllers, out); },
-                   list_of(answer(entry_contract())).schema, "One entry a method, in the order asked for; the baseline last.")
-            .field("ranking", {}, [](const ResultAnswer& a, Writer& out) {
-                       out.begin_array();
-                       for (const int index : a.result.ranking) out.integer(index);
-                       out.end_array();
-                   }, [](SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", "integer"}}}}; }, "Indices into controllers, best first; entries without a controller are left out.")
-            .field("ranking_by", {}, [](const ResultAnswer& a, Writer& out) { out.text(a.result.ranking_by); }, words().schema, "What they are ranked by.")
-            .field("partial", {}, [](const ResultAnswer& a, Writer& out) { out.boolean(a.result.partial); }, boolean().schema, "True: cancelled after a feasible design was found; this is the best so far.")
-            .field("version", {}, [](const ResultAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema, "Of the service.")
-            .field("request_hash", &ResultAnswer::request_hash, words(), "SHA-256 of the request in its canonical spelling.")
-            .field("seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); }, [](SchemaBook&) { return Json{{"type", "integer"}}; }, "Of random numbers; no method of this version uses any.");
+            .field(
+                "model", {}, [](const ResultAnswer& a, Writer& out) { model_contract().write(*a.result.model, out); },
+                [](SchemaBook& book) { return model_contract().schema(book); }, "Of a record.", none,
+                [](const ResultAnswer& a) { return !a.result.model; })
+            .field(
+                "controllers", {},
+                [](const ResultAnswer& a, Writer& out) {
+                    list_of(answer(entry_contract())).write(a.result.controllers, out);
+                },
+                list_of(answer(entry_contract())).schema,
+                "One entry a method, in the order asked for; the baseline last.")
+            .field(
+                "ranking", {},
+                [](const ResultAnswer& a, Writer& out) {
+                    out.begin_array();
+                    for (const int index : a.result.ranking) out.integer(index);
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"}, {"items", {{"type", "integer"}}}};
+                },
+                "Indices into controllers, best first; entries without a controller are left out.")
+            .field(
+                "ranking_by", {}, [](const ResultAnswer& a, Writer& out) { out.text(a.result.ranking_by); },
+                words().schema, "What they are ranked by.")
+            .field(
+                "partial", {}, [](const ResultAnswer& a, Writer& out) { out.boolean(a.result.partial); },
+                boolean().schema, "True: cancelled after a feasible design was found; this is the best so far.")
+            .field(
+                "version", {}, [](const ResultAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
+                "Of the service.")
+            .field("request_hash", &ResultAnswer::request_hash, words(),
+                   "SHA-256 of the request in its canonical spelling.")
+            .field(
+                "seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); },
+                [](SchemaBook&) {
+                    return Json{{"type", "integer"}};
+                },
+                "Of random numbers; no method of this version uses any.");
         return d;
     }();
     return description;
@@ -175,7 +238,8 @@ const Description<ResultAnswer>& result_contract() {
 const Description<EvaluateAnswer>& evaluate_answer_contract() {
     static const auto description = [] {
         Description<EvaluateAnswer> d("EvaluateAnswer", "The controllers in the order sent.");
-        d.field("controllers", &EvaluateAnswer::controllers, list_of(answer(entry_contract())), "One entry a controller.");
+        d.field("controllers", &EvaluateAnswer::controllers, list_of(answer(entry_contract())),
+                "One entry a controller.");
         return d;
     }();
     return description;

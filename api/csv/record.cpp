@@ -16,9 +16,34 @@ constexpr std::size_t kMostFaults = 10;
 constexpr std::size_t kShownLength = 40;
 
 // In the order of preference.
-constexpr std::array<std::string_view, 14> kTimeNames = {"t", "time", "timestamp", "date", "datetime", "date time", "date_time", "time stamp", "seconds", "sec", "elapsed", "elapsed time", "zeit", "zeitstempel"};
-constexpr std::array<std::string_view, 21> kInputNames = {"u", "op", "mv", "co", "out", "output", "controller output", "controlleroutput", "manipulated variable", "cv", "input", "valve", "heater", "power", "stellgröße", "y_out", "control", "u(t)", "actuator", "q", "q1"};
-constexpr std::array<std::string_view, 20> kOutputNames = {"y", "pv", "temp", "temperature", "measurement", "process value", "process variable", "processvalue", "measured", "value", "mess", "istwert", "level", "flow", "pressure", "speed", "sensor", "y(t)", "response", "t1"};
+constexpr std::array<std::string_view, 14> kTimeNames = {
+    "t",          "time",    "timestamp", "date",    "datetime",     "date time", "date_time",
+    "time stamp", "seconds", "sec",       "elapsed", "elapsed time", "zeit",      "zeitstempel"};
+constexpr std::array<std::string_view, 21> kInputNames = {"u",
+                                                          "op",
+                                                          "mv",
+                                                          "co",
+                                                          "out",
+                                                          "output",
+                                                          "controller output",
+                                                          "controlleroutput",
+                                                          "manipulated variable",
+                                                          "cv",
+                                                          "input",
+                                                          "valve",
+                                                          "heater",
+                                                          "power",
+                                                          "stellgröße",
+                                                          "y_out",
+                                                          "control",
+                                                          "u(t)",
+                                                          "actuator",
+                                                          "q",
+                                                          "q1"};
+constexpr std::array<std::string_view, 20> kOutputNames = {
+    "y",        "pv",    "temp",     "temperature", "measurement", "process value", "process variable", "processvalue",
+    "measured", "value", "mess",     "istwert",     "level",       "flow",          "pressure",         "speed",
+    "sensor",   "y(t)",  "response", "t1"};
 
 // "PV [degC]", "PV (degC)", "PV / degC" -> "pv" and "degC".
 struct Heading {
@@ -30,14 +55,16 @@ Heading split_heading(std::string_view text) {
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
         const std::size_t start = text.rfind(open);
         if (start != text.npos && start > 0 && text.back() == close) {
-            return {lower_case(trimmed(text.substr(0, start))), std::string(trimmed(text.substr(start + 1, text.size() - start - 2)))};
+            return {lower_case(trimmed(text.substr(0, start))),
+                    std::string(trimmed(text.substr(start + 1, text.size() - start - 2)))};
         }
     }
     if (const std::size_t slash = text.find(" / "); slash != text.npos && slash > 0) {
         return {lower_case(trimmed(text.substr(0, slash))), std::string(trimmed(text.substr(slash + 3)))};
     }
     // time_s, time_ms
-    if (const std::size_t underscore = text.rfind('_'); underscore != text.npos && underscore > 0 && seconds_per(text.substr(underscore + 1))) {
+    if (const std::size_t underscore = text.rfind('_');
+        underscore != text.npos && underscore > 0 && seconds_per(text.substr(underscore + 1))) {
         const std::string stem = lower_case(text.substr(0, underscore));
         if (stem == "t" || stem == "time") return {stem, std::string(text.substr(underscore + 1))};
     }
@@ -47,12 +74,14 @@ Heading split_heading(std::string_view text) {
 // Running numbers that exports put in front.
 bool is_index_heading(std::string_view heading) {
     const std::string name = lower_case(trimmed(heading));
-    return name.empty() || name == "index" || name == "#" || name == "no" || name == "no." || name == "id" || name.rfind("unnamed:", 0) == 0;
+    return name.empty() || name == "index" || name == "#" || name == "no" || name == "no." || name == "id" ||
+           name.rfind("unnamed:", 0) == 0;
 }
 
 std::string quoted(std::string_view text) {
     std::string out(text.substr(0, kShownLength));
-    while (!out.empty() && out.size() == kShownLength && (static_cast<unsigned char>(out.back()) & 0x80)) out.pop_back();
+    while (!out.empty() && out.size() == kShownLength && (static_cast<unsigned char>(out.back()) & 0x80))
+        out.pop_back();
     return "\"" + out + (out.size() < text.size() ? "...\"" : "\"");
 }
 
@@ -70,7 +99,8 @@ struct Role {
     std::span<const std::string_view> plain;
 };
 
-constexpr std::array<Role, 3> kRoles = {{{"t", "time", kTimeNames}, {"u", "the controller output", kInputNames}, {"y", "the measurement", kOutputNames}}};
+constexpr std::array<Role, 3> kRoles = {
+    {{"t", "time", kTimeNames}, {"u", "the controller output", kInputNames}, {"y", "the measurement", kOutputNames}}};
 constexpr std::size_t kTime = 0;
 
 class RecordReader {
@@ -79,8 +109,9 @@ public:
 
     std::variant<CsvRecord, std::vector<CsvFault>> read() {
         if (table_.lines.empty()) {
-            fault("csv", table_.headings.empty() ? "csv is empty; it needs a heading line such as t,u,y and lines of numbers."
-                                                 : "csv has headings but no line of numbers.");
+            fault("csv", table_.headings.empty()
+                             ? "csv is empty; it needs a heading line such as t,u,y and lines of numbers."
+                             : "csv has headings but no line of numbers.");
             return std::move(faults_);
         }
         find_columns();
@@ -99,18 +130,23 @@ private:
         if (faults_.size() < kMostFaults) faults_.push_back({std::move(where), std::move(message)});
     }
 
-    std::size_t width() const { return table_.headings.empty() ? table_.lines.front().cells.size() : table_.headings.size(); }
+    std::size_t width() const {
+        return table_.headings.empty() ? table_.lines.front().cells.size() : table_.headings.size();
+    }
 
     std::optional<int> chosen(std::size_t role, const ColumnChoice& choice) {
         const std::string where = std::string("columns/") + kRoles[role].name;
         if (const int* number = std::get_if<int>(&choice)) {
             if (*number >= 1 && static_cast<std::size_t>(*number) <= width()) return *number - 1;
-            fault(where, std::string(kRoles[role].name) + " is column " + std::to_string(*number) + "; the csv has columns 1 to " + std::to_string(width()) + ".");
+            fault(where, std::string(kRoles[role].name) + " is column " + std::to_string(*number) +
+                             "; the csv has columns 1 to " + std::to_string(width()) + ".");
             return std::nullopt;
         }
         const std::string& name = std::get<std::string>(choice);
         if (table_.headings.empty()) {
-            fault(where, std::string(kRoles[role].name) + " is " + quoted(name) + ", but the first line of the csv has no headings; give column numbers from 1, or add a heading line.");
+            fault(where, std::string(kRoles[role].name) + " is " + quoted(name) +
+                             ", but the first line of the csv has no headings; give column numbers from 1, or add a "
+                             "heading line.");
             return std::nullopt;
         }
         for (std::size_t i = 0; i < table_.headings.size(); ++i) {
@@ -121,12 +157,16 @@ private:
         for (std::size_t i = 0; i < table_.headings.size(); ++i) {
             if (lower_case(table_.headings[i]) != wanted && split_heading(table_.headings[i]).name != wanted) continue;
             if (found) {
-                fault(where, std::string(kRoles[role].name) + " is " + quoted(name) + ", which fits several headings: " + headings_listed(table_) + ". Write the heading in full.");
+                fault(where, std::string(kRoles[role].name) + " is " + quoted(name) +
+                                 ", which fits several headings: " + headings_listed(table_) +
+                                 ". Write the heading in full.");
                 return std::nullopt;
             }
             found = static_cast<int>(i);
         }
-        if (!found) fault(where, std::string(kRoles[role].name) + " is " + quoted(name) + ", which is not a heading; the headings are " + headings_listed(table_) + ".");
+        if (!found)
+            fault(where, std::string(kRoles[role].name) + " is " + quoted(name) +
+                             ", which is not a heading; the headings are " + headings_listed(table_) + ".");
         return found;
     }
 
@@ -144,7 +184,8 @@ private:
     }
 
     void find_columns() {
-        const std::array<const std::optional<ColumnChoice>*, 3> choices = {&options_.columns.t, &options_.columns.u, &options_.columns.y};
+        const std::array<const std::optional<ColumnChoice>*, 3> choices = {&options_.columns.t, &options_.columns.u,
+                                                                           &options_.columns.y};
         for (std::size_t role = 0; role < kRoles.size(); ++role) {
             if (*choices[role]) column_[role] = chosen(role, **choices[role]);
         }
@@ -161,7 +202,9 @@ private:
         for (std::size_t role = 1; role < kRoles.size(); ++role) {
             for (std::size_t other = 0; other < role; ++other) {
                 if (column_[role] && column_[role] == column_[other]) {
-                    fault(std::string("columns/") + kRoles[role].name, std::string(kRoles[role].name) + " and " + kRoles[other].name + " are the same column; choose another.");
+                    fault(std::string("columns/") + kRoles[role].name, std::string(kRoles[role].name) + " and " +
+                                                                           kRoles[other].name +
+                                                                           " are the same column; choose another.");
                 }
             }
         }
@@ -169,7 +212,8 @@ private:
 
     // With two columns named, a single further one that is no index must be the third.
     void take_the_only_one_left() {
-        const auto missing = std::count(column_.begin(), column_.end(), std::nullopt) - (options_.dt && !column_[kTime] ? 1 : 0);
+        const auto missing =
+            std::count(column_.begin(), column_.end(), std::nullopt) - (options_.dt && !column_[kTime] ? 1 : 0);
         if (missing != 1 || table_.headings.empty()) return;
         std::vector<int> free;
         for (std::size_t i = 0; i < table_.headings.size(); ++i) {
@@ -184,15 +228,21 @@ private:
     }
 
     void note(std::size_t role) {
-        record_.notes.push_back(std::string("Column ") + quoted(table_.headings[static_cast<std::size_t>(*column_[role])]) + " is read as " + kRoles[role].name + ", " + kRoles[role].meaning + ".");
+        record_.notes.push_back(std::string("Column ") +
+                                quoted(table_.headings[static_cast<std::size_t>(*column_[role])]) + " is read as " +
+                                kRoles[role].name + ", " + kRoles[role].meaning + ".");
     }
 
     void report_missing(std::size_t role) {
         const std::string name = kRoles[role].name;
         if (table_.headings.empty()) {
-            fault("columns/" + name, "The csv has no headings, so " + name + " (" + kRoles[role].meaning + ") cannot be found; give its column number from 1 in columns." + name + (role == kTime ? ", or dt." : "."));
+            fault("columns/" + name, "The csv has no headings, so " + name + " (" + kRoles[role].meaning +
+                                         ") cannot be found; give its column number from 1 in columns." + name +
+                                         (role == kTime ? ", or dt." : "."));
         } else {
-            fault("columns/" + name, "No heading is plainly " + name + " (" + kRoles[role].meaning + "); name it in columns." + name + (role == kTime ? ", or give dt" : "") + ". The headings are " + headings_listed(table_) + ".");
+            fault("columns/" + name, "No heading is plainly " + name + " (" + kRoles[role].meaning +
+                                         "); name it in columns." + name + (role == kTime ? ", or give dt" : "") +
+                                         ". The headings are " + headings_listed(table_) + ".");
         }
     }
 
@@ -203,10 +253,12 @@ private:
         const auto column = static_cast<std::size_t>(*column_[kTime]);
         const auto& cells = table_.lines.front().cells;
         double number = 0;
-        stamps_ = column < cells.size() && !read_cell_number(cells[column], number) && read_time_stamp(cells[column]).has_value();
+        stamps_ = column < cells.size() && !read_cell_number(cells[column], number) &&
+                  read_time_stamp(cells[column]).has_value();
         if (stamps_) {
             if (!answer) {
-                fault("csv", "The times are time stamps, and units.time is " + quoted(options_.time_unit) + "; it must be a unit that they can be converted to: ms, s, min, h or d.");
+                fault("csv", "The times are time stamps, and units.time is " + quoted(options_.time_unit) +
+                                 "; it must be a unit that they can be converted to: ms, s, min, h or d.");
                 return;
             }
             time_factor_ = 1 / *answer;
@@ -218,7 +270,8 @@ private:
         const auto given = seconds_per(unit);
         if (!given || !answer || *given == *answer) return;
         time_factor_ = *given / *answer;
-        record_.notes.push_back("Times are converted from " + unit + " to " + options_.time_unit + (options_.time_unit_given ? "." : "; set units.time to keep them."));
+        record_.notes.push_back("Times are converted from " + unit + " to " + options_.time_unit +
+                                (options_.time_unit_given ? "." : "; set units.time to keep them."));
     }
 
     void read_lines() {
@@ -231,13 +284,15 @@ private:
             read_line(line, index++);
             if (faults_.size() == kMostFaults) return;
             if (record_.t.size() > options_.most_samples) {
-                return fault("csv", "csv has more than " + std::to_string(options_.most_samples) + " samples; thin it out: a few thousand identify as well.");
+                return fault("csv", "csv has more than " + std::to_string(options_.most_samples) +
+                                        " samples; thin it out: a few thousand identify as well.");
             }
         }
     }
 
     void report_width(const CsvTable::Line& line) {
-        fault("csv", "Line " + std::to_string(line.number) + " has " + std::to_string(line.cells.size()) + " cells and the first line " + std::to_string(width()) +
+        fault("csv", "Line " + std::to_string(line.number) + " has " + std::to_string(line.cells.size()) +
+                         " cells and the first line " + std::to_string(width()) +
                          ". Numbers with a decimal comma need ; or tab as separator, or quotes.");
     }
 
@@ -289,9 +344,12 @@ private:
     }
 
     void report_cell(const CsvTable::Line& line, std::size_t role, std::string_view cell) {
-        const std::string column = table_.headings.empty() ? kRoles[role].name : quoted(table_.headings[static_cast<std::size_t>(*column_[role])]);
+        const std::string column = table_.headings.empty()
+                                       ? kRoles[role].name
+                                       : quoted(table_.headings[static_cast<std::size_t>(*column_[role])]);
         fault("csv", "Line " + std::to_string(line.number) + ", column " + column + ": " + quoted(cell) + " is not " +
-                         (role == kTime && stamps_ ? "a time stamp like the first." : "a number.") + " Mend the line, or leave the cell blank to drop it.");
+                         (role == kTime && stamps_ ? "a time stamp like the first." : "a number.") +
+                         " Mend the line, or leave the cell blank to drop it.");
     }
 
     const CsvOptions& options_;

@@ -18,9 +18,10 @@ struct ColumnChoices {
 
 struct CsvOptions {
     ColumnChoices columns;
-    std::string time_unit = "s";        ///< of the answer
-    bool time_unit_given = false;       ///< false: the unit in the time heading is believed and converted from only if it is not s
-    std::optional<double> dt;           ///< spacing for files without a time column, in time_unit
+    std::string time_unit = "s";  ///< of the answer
+    bool time_unit_given =
+        false;  ///< false: the unit in the time heading is believed and converted from only if it is not s
+    std::optional<double> dt;  ///< spacing for files without a time column, in time_unit
     std::size_t most_samples = 200'000;
 };
 
@@ -36,8 +37,9 @@ struct CsvFault {
     std::string message;
 };
 
-/// Columns that are not chosen are found where the headings are plain (t, time, ...; u, op, mv, ...; y, pv, ...), by name without
-/// case or unit ("PV [degC]"). Time stamps become seconds since the first and then `time_unit`. At most ten faults.
+/// Columns that are not chosen are found where the headings are plain (t, time, ...; u, op, mv, ...; y, pv, ...), by
+/// name without case or unit ("PV [degC]"). Time stamps become seconds since the first and then `time_unit`. At most
+/// ten faults.
 std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view text, const CsvOptions& options);
 
 }  // namespace tunewright::api

@@ -70,7 +70,8 @@ std::string_view unquote(std::string_view cell, std::deque<std::string>& storage
     return trimmed(storage.back());
 }
 
-void split(std::string_view line, char separator, std::vector<std::string_view>& cells, std::deque<std::string>& storage) {
+void split(std::string_view line, char separator, std::vector<std::string_view>& cells,
+           std::deque<std::string>& storage) {
     std::size_t start = 0;
     bool quoted = false;
     for (std::size_t i = 0; i <= line.size(); ++i) {
@@ -113,10 +114,13 @@ std::string lower_case(std::string_view text) {
 
 bool read_cell_number(std::string_view cell, double& value) {
     if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-    if (cell.empty() || !(std::isdigit(static_cast<unsigned char>(cell.front())) || cell.front() == '-' || cell.front() == '.' || cell.front() == ',')) return false;
+    if (cell.empty() || !(std::isdigit(static_cast<unsigned char>(cell.front())) || cell.front() == '-' ||
+                          cell.front() == '.' || cell.front() == ','))
+        return false;
     char buffer[64];
     if (const std::size_t comma = cell.find(','); comma != cell.npos) {
-        if (cell.size() > sizeof buffer || cell.find('.') != cell.npos || cell.find(',', comma + 1) != cell.npos) return false;
+        if (cell.size() > sizeof buffer || cell.find('.') != cell.npos || cell.find(',', comma + 1) != cell.npos)
+            return false;
         std::copy(cell.begin(), cell.end(), buffer);
         buffer[comma] = '.';
         cell = {buffer, cell.size()};
@@ -129,7 +133,8 @@ bool is_missing(std::string_view cell) {
     if (cell.empty() || cell == "-" || cell == "--" || cell == "?") return true;
     constexpr std::size_t kLongest = 8;
     if (cell.size() > kLongest) return false;
-    static constexpr std::array<std::string_view, 10> kMarks = {"nan", "na", "n/a", "null", "none", "#n/a", "#na", "#num!", "#value!", "nil"};
+    static constexpr std::array<std::string_view, 10> kMarks = {"nan",  "na",  "n/a",   "null",    "none",
+                                                                "#n/a", "#na", "#num!", "#value!", "nil"};
     const std::string word = lower_case(cell.front() == '-' ? cell.substr(1) : cell);
     return std::find(kMarks.begin(), kMarks.end(), word) != kMarks.end();
 }
@@ -150,7 +155,8 @@ CsvTable read_table(std::string_view text) {
         split(*line, table.separator, next.cells, table.unquoted);
         if (first && is_text_line(next.cells)) {
             for (const std::string_view cell : next.cells) table.headings.emplace_back(cell);
-        } else if (table.lines.empty() && table.units.number == 0 && !table.headings.empty() && is_text_line(next.cells)) {
+        } else if (table.lines.empty() && table.units.number == 0 && !table.headings.empty() &&
+                   is_text_line(next.cells)) {
             table.units = std::move(next);
         } else {
             table.lines.push_back(std::move(next));

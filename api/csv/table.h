@@ -10,7 +10,7 @@ namespace tunewright::api {
 
 struct CsvTable {
     struct Line {
-        int number = 0;  ///< in the file, from 1
+        int number = 0;                       ///< in the file, from 1
         std::vector<std::string_view> cells;  ///< trimmed, without quotes
     };
 
@@ -18,7 +18,7 @@ struct CsvTable {
     std::vector<std::string> headings;  ///< empty if the first line holds data
     Line units;                         ///< the line below the headings, where it holds no data; number 0: none
     std::vector<Line> lines;
-    std::deque<std::string> unquoted;   ///< storage of cells that held doubled quotes
+    std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
 
     CsvTable() = default;
     CsvTable(const CsvTable&) = delete;  // cells look into `unquoted`
@@ -27,8 +27,9 @@ struct CsvTable {
     CsvTable& operator=(CsvTable&&) = default;
 };
 
-/// Separators , ; and tab, found by the first lines; blank lines and lines that start with # are skipped; a byte order mark is too.
-/// The cells look into `text`, which must outlive the table. Cells in quotes may hold separators, but no line breaks.
+/// Separators , ; and tab, found by the first lines; blank lines and lines that start with # are skipped; a byte order
+/// mark is too. The cells look into `text`, which must outlive the table. Cells in quotes may hold separators, but no
+/// line breaks.
 CsvTable read_table(std::string_view text);
 
 /// A number with decimal point or comma; false for any other text (blank, NaN and Infinity included).

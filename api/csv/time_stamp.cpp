@@ -79,7 +79,8 @@ std::optional<double> take_date(std::string_view& text) {
     if (!month || !take(text, "-/")) return std::nullopt;
     const auto day = take_digits(text, 2);
     if (!day) return std::nullopt;
-    const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(static_cast<unsigned>(*month)), std::chrono::day(static_cast<unsigned>(*day))};
+    const std::chrono::year_month_day date{std::chrono::year(*year), std::chrono::month(static_cast<unsigned>(*month)),
+                                           std::chrono::day(static_cast<unsigned>(*day))};
     if (!date.ok()) return std::nullopt;
     return 86400.0 * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
 }
@@ -87,7 +88,8 @@ std::optional<double> take_date(std::string_view& text) {
 }  // namespace
 
 std::optional<TimeStamp> read_time_stamp(std::string_view text) {
-    if (text.size() < 4 || text.size() > 40 || !std::isdigit(static_cast<unsigned char>(text.front()))) return std::nullopt;
+    if (text.size() < 4 || text.size() > 40 || !std::isdigit(static_cast<unsigned char>(text.front())))
+        return std::nullopt;
     std::string_view rest = text;
     TimeStamp stamp;
     if (const auto date = take_date(rest)) {
@@ -106,10 +108,32 @@ std::optional<TimeStamp> read_time_stamp(std::string_view text) {
 }
 
 std::optional<double> seconds_per(std::string_view unit) {
-    static constexpr std::array<std::pair<std::string_view, double>, 26> kUnits = {{
-        {"s", 1}, {"sec", 1}, {"secs", 1}, {"second", 1}, {"seconds", 1}, {"ms", 1e-3}, {"msec", 1e-3}, {"millisecond", 1e-3}, {"milliseconds", 1e-3},
-        {"us", 1e-6}, {"usec", 1e-6}, {"microseconds", 1e-6}, {"ns", 1e-9}, {"min", 60}, {"mins", 60}, {"minute", 60}, {"minutes", 60}, {"m", 60},
-        {"h", 3600}, {"hr", 3600}, {"hrs", 3600}, {"hour", 3600}, {"hours", 3600}, {"d", 86400}, {"day", 86400}, {"days", 86400}}};
+    static constexpr std::array<std::pair<std::string_view, double>, 26> kUnits = {{{"s", 1},
+                                                                                    {"sec", 1},
+                                                                                    {"secs", 1},
+                                                                                    {"second", 1},
+                                                                                    {"seconds", 1},
+                                                                                    {"ms", 1e-3},
+                                                                                    {"msec", 1e-3},
+                                                                                    {"millisecond", 1e-3},
+                                                                                    {"milliseconds", 1e-3},
+                                                                                    {"us", 1e-6},
+                                                                                    {"usec", 1e-6},
+                                                                                    {"microseconds", 1e-6},
+                                                                                    {"ns", 1e-9},
+                                                                                    {"min", 60},
+                                                                                    {"mins", 60},
+                                                                                    {"minute", 60},
+                                                                                    {"minutes", 60},
+                                                                                    {"m", 60},
+                                                                                    {"h", 3600},
+                                                                                    {"hr", 3600},
+                                                                                    {"hrs", 3600},
+                                                                                    {"hour", 3600},
+                                                                                    {"hours", 3600},
+                                                                                    {"d", 86400},
+                                                                                    {"day", 86400},
+                                                                                    {"days", 86400}}};
     std::string lower;
     for (const char c : unit) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     for (const auto& [name, seconds] : kUnits) {

@@ -26,8 +26,10 @@ std::string cure_for(const Json& value) {
 
 std::string broken_rule(double value, const NumberRule& rule) {
     if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
-    const bool low = (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
-    const bool high = (rule.maximum && value > *rule.maximum) || (rule.exclusive_maximum && value >= *rule.exclusive_maximum);
+    const bool low =
+        (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
+    const bool high =
+        (rule.maximum && value > *rule.maximum) || (rule.exclusive_maximum && value >= *rule.exclusive_maximum);
     if (low || high) {
         std::string text;
         if (rule.minimum) text = ">= " + full_digits(*rule.minimum);
@@ -44,7 +46,9 @@ std::string broken_rule(double value, const NumberRule& rule) {
 }  // namespace
 
 std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader) {
-    const std::string what = value.is_null() ? "null" : value.is_structured() ? kind_of(value) : shown(value) + ", " + kind_of(value);
+    const std::string what = value.is_null()         ? "null"
+                             : value.is_structured() ? kind_of(value)
+                                                     : shown(value) + ", " + kind_of(value);
     return reader.name() + " is " + what + "; it must be " + wanted + "." + cure_for(value);
 }
 
@@ -55,7 +59,8 @@ std::optional<double> read_number(const Json& value, const NumberRule& rule, Rea
     }
     const double number = value.get<double>();
     if (const std::string broken = broken_rule(number, rule); !broken.empty()) {
-        reader.fault(reader.name() + " is " + full_digits(number) + "; it must be " + broken + "." + (rule.cure.empty() ? "" : " " + rule.cure));
+        reader.fault(reader.name() + " is " + full_digits(number) + "; it must be " + broken + "." +
+                     (rule.cure.empty() ? "" : " " + rule.cure));
         return std::nullopt;
     }
     return number;
@@ -75,7 +80,8 @@ Codec<double> number(NumberRule rule) {
     return {[rule](const Json& value, double& target, Reader& reader) {
                 if (const auto read = read_number(value, rule, reader)) target = *read;
             },
-            [](const double& value, Writer& out) { out.number(value); }, [rule](SchemaBook&) { return number_schema(rule); }};
+            [](const double& value, Writer& out) { out.number(value); },
+            [rule](SchemaBook&) { return number_schema(rule); }};
 }
 
 Codec<int> integer(int minimum, int maximum) {
@@ -83,7 +89,8 @@ Codec<int> integer(int minimum, int maximum) {
     return {[rule](const Json& value, int& target, Reader& reader) {
                 const auto read = read_number(value, rule, reader);
                 if (!read) return;
-                if (*read != std::trunc(*read)) return reader.fault(reader.name() + " is " + shown(value) + "; it must be a whole number.");
+                if (*read != std::trunc(*read))
+                    return reader.fault(reader.name() + " is " + shown(value) + "; it must be a whole number.");
                 target = static_cast<int>(*read);
             },
             [](const int& value, Writer& out) { out.integer(value); },
@@ -99,7 +106,10 @@ Codec<bool> boolean() {
                 if (!value.is_boolean()) return reader.fault(wrong_kind(value, "true or false", reader));
                 target = value.get<bool>();
             },
-            [](const bool& value, Writer& out) { out.boolean(value); }, [](SchemaBook&) { return Json{{"type", "boolean"}}; }};
+            [](const bool& value, Writer& out) { out.boolean(value); },
+            [](SchemaBook&) {
+                return Json{{"type", "boolean"}};
+            }};
 }
 
 Codec<std::string> text(std::size_t longest) {
@@ -107,12 +117,15 @@ Codec<std::string> text(std::size_t longest) {
                 if (!value.is_string()) return reader.fault(wrong_kind(value, "a text", reader));
                 const auto& content = value.get_ref<const std::string&>();
                 if (content.size() > longest) {
-                    return reader.fault(reader.name() + " has " + std::to_string(content.size()) + " bytes; it must have at most " + std::to_string(longest) + ".");
+                    return reader.fault(reader.name() + " has " + std::to_string(content.size()) +
+                                        " bytes; it must have at most " + std::to_string(longest) + ".");
                 }
                 target = content;
             },
             [](const std::string& value, Writer& out) { out.text(value); },
-            [longest](SchemaBook&) { return Json{{"type", "string"}, {"maxLength", longest}}; }};
+            [longest](SchemaBook&) {
+                return Json{{"type", "string"}, {"maxLength", longest}};
+            }};
 }
 
 Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null) {
@@ -137,8 +150,9 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRu
     return {[least, most, rule](const Json& value, std::vector<double>& target, Reader& reader) {
                 if (!value.is_array()) return reader.fault(wrong_kind(value, "an array of numbers", reader));
                 if (value.size() < least || value.size() > most) {
-                    return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " numbers; it must have " +
-                                        std::to_string(least) + " to " + std::to_string(most) + "." + (rule.cure.empty() ? "" : " " + rule.cure));
+                    return reader.fault(reader.name() + " has " + std::to_string(value.size()) +
+                                        " numbers; it must have " + std::to_string(least) + " to " +
+                                        std::to_string(most) + "." + (rule.cure.empty() ? "" : " " + rule.cure));
                 }
                 target.assign(value.size(), 0);
                 const std::size_t before = reader.count();
@@ -160,13 +174,17 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRu
 Codec<std::vector<double>> trace() {
     return {{},
             [](const std::vector<double>& values, Writer& out) { out.trace(values); },
-            [](SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}; }};
+            [](SchemaBook&) {
+                return Json{{"type", "array"}, {"items", {{"type", {"number", "null"}}}}};
+            }};
 }
 
 Codec<std::optional<double>> figure() {
     return {{},
             [](const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); },
-            [](SchemaBook&) { return Json{{"type", {"number", "null"}}}; },
+            [](SchemaBook&) {
+                return Json{{"type", {"number", "null"}}};
+            },
             {},
             [](const std::optional<double>& value) { return !value || !std::isfinite(*value); }};
 }
@@ -174,7 +192,9 @@ Codec<std::optional<double>> figure() {
 Codec<std::optional<bool>> truth_figure() {
     return {{},
             [](const std::optional<bool>& value, Writer& out) { value ? out.boolean(*value) : out.null(); },
-            [](SchemaBook&) { return Json{{"type", {"boolean", "null"}}}; },
+            [](SchemaBook&) {
+                return Json{{"type", {"boolean", "null"}}};
+            },
             {},
             [](const std::optional<bool>& value) { return !value.has_value(); }};
 }
@@ -190,7 +210,9 @@ Codec<std::map<std::string, double>> numbers_by_name(std::string keys) {
                 out.end_object();
             },
             [keys](SchemaBook&) {
-                return Json{{"type", "object"}, {"propertyNames", {{"description", keys}}}, {"additionalProperties", {{"type", {"number", "null"}}}}};
+                return Json{{"type", "object"},
+                            {"propertyNames", {{"description", keys}}},
+                            {"additionalProperties", {{"type", {"number", "null"}}}}};
             }};
 }
 

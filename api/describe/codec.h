@@ -23,11 +23,11 @@ struct SchemaBook {
 /// One kind of value. Reading leaves the target alone and reports to the reader where the value is not valid.
 template <class T>
 struct Codec {
-    std::function<void(const Json&, T&, Reader&)> read;     ///< empty: only in answers
+    std::function<void(const Json&, T&, Reader&)> read;  ///< empty: only in answers
     std::function<void(const T&, Writer&)> write;
     std::function<Json(SchemaBook&)> schema;
-    std::function<bool(const T&)> skip = {};                ///< true: the member is left out when written; empty: never
-    std::function<bool(const T&)> undefined = {};           ///< true: written as null, which `why_null` has to explain
+    std::function<bool(const T&)> skip = {};       ///< true: the member is left out when written; empty: never
+    std::function<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
 };
 
 /// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite.
@@ -121,8 +121,9 @@ Codec<std::vector<T>> list_of(Codec<T> inner, std::size_t least = 0, std::size_t
         codec.read = [read = inner.read, least, most](const Json& value, std::vector<T>& target, Reader& reader) {
             if (!value.is_array()) return reader.fault(wrong_kind(value, "an array", reader));
             if (value.size() < least || value.size() > most) {
-                return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; it must have " +
-                                    std::to_string(least) + " to " + std::to_string(most) + ".");
+                return reader.fault(reader.name() + " has " + std::to_string(value.size()) +
+                                    " elements; it must have " + std::to_string(least) + " to " + std::to_string(most) +
+                                    ".");
             }
             target.clear();
             target.reserve(value.size());

@@ -12,9 +12,9 @@ namespace tunewright::api {
 
 struct FieldOptions {
     bool required = false;
-    std::string unit = {};      ///< "time", "1/time", "u/y", ... in the user's units
-    bool answer_only = false;   ///< accepted and ignored in requests, so that an answer can be sent back
-    bool no_default = false;    ///< the default is told by the sentence, not by the member's initial value
+    std::string unit = {};     ///< "time", "1/time", "u/y", ... in the user's units
+    bool answer_only = false;  ///< accepted and ignored in requests, so that an answer can be sent back
+    bool no_default = false;   ///< the default is told by the sentence, not by the member's initial value
 };
 
 /// `T` default-constructed holds the contract's defaults.
@@ -25,7 +25,8 @@ public:
 
     Description(std::string name, std::string sentence) : name_(std::move(name)), sentence_(std::move(sentence)) {}
 
-    /// A member with a fixed value that tells the type: "type": "fopdt". Not `required`: it is what a missing word stands for.
+    /// A member with a fixed value that tells the type: "type": "fopdt". Not `required`: it is what a missing word
+    /// stands for.
     Description& tag(std::string field, std::string value, bool required = true) {
         tag_required_ = required;
         tag_field_ = std::move(field);
@@ -35,15 +36,20 @@ public:
     }
 
     template <class M>
-    Description& field(std::string name, M T::*member, Codec<M> codec, std::string sentence, FieldOptions options = {}) {
+    Description& field(std::string name, M T::*member, Codec<M> codec, std::string sentence,
+                       FieldOptions options = {}) {
         Field out{name, std::move(sentence), options, {}, {}, codec.schema, {}, {}, {}};
         if (codec.read) {
-            out.read = [member, read = codec.read](const Json& value, T& target, Reader& reader) { read(value, target.*member, reader); };
+            out.read = [member, read = codec.read](const Json& value, T& target, Reader& reader) {
+                read(value, target.*member, reader);
+            };
         }
         out.write = [member, write = codec.write](const T& value, Writer& writer) { write(value.*member, writer); };
         if (codec.skip) out.skip = [member, skip = codec.skip](const T& value) { return skip(value.*member); };
-        if (codec.undefined) out.undefined = [member, undefined = codec.undefined](const T& value) { return undefined(value.*member); };
-        if (codec.read && !options.required && !options.answer_only && !options.no_default && !(codec.skip && codec.skip(T{}.*member))) {
+        if (codec.undefined)
+            out.undefined = [member, undefined = codec.undefined](const T& value) { return undefined(value.*member); };
+        if (codec.read && !options.required && !options.answer_only && !options.no_default &&
+            !(codec.skip && codec.skip(T{}.*member))) {
             Writer initial;
             codec.write(T{}.*member, initial);
             out.initial = initial.take();
@@ -52,9 +58,18 @@ public:
     }
 
     /// A member whose meaning depends on its neighbours. `read` may be empty (answers), `write` too (requests).
-    Description& field(std::string name, Check read, std::function<void(const T&, Writer&)> write, std::function<Json(SchemaBook&)> schema,
-                       std::string sentence, FieldOptions options = {}, std::function<bool(const T&)> skip = {}) {
-        return add({name, std::move(sentence), options, std::move(read), std::move(write), std::move(schema), std::move(skip), {}, {}});
+    Description& field(std::string name, Check read, std::function<void(const T&, Writer&)> write,
+                       std::function<Json(SchemaBook&)> schema, std::string sentence, FieldOptions options = {},
+                       std::function<bool(const T&)> skip = {}) {
+        return add({name,
+                    std::move(sentence),
+                    options,
+                    std::move(read),
+                    std::move(write),
+                    std::move(schema),
+                    std::move(skip),
+                    {},
+                    {}});
     }
 
     /// A rule over several members; runs when each of them could be read.
@@ -104,7 +119,8 @@ public:
         for (const Field& field : fields_) {
             const auto at = value.find(field.name);
             if (at == value.end()) {
-                if (field.options.required) reader.fault_at(field.name, field.name + " is missing; " + first_lower(field.sentence));
+                if (field.options.required)
+                    reader.fault_at(field.name, field.name + " is missing; " + first_lower(field.sentence));
             } else if (field.read && !field.options.answer_only) {
                 const Reader::At place(reader, field.name);
                 field.read(*at, target, reader);
@@ -169,7 +185,9 @@ private:
             if (given == name) return;
         }
         const std::string meant = nearest(given, names_);
-        reader.fault_at(given, given + " is not a field here; " + (meant.empty() ? "known are " + listed(names_, "and") + "." : "did you mean " + meant + "?"));
+        reader.fault_at(
+            given, given + " is not a field here; " +
+                       (meant.empty() ? "known are " + listed(names_, "and") + "." : "did you mean " + meant + "?"));
     }
 
     void write_reasons(const WhyNull& reasons, const std::vector<const Field*>& undefined, Writer& out) const {
@@ -202,9 +220,12 @@ private:
             if (reads ? field.options.required : !field.skip) required.push_back(field.name);
         }
         if (reasons_) {
-            properties["why_null"] = {{"type", "object"}, {"description", "Field -> why it is null."}, {"additionalProperties", {{"type", "string"}}}};
+            properties["why_null"] = {{"type", "object"},
+                                      {"description", "Field -> why it is null."},
+                                      {"additionalProperties", {{"type", "string"}}}};
         }
-        Json out{{"type", "object"}, {"title", name_}, {"description", sentence_}, {"properties", std::move(properties)}};
+        Json out{
+            {"type", "object"}, {"title", name_}, {"description", sentence_}, {"properties", std::move(properties)}};
         if (!required.empty()) out["required"] = std::move(required);
         out["additionalProperties"] = false;
         if (!example_.is_null()) out["examples"] = Json::array({example_});
@@ -215,7 +236,10 @@ private:
         const std::size_t end = sentence.find('.');
         std::string first = end == sentence.npos ? sentence + "." : sentence.substr(0, end + 1);
         const bool symbol = first.size() > 1 && (first[1] < 'a' || first[1] > 'z');
-        return "it is required: " + (symbol ? first : std::string(1, static_cast<char>(std::tolower(static_cast<unsigned char>(first[0])))) + first.substr(1));
+        return "it is required: " +
+               (symbol ? first
+                       : std::string(1, static_cast<char>(std::tolower(static_cast<unsigned char>(first[0])))) +
+                             first.substr(1));
     }
 
     std::string name_, sentence_, tag_field_, tag_value_;
@@ -234,7 +258,8 @@ template <class T>
 Codec<T> object(const Description<T>& description) {
     const Description<T>* what = &description;
     return {[what](const Json& value, T& target, Reader& reader) { what->read(value, target, reader); },
-            [what](const T& value, Writer& out) { what->write(value, out); }, [what](SchemaBook& book) { return what->schema(book); }};
+            [what](const T& value, Writer& out) { what->write(value, out); },
+            [what](SchemaBook& book) { return what->schema(book); }};
 }
 
 /// The same for types that only answers carry.

@@ -38,9 +38,10 @@ std::optional<Problem> Reader::problem() const {
     if (count_ == 1) {
         problem.detail = faults_.front().detail;
     } else {
-        problem.detail = std::to_string(count_) + " values need mending" +
-                         (count_ > faults_.size() ? ", the first " + std::to_string(faults_.size()) + " are listed" : "") +
-                         ". The first: " + faults_.front().detail;
+        problem.detail =
+            std::to_string(count_) + " values need mending" +
+            (count_ > faults_.size() ? ", the first " + std::to_string(faults_.size()) + " are listed" : "") +
+            ". The first: " + faults_.front().detail;
     }
     return problem;
 }

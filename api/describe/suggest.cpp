@@ -24,18 +24,44 @@ std::size_t distance(std::string_view a, std::string_view b) {
         row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
             row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
         before = std::exchange(last, row);
     }
     return last[b.size()];
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 30> kSynonyms = {{
-    {"deadtime", "L"}, {"delay", "L"}, {"theta", "L"}, {"timedelay", "L"}, {"gain", "K"}, {"tau", "T"}, {"timeconstant", "T"}, {"tau1", "T1"},
-    {"tau2", "T2"}, {"numerator", "num"}, {"denominator", "den"}, {"z", "zeros"}, {"p", "poles"}, {"k", "Kp"}, {"kc", "Kp"}, {"gain", "Kp"},
-    {"p", "Kp"}, {"i", "Ki"}, {"d", "Kd"}, {"beta", "b"}, {"gamma", "c"}, {"process", "plant"}, {"model", "plant"}, {"methods", "tune"},
-    {"controller", "controllers"}, {"controllers", "baseline"}, {"data", "record"}, {"time", "t"}, {"timeout", "timeout_s"}, {"damping", "zeta"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 30> kSynonyms = {{{"deadtime", "L"},
+                                                                                      {"delay", "L"},
+                                                                                      {"theta", "L"},
+                                                                                      {"timedelay", "L"},
+                                                                                      {"gain", "K"},
+                                                                                      {"tau", "T"},
+                                                                                      {"timeconstant", "T"},
+                                                                                      {"tau1", "T1"},
+                                                                                      {"tau2", "T2"},
+                                                                                      {"numerator", "num"},
+                                                                                      {"denominator", "den"},
+                                                                                      {"z", "zeros"},
+                                                                                      {"p", "poles"},
+                                                                                      {"k", "Kp"},
+                                                                                      {"kc", "Kp"},
+                                                                                      {"gain", "Kp"},
+                                                                                      {"p", "Kp"},
+                                                                                      {"i", "Ki"},
+                                                                                      {"d", "Kd"},
+                                                                                      {"beta", "b"},
+                                                                                      {"gamma", "c"},
+                                                                                      {"process", "plant"},
+                                                                                      {"model", "plant"},
+                                                                                      {"methods", "tune"},
+                                                                                      {"controller", "controllers"},
+                                                                                      {"controllers", "baseline"},
+                                                                                      {"data", "record"},
+                                                                                      {"time", "t"},
+                                                                                      {"timeout", "timeout_s"},
+                                                                                      {"damping", "zeta"}}};
 
 }  // namespace
 
@@ -47,7 +73,8 @@ std::string nearest(std::string_view name, std::span<const std::string> candidat
         if (folded(candidate) == wanted) return candidate;
     }
     for (const auto& [synonym, meant] : kSynonyms) {
-        if (synonym == wanted && std::find(candidates.begin(), candidates.end(), meant) != candidates.end()) return std::string(meant);
+        if (synonym == wanted && std::find(candidates.begin(), candidates.end(), meant) != candidates.end())
+            return std::string(meant);
     }
     std::string best;
     std::size_t least = wanted.size() <= 2 ? 0 : wanted.size() <= 4 ? 1 : 2;

@@ -8,8 +8,8 @@
 
 namespace tunewright::api {
 
-/// The candidate nearest to `name` (other case, one or two letters changed, or a common synonym such as "dead_time" for L);
-/// empty if none is near.
+/// The candidate nearest to `name` (other case, one or two letters changed, or a common synonym such as "dead_time" for
+/// L); empty if none is near.
 std::string nearest(std::string_view name, std::span<const std::string> candidates);
 
 /// "a, b or c".

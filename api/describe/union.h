@@ -13,7 +13,10 @@ class Union {
 public:
     /// `otherwise` is the word that a missing tag stands for; empty: the tag is required.
     Union(std::string name, std::string sentence, std::string tag, std::string otherwise = {})
-        : name_(std::move(name)), sentence_(std::move(sentence)), tag_(std::move(tag)), otherwise_(std::move(otherwise)) {}
+        : name_(std::move(name)),
+          sentence_(std::move(sentence)),
+          tag_(std::move(tag)),
+          otherwise_(std::move(otherwise)) {}
 
     /// Alternatives of one word are tried in order: the first whose `matches` holds (empty: always) is taken.
     template <class T>
@@ -48,14 +51,16 @@ public:
         const Json word = at == value.end() ? Json(otherwise_) : *at;
         if (word.is_string()) {
             for (const Alternative& alternative : alternatives_) {
-                if (word == alternative.word && (!alternative.matches || alternative.matches(value))) return alternative.read(value, target, reader);
+                if (word == alternative.word && (!alternative.matches || alternative.matches(value)))
+                    return alternative.read(value, target, reader);
             }
             for (const auto& [name, sentence] : refused_) {
                 if (word == name) return reader.fault_at(tag_, sentence);
             }
         }
         const std::string meant = word.is_string() ? nearest(word.get_ref<const std::string&>(), words_) : "";
-        reader.fault_at(tag_, tag_ + " is " + shown(word) + "; it must be " + listed(words_) + "." + (meant.empty() ? "" : " Did you mean " + meant + "?"));
+        reader.fault_at(tag_, tag_ + " is " + shown(word) + "; it must be " + listed(words_) + "." +
+                                  (meant.empty() ? "" : " Did you mean " + meant + "?"));
     }
 
     void write(const V& value, Writer& out) const {
@@ -91,7 +96,8 @@ template <class V>
 Codec<V> one_of(const Union<V>& choices) {
     const Union<V>* what = &choices;
     return {[what](const Json& value, V& target, Reader& reader) { what->read(value, target, reader); },
-            [what](const V& value, Writer& out) { what->write(value, out); }, [what](SchemaBook& book) { return what->schema(book); }};
+            [what](const V& value, Writer& out) { what->write(value, out); },
+            [what](SchemaBook& book) { return what->schema(book); }};
 }
 
 }  // namespace tunewright::api

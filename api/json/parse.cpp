@@ -48,21 +48,27 @@ public:
             return false;
         }
         if (object.size() >= kMaxMembers) {
-            problem_ = refused(pointer(), "The object has more than " + std::to_string(kMaxMembers) + " members; none of the contract needs so many.");
+            problem_ = refused(pointer(), "The object has more than " + std::to_string(kMaxMembers) +
+                                              " members; none of the contract needs so many.");
             return false;
         }
         names_.back() = name;
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& error) override {
+    bool parse_error(std::size_t position, const std::string& token,
+                     const nlohmann::detail::exception& error) override {
         constexpr int kNumberOverflow = 406;
         if (error.id == kNumberOverflow) {
-            problem_ = refused(pointer_of_next(), "The number " + token.substr(0, 40) + " is too large; it must fit a double (up to 1.8e308).");
+            problem_ = refused(pointer_of_next(), "The number " + token.substr(0, 40) +
+                                                      " is too large; it must fit a double (up to 1.8e308).");
         } else if (text_.find_first_not_of(" \t\r\n") == text_.npos) {
-            problem_ = not_json("The body is empty; send a JSON object such as {\"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}}.");
+            problem_ = not_json(
+                "The body is empty; send a JSON object such as {\"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, "
+                "\"L\": 3}}.");
         } else {
-            problem_ = not_json("The body is not JSON: the text at " + place(text_, position) + " cannot be read" + hint(position) + ".");
+            problem_ = not_json("The body is not JSON: the text at " + place(text_, position) + " cannot be read" +
+                                hint(position) + ".");
         }
         return false;
     }
@@ -76,11 +82,13 @@ private:
         const std::size_t from = position > 12 ? position - 12 : 0;
         const std::string_view around = text_.substr(from, 24);
         for (const char* word : {"NaN", "Infinity", "nan", "inf"}) {
-            if (around.find(word) != around.npos) return " (JSON has no NaN or Infinity: leave the field out or write a number)";
+            if (around.find(word) != around.npos)
+                return " (JSON has no NaN or Infinity: leave the field out or write a number)";
         }
         if (around.find('\'') != around.npos) return " (texts stand in double quotes)";
         if (position > text_.size()) return " (it ends too early: a bracket or quote is not closed)";
-        if (around.find(",}") != around.npos || around.find(",]") != around.npos) return " (no comma after the last element)";
+        if (around.find(",}") != around.npos || around.find(",]") != around.npos)
+            return " (no comma after the last element)";
         return "";
     }
 
@@ -108,7 +116,8 @@ private:
 
     bool open(Json container) {
         if (stack_.size() >= kMaxDepth) {
-            problem_ = refused(pointer(), "Objects and arrays are nested more than " + std::to_string(kMaxDepth) + " deep; the contract needs 6.");
+            problem_ = refused(pointer(), "Objects and arrays are nested more than " + std::to_string(kMaxDepth) +
+                                              " deep; the contract needs 6.");
             return false;
         }
         stack_.push_back(place_value(std::move(container)));
@@ -175,9 +184,14 @@ void write_canonical(const Json& value, Writer& out) {
 
 std::variant<Json, Problem> parse(std::string_view text) {
     if (text.size() > kMaxBodyBytes) {
-        return Problem{413, "too-large", "The body is too large",
-                       "The body has " + std::to_string(text.size()) + " bytes; at most " + std::to_string(kMaxBodyBytes) +
-                           " are accepted. Thin out the record: a few thousand samples identify as well.", {}, {}};
+        return Problem{413,
+                       "too-large",
+                       "The body is too large",
+                       "The body has " + std::to_string(text.size()) + " bytes; at most " +
+                           std::to_string(kMaxBodyBytes) +
+                           " are accepted. Thin out the record: a few thousand samples identify as well.",
+                       {},
+                       {}};
     }
     TreeBuilder builder(text);
     if (Json::sax_parse(text.begin(), text.end(), &builder)) return builder.take();
@@ -211,9 +225,12 @@ std::string canonical(const Json& value) {
 std::string pointer_segment(std::string_view name) {
     std::string out;
     for (const char c : name) {
-        if (c == '~') out += "~0";
-        else if (c == '/') out += "~1";
-        else out += c;
+        if (c == '~')
+            out += "~0";
+        else if (c == '/')
+            out += "~1";
+        else
+            out += c;
     }
     return out;
 }

@@ -32,8 +32,8 @@ struct PowersOfTen {
     double operator()(int exponent) const { return value[static_cast<std::size_t>(exponent + kMax)]; }
 };
 
-// The six digits as an integer in [100000, 999999] and the decimal exponent of the first one. The scaling rounds once more, so a
-// value within 1e-15 relative of a tie may go to either side.
+// The six digits as an integer in [100000, 999999] and the decimal exponent of the first one. The scaling rounds once
+// more, so a value within 1e-15 relative of a tie may go to either side.
 struct SixDigits {
     std::uint32_t digits;
     int exponent;
@@ -63,7 +63,8 @@ char* write_six(char* at, char* end, double value) {
         return at + 1;
     }
     const double magnitude = std::abs(value);
-    if (magnitude < 1e-280 || magnitude > 1e280) return std::to_chars(at, end, value, std::chars_format::general, 6).ptr;
+    if (magnitude < 1e-280 || magnitude > 1e280)
+        return std::to_chars(at, end, value, std::chars_format::general, 6).ptr;
     if (value < 0) *at++ = '-';
     auto [digits, exponent] = split(magnitude);
     char text[6];

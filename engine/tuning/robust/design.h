@@ -1,0 +1,61 @@
+// The robust design problem: a plant, limits on the loop's peaks, a filter rule, and the controller's free parameters
+// in logarithms.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "engine/controller/pid.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright::robust {
+
+enum class Objective { load_iae, load_ie, setpoint_iae, weighted };
+
+/// Tf as a fixed time or as a fraction of Td; neither: no filter (PI).
+struct FilterRule {
+    std::optional<double> Tf;
+    std::optional<double> Tf_over_Td;
+};
+
+struct Limits {
+    double Ms = 1.4;
+    double Mt = 1.4;
+    std::optional<double> Mks;
+    bool m_circle = false;  ///< one circle around the circles of Ms and Mt in their place
+};
+
+/// Logarithms of |Kp|, Ti, Td. PI uses the first two.
+using Point = std::array<double, 3>;
+
+struct Problem {
+    const LinearPlant* plant = nullptr;
+    bool pid = true;
+    double sign = 1;  ///< of Kp
+    FilterRule filter;
+    Limits limits;
+    Objective objective = Objective::load_iae;
+    double rho = 0.5;         ///< weight of the load in `weighted`
+    double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`
+    double setpoint_optimum = 1;
+
+    int dimension() const { return pid ? 3 : 2; }
+};
+
+inline double filter_time(const Problem& problem, double Td) {
+    if (problem.filter.Tf) return *problem.filter.Tf;
+    return problem.filter.Tf_over_Td ? *problem.filter.Tf_over_Td * Td : 0;
+}
+
+inline Pid controller_at(const Problem& problem, const Point& x) {
+    Pid pid;
+    pid.Kp = problem.sign * std::exp(x[0]);
+    pid.Ti = std::exp(x[1]);
+    pid.Td = problem.pid ? std::exp(x[2]) : 0;
+    const double Tf = filter_time(problem, pid.Td);
+    if (Tf > 0) pid.filter = {FilterType::measurement_second_order, Tf};
+    return pid;
+}
+
+}  // namespace tunewright::robust

@@ -1,0 +1,80 @@
+#include "engine/tuning/robust/scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/loop/stability.h"
+#include "engine/tuning/robust/cost.h"
+#include "engine/tuning/robust/sqp.h"
+
+namespace tunewright::robust {
+namespace {
+
+// Around the reference frequency: what optimal designs of lag-dominant to dead-time-dominant and oscillatory plants
+// use.
+constexpr double kTiLow = 0.2, kTiHigh = 60;
+constexpr double kTdLow = 0.02, kTdHigh = 8;
+
+std::vector<double> spaced(double low, double high, int n) {
+    std::vector<double> values;
+    for (int i = 0; i < n; ++i) values.push_back(low * std::pow(high / low, n > 1 ? double(i) / (n - 1) : 0.5));
+    return values;
+}
+
+/// A stable plant with an integral of the right sign is stable at low gain, so the first gap needs no count.
+bool first_gap_is_stable(const Problem& problem) {
+    const LinearPlant& plant = *problem.plant;
+    if (plant.integrators() != 0 || plant.unstable_poles() != 0) return false;
+    for (const auto pole : plant.poles())
+        if (pole.real() > -1e-9 * std::abs(pole)) return false;
+    return problem.sign * plant.low_frequency_gain() > 0;
+}
+
+}  // namespace
+
+std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
+    const Problem& problem = sweep.problem();
+    const auto gaps = sweep.gain_gaps(Ti, Td);
+    std::vector<double> gains;
+    const bool first_is_stable = first_gap_is_stable(problem);
+    for (std::size_t i = gaps.size(); i-- > 0;) {
+        const GainGap& gap = gaps[i];
+        if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + 1e-9)) continue;
+        const double middle = gap.lower > 0 ? std::sqrt(gap.lower * gap.upper) : 0.5 * gap.upper;
+        const bool known = gap.lower == 0 && first_is_stable;
+        if (!known && !is_stable(problem, {std::log(middle), std::log(Ti), problem.pid ? std::log(Td) : 0})) continue;
+        gains.push_back(gap.upper * (1 - 1e-9));
+        if (gap.lower > 0) gains.push_back(gap.lower * (1 + 1e-9));
+    }
+    return gains;
+}
+
+std::optional<ScanPoint> scan(const Sweep& sweep, const ScanOptions& options) {
+    const Problem& problem = sweep.problem();
+    const double unit = 1 / sweep.reference();
+    std::vector<ScanPoint> found;
+    const auto Td_values =
+        problem.pid ? spaced(kTdLow * unit, kTdHigh * unit, options.Td_points) : std::vector<double>{1.0};
+    for (const double Ti : spaced(kTiLow * unit, kTiHigh * unit, options.Ti_points))
+        for (const double Td : Td_values) {
+            const auto gains = feasible_gains(sweep, Ti, Td);
+            if (gains.empty()) continue;
+            const double Kp = *std::max_element(gains.begin(), gains.end());
+            found.push_back({{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp)});
+        }
+    if (found.empty()) return std::nullopt;
+    std::sort(found.begin(), found.end(),
+              [](const ScanPoint& a, const ScanPoint& b) { return a.log_cost < b.log_cost; });
+    if (!options.cost || problem.objective == Objective::load_ie) return found.front();
+    const bool bounded = problem.objective == Objective::load_iae;
+    ScanPoint best{{}, std::numeric_limits<double>::infinity()};
+    for (const auto& point : found) {
+        if (bounded && point.log_cost >= best.log_cost) break;
+        const double cost = log_cost(problem, point.x, options.simulation_tolerance);
+        if (cost < best.log_cost) best = {point.x, cost};
+    }
+    return std::isfinite(best.log_cost) ? std::optional<ScanPoint>(best) : std::nullopt;
+}
+
+}  // namespace tunewright::robust

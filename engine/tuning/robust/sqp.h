@@ -1,0 +1,41 @@
+// Sequential quadratic programming over the logarithms of (Kp, Ti, Td): every iterate is feasible, so it can be stopped
+// at any time.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "engine/tuning/robust/cost.h"
+#include "engine/tuning/robust/sweep.h"
+
+namespace tunewright::robust {
+
+struct SqpOptions {
+    int max_iterations = 40;
+    double cost_tolerance = 2e-6;  ///< stops when the model promises less than this of ln(cost)
+    double simulation_tolerance = 1e-4;
+    double trust_radius = 0.5;  ///< of a logarithm
+};
+
+struct SqpResult {
+    Point x{};
+    double log_cost = 0;
+    int iterations = 0;
+    bool converged = false;
+};
+
+/// `report` is called after every accepted step; false stops the search.
+using Report = std::function<bool(const Point&, double log_cost)>;
+
+/// `start` must be stable and feasible to 1e-3.
+SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& start, const SqpOptions& options,
+                   const Report& report);
+
+/// Moves x to the feasible side (every constraint <= -1e-9 of its logarithm) by Newton steps on the violated peaks,
+/// along the shortest way; empty if that does not succeed.
+std::optional<Point> restore(const Sweep& sweep, Point x);
+
+/// Is the loop at x stable?
+bool is_stable(const Problem& problem, const Point& x);
+
+}  // namespace tunewright::robust

@@ -1,0 +1,299 @@
+#include "engine/tuning/robust/sweep.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "engine/loop/loop.h"
+
+namespace tunewright::robust {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int kPointsPerDecade = 40;
+constexpr double kDecades = 3;      // below and above the reference
+constexpr int kTurnsResolved = 24;  // of the dead time, one by one
+constexpr int kPointsPerTurn = 20;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::vector<double> frequencies(const Problem& problem, double reference, std::size_t& resolved) {
+    const double L = problem.plant->dead_time();
+    double high = reference * std::pow(10, kDecades);
+    if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
+    const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
+    const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
+    const double resolved_to = L > 0 ? kTurnsResolved * 2 * std::numbers::pi / L : kInfinity;
+    std::vector<double> omega;
+    for (double w = low; w < high;) {
+        omega.push_back(w);
+        w = w < resolved_to ? std::min(w * ratio, w + spacing) : w * ratio;
+    }
+    const auto add_resonance = [&](Complex root) {
+        if (root.imag() <= 0 || std::abs(root.real()) > 0.3 * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), 1e-5 * centre);
+        for (int k = -12; k <= 12; ++k) {
+            const double w = centre + width * k * std::abs(k) / 12.0;
+            if (w > low && w < std::min(high, resolved_to)) omega.push_back(w);
+        }
+    };
+    for (const auto pole : problem.plant->poles()) add_resonance(pole);
+    for (const auto zero : problem.plant->zeros()) add_resonance(zero);
+    std::sort(omega.begin(), omega.end());
+    omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
+    resolved = static_cast<std::size_t>(std::lower_bound(omega.begin(), omega.end(), resolved_to) - omega.begin());
+    return omega;
+}
+
+/// ln of the ratio at a frequency, from L and C.
+double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits& limits, double centre, double radius) {
+    switch (kind) {
+        case ConstraintKind::S: return -std::log(limits.Ms * std::abs(1.0 + L));
+        case ConstraintKind::T: return std::log(std::abs(L / (1.0 + L)) / limits.Mt);
+        case ConstraintKind::CS: return std::log(std::abs(C / (1.0 + L)) / *limits.Mks);
+        case ConstraintKind::circle: return std::log(radius / std::abs(L - centre));
+    }
+    return 0;
+}
+
+}  // namespace
+
+Sweep::Sweep(const Problem& problem, double reference) : problem_(problem), reference_(reference) {
+    omega_ = frequencies(problem, reference, resolved_);
+    for (const double w : omega_) {
+        const Complex P = problem.plant->at({0, w});
+        P_re_.push_back(P.real());
+        P_im_.push_back(P.imag());
+    }
+    // The smallest circle around both: from -Mt/(Mt - 1) to -1 + 1/Ms on the real axis.
+    const double left = -problem.limits.Mt / (problem.limits.Mt - 1), right = -1 + 1 / problem.limits.Ms;
+    circle_centre_ = 0.5 * (left + right);
+    circle_radius_ = 0.5 * (right - left);
+    for (auto* level : {&S_, &T_, &CS_, &circle_}) level->resize(omega_.size());
+}
+
+Sweep::Shape Sweep::shape(const Point& x) const {
+    const Pid pid = controller_at(problem_, x);
+    return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
+}
+
+double Sweep::value(ConstraintKind kind, const Point& x, double omega) const {
+    const Shape c = shape(x);
+    const Complex s(0, omega);
+    const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
+    return constraint_value(kind, problem_.plant->at(s) * C, C, problem_.limits, circle_centre_, circle_radius_);
+}
+
+std::array<double, 3> Sweep::gradient(ConstraintKind kind, const Point& x, double omega) const {
+    const Shape c = shape(x);
+    const Complex s(0, omega), integral = c.Ki / s, derivative = c.Kd * s, sum = c.Kp + integral + derivative;
+    const Complex filter = 1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s);
+    // d ln C by ln Kp, ln Ti, ln Td.
+    std::array<Complex, 3> dC = {1.0, -integral / sum, derivative / sum};
+    if (problem_.filter.Tf_over_Td) dC[2] -= c.Tf * s * (1.0 + c.Tf * s) / filter;
+    const Complex L = problem_.plant->at(s) * sum / filter, S = 1.0 / (1.0 + L), T = L * S;
+    std::array<double, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        switch (kind) {
+            case ConstraintKind::S: result[i] = -(T * dC[i]).real(); break;
+            case ConstraintKind::T:
+            case ConstraintKind::CS: result[i] = (S * dC[i]).real(); break;
+            case ConstraintKind::circle: result[i] = -(L * dC[i] / (L - circle_centre_)).real(); break;
+        }
+    }
+    if (!problem_.pid) result[2] = 0;
+    return result;
+}
+
+void Sweep::add_peaks(ConstraintKind kind, const std::vector<double>& level, const Point& x, double threshold,
+                      std::vector<ActivePeak>& found) const {
+    // `level` holds squared ratios: limit reached at 1.
+    const std::size_t n = level.size();
+    const double from = std::exp(2 * (threshold - 0.1));
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        if (level[i] < from || level[i] < level[i - 1] || level[i] <= level[i + 1]) continue;
+        ActivePeak peak{.kind = kind, .omega = omega_[i], .value = 0.5 * std::log(level[i])};
+        if (i < resolved_) {
+            // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
+            // moves.
+            double a = std::log(omega_[i - 1]), b = std::log(omega_[i]), c = std::log(omega_[i + 1]);
+            double fa = 0.5 * std::log(level[i - 1]), fb = peak.value, fc = 0.5 * std::log(level[i + 1]);
+            for (int k = 0; k < 6; ++k) {
+                const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b), bend = (right - left) / (c - a);
+                if (!(bend < 0)) break;
+                const double top =
+                    std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + 0.02 * (b - a), c - 0.02 * (c - b));
+                if (std::abs(top - b) < 1e-7 * (1 + std::abs(b))) break;
+                const double f = value(kind, x, std::exp(top));
+                const double gain = f - fb;
+                if (f >= fb) {
+                    (top > b ? a : c) = b;
+                    (top > b ? fa : fc) = fb;
+                    b = top;
+                    fb = f;
+                } else {
+                    (top > b ? c : a) = top;
+                    (top > b ? fc : fa) = f;
+                }
+                if (std::abs(gain) < 1e-10) break;
+            }
+            peak.omega = std::exp(b);
+            peak.value = fb;
+        }
+        if (peak.value < threshold) continue;
+        peak.gradient = gradient(kind, x, peak.omega);
+        found.push_back(peak);
+    }
+}
+
+void Sweep::add_limits(const Point& x, double threshold, std::vector<ActivePeak>& found) const {
+    // Without filter a direct loop gain q remains at infinite frequency.
+    const Shape c = shape(x);
+    if (c.Tf > 0) return;
+    const int excess = problem_.plant->pole_excess() - (problem_.pid ? 1 : 0);
+    if (excess > 0) return;
+    const double q = problem_.plant->gain() * (problem_.pid ? c.Kd : c.Kp);
+    const bool turning = problem_.plant->dead_time() > 0;
+    const double nearest = turning ? 1 - std::abs(q) : std::abs(1 + q);
+    const std::size_t gain_index = problem_.pid ? 2 : 0;
+    const auto add = [&](ConstraintKind kind, double value, double slope) {
+        if (!(value >= threshold)) return;
+        ActivePeak peak{.kind = kind, .omega = kInfinity, .value = std::min(value, 50.0)};
+        peak.gradient[0] = slope;
+        if (gain_index == 2) peak.gradient[2] = slope;
+        found.push_back(peak);
+    };
+    const double size = std::abs(q);
+    add(ConstraintKind::S, nearest > 0 ? -std::log(problem_.limits.Ms * nearest) : 50,
+        nearest > 0 ? size / nearest : 50);
+    add(ConstraintKind::T, nearest > 0 ? std::log(size / nearest / problem_.limits.Mt) : 50,
+        nearest > 0 ? 1 / nearest : 50);
+}
+
+std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
+    const Shape c = shape(x);
+    const Limits& limits = problem_.limits;
+    const double s_limit = 1 / (limits.Ms * limits.Ms), t_limit = 1 / (limits.Mt * limits.Mt);
+    const double cs_limit = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0,
+                 circle_limit = circle_radius_ * circle_radius_;
+    const std::size_t n = omega_.size();
+    const double *w = omega_.data(), *pr = P_re_.data(), *pi = P_im_.data();
+    double *S = S_.data(), *T = T_.data(), *CS = CS_.data(), *circle = circle_.data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const double fr = 1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, fi = w[i] * c.Tf, scale = 1 / (fr * fr + fi * fi);
+        const double nr = c.Kp, ni = c.Kd * w[i] - c.Ki / w[i];
+        const double cr = (nr * fr + ni * fi) * scale, ci = (ni * fr - nr * fi) * scale;
+        const double lr = pr[i] * cr - pi[i] * ci, li = pr[i] * ci + pi[i] * cr;
+        const double size = lr * lr + li * li, distance = 1 / ((1 + lr) * (1 + lr) + li * li);
+        S[i] = distance * s_limit;
+        T[i] = size * distance * t_limit;
+        CS[i] = (cr * cr + ci * ci) * distance * cs_limit;
+        circle[i] = circle_limit / ((lr - circle_centre_) * (lr - circle_centre_) + li * li);
+    }
+    for (std::size_t i = resolved_; i < n; ++i) {
+        const Complex C =
+            Complex(c.Kp, c.Kd * w[i] - c.Ki / w[i]) / Complex(1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, w[i] * c.Tf);
+        const double size = std::abs(C) * std::hypot(pr[i], pi[i]), nearest = size < 1 ? 1 - size : 1e-6;
+        S[i] = s_limit / (nearest * nearest);
+        T[i] = size * size * t_limit / (nearest * nearest);
+        CS[i] = std::norm(C) * cs_limit / (nearest * nearest);
+        const double to_circle = std::abs(circle_centre_) - size;
+        circle[i] = circle_limit / std::max(to_circle * to_circle, 1e-12);
+    }
+    std::vector<ActivePeak> found;
+    if (limits.m_circle) {
+        add_peaks(ConstraintKind::circle, circle_, x, threshold, found);
+    } else {
+        add_peaks(ConstraintKind::S, S_, x, threshold, found);
+        add_peaks(ConstraintKind::T, T_, x, threshold, found);
+    }
+    if (limits.Mks) add_peaks(ConstraintKind::CS, CS_, x, threshold, found);
+    add_limits(x, threshold, found);
+    std::sort(found.begin(), found.end(), [](const ActivePeak& a, const ActivePeak& b) { return a.value > b.value; });
+    return found;
+}
+
+std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
+    const Point unit = {0, std::log(Ti), problem_.pid ? std::log(Td) : 0};
+    const Shape c = shape(unit);
+    std::vector<GainGap> forbidden;
+    const Limits& limits = problem_.limits;
+    const auto forbid_circle = [&](double X, double Y, double centre, double radius) {
+        const double size = X * X + Y * Y, discriminant = radius * radius * size - centre * centre * Y * Y;
+        if (discriminant <= 0) return;
+        const double root = std::sqrt(discriminant);
+        const double upper = (centre * X + root) / size;
+        if (upper <= 0) return;
+        forbidden.push_back({std::max(0.0, (centre * X - root) / size), upper});
+    };
+    const double t_centre = -limits.Mt * limits.Mt / (limits.Mt * limits.Mt - 1),
+                 t_radius = limits.Mt / (limits.Mt * limits.Mt - 1);
+    const double largest_gain = kInfinity;
+    for (std::size_t i = 0; i < omega_.size(); ++i) {
+        const double w = omega_[i];
+        const Complex C = Complex(c.Kp, c.Kd * w - c.Ki / w) / Complex(1 - 0.5 * w * w * c.Tf * c.Tf, w * c.Tf);
+        Complex G = Complex(P_re_[i], P_im_[i]) * C;
+        if (i >= resolved_) G = -std::abs(G);
+        if (limits.m_circle) {
+            forbid_circle(G.real(), G.imag(), circle_centre_, circle_radius_);
+        } else {
+            forbid_circle(G.real(), G.imag(), -1, 1 / limits.Ms);
+            forbid_circle(G.real(), G.imag(), t_centre, t_radius);
+        }
+        if (limits.Mks) {
+            // K^2 |C|^2 <= Mks^2 |1 + K G|^2.
+            const double M = *limits.Mks * *limits.Mks, a = std::norm(C) - M * std::norm(G), b = M * G.real();
+            const double discriminant = b * b + a * M;
+            if (a > 0) forbidden.push_back({(b + std::sqrt(discriminant)) / a, largest_gain});
+            if (a < 0 && discriminant > 0 && b < 0)
+                forbidden.push_back({(b + std::sqrt(discriminant)) / a, (b - std::sqrt(discriminant)) / a});
+        }
+    }
+    std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
+    std::vector<GainGap> gaps;
+    double reached = 0;
+    for (const auto& interval : forbidden) {
+        if (interval.lower > reached) gaps.push_back({reached, interval.lower});
+        reached = std::max(reached, interval.upper);
+    }
+    if (reached < largest_gain) gaps.push_back({reached, largest_gain});
+    return gaps;
+}
+
+double reference_frequency(const Problem& problem) {
+    const LinearPlant& plant = *problem.plant;
+    const double L = plant.dead_time();
+    double slowest = kInfinity, fastest = 0;
+    const auto note = [&](double corner) {
+        if (!(corner > 0)) return;
+        slowest = std::min(slowest, corner);
+        fastest = std::max(fastest, corner);
+    };
+    for (const auto pole : plant.poles()) note(std::abs(pole));
+    for (const auto zero : plant.zeros()) note(std::abs(zero));
+    if (L > 0) note(1 / L);
+    const double Tf = problem.filter.Tf.value_or(0);
+    if (Tf > 0) note(1 / Tf);
+    if (fastest == 0) return 1;
+    const auto phase_factor = [&](double w) {
+        const Complex s(0, w);
+        return problem.sign * plant.rational(s) / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
+    };
+    double w = slowest * 1e-2, before = std::arg(phase_factor(w));
+    if (before > 0.5)
+        before -= 2 * std::numbers::pi;  // an unstable or double-integrating plant starts at -180, not at +180
+    double unwrapped = before, total_before = before - w * L;
+    const double ratio = std::pow(10, 1.0 / 60);
+    for (; w < fastest * 1e2; w *= ratio) {
+        const double wrapped = std::arg(phase_factor(w));
+        unwrapped += std::remainder(wrapped - before, 2 * std::numbers::pi);
+        before = wrapped;
+        const double total = unwrapped - w * L;
+        if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;
+        total_before = total;
+    }
+    if (L > 0) return 1 / L;
+    return Tf > 0 ? 1 / Tf : slowest;
+}
+
+}  // namespace tunewright::robust

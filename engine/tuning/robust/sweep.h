@@ -1,0 +1,72 @@
+// The constraints of a robust design over frequency: P is computed once, then thousands of controllers are judged on
+// it.
+//
+// Every constraint is a logarithm that must not exceed 0: ln(|S|/Ms), ln(|T|/Mt), ln(|C S|/Mks), or ln(R/|L - C|) for
+// the M-circle.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "engine/tuning/robust/design.h"
+
+namespace tunewright::robust {
+
+enum class ConstraintKind { S, T, CS, circle };
+
+/// A local maximum of a constraint over frequency, with its exact gradient in the point's logarithms (envelope
+/// theorem).
+struct ActivePeak {
+    ConstraintKind kind = ConstraintKind::S;
+    double omega = 0;
+    double value = 0;  ///< <= 0 is allowed
+    std::array<double, 3> gradient{};
+};
+
+/// Gains between which no frequency forbids anything; upper is infinite for the last gap.
+struct GainGap {
+    double lower = 0, upper = 0;
+};
+
+class Sweep {
+public:
+    /// `reference` is the frequency around which the loop will live (phase crossover or the like).
+    Sweep(const Problem& problem, double reference);
+
+    /// All local maxima above `threshold`, and the limits at frequency infinity; the largest value first.
+    std::vector<ActivePeak> peaks(const Point& x, double threshold) const;
+
+    /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hagglund 2008, Eq.
+    /// 6, for every circle at once), in ascending order.
+    std::vector<GainGap> gain_gaps(double Ti, double Td) const;
+
+    /// The constraint's value at one frequency, exactly.
+    double value(ConstraintKind kind, const Point& x, double omega) const;
+
+    const Problem& problem() const { return problem_; }
+    double reference() const { return reference_; }
+
+private:
+    struct Shape {
+        double Kp, Ki, Kd, Tf;
+    };
+    Shape shape(const Point& x) const;
+    void add_peaks(ConstraintKind kind, const std::vector<double>& level, const Point& x, double threshold,
+                   std::vector<ActivePeak>& found) const;
+    void add_limits(const Point& x, double threshold, std::vector<ActivePeak>& found) const;
+    std::array<double, 3> gradient(ConstraintKind kind, const Point& x, double omega) const;
+
+    Problem problem_;
+    double reference_;
+    double circle_centre_ = 0, circle_radius_ = 0;
+    std::size_t resolved_ = 0;  // from here on the dead time turns faster than the grid: worst phase assumed
+    std::vector<double> omega_, P_re_, P_im_;
+    mutable std::vector<double> S_, T_, CS_, circle_;  // scratch: one sweep per thread of work
+};
+
+/// The first frequency where the phase of P (with the filter, if its Tf is fixed) falls through -180 degrees; else 1/L;
+/// else the filter's or the slowest lag's corner.
+double reference_frequency(const Problem& problem);
+
+}  // namespace tunewright::robust

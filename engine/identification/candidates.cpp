@@ -28,6 +28,19 @@ Fit best_from(const CleanRecord& record, const ModelForm& form, const std::vecto
     return best;
 }
 
+std::vector<Shape> most_promising(const CleanRecord& record, const ModelForm& form, const std::vector<Shape>& starts,
+                                  std::stop_token stop) {
+    const std::vector<double> sums = sums_of_squares(record, form, starts, stop);
+    std::vector<int> order(starts.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sums[a] < sums[b]; });
+    std::vector<Shape> best;
+    for (int i : order) {
+        if (static_cast<int>(best.size()) < kStartsRefined) best.push_back(starts[i]);
+    }
+    return best;
+}
+
 Fit fit_form(const CleanRecord& record, const CleanRecord& thin, const ModelForm& form, const std::vector<Fit>& simpler,
              std::stop_token stop) {
     std::vector<Shape> starts = scan_shapes(thin, form, kStartsRefined, stop);
@@ -37,6 +50,7 @@ Fit fit_form(const CleanRecord& record, const CleanRecord& thin, const ModelForm
         if (!shapes.empty()) nested.push_back(shapes.front());
         starts.insert(starts.end(), shapes.begin(), shapes.end());
     }
+    starts = most_promising(thin, form, starts, stop);
     Fit fit = best_from(thin, form, starts, kCoarseIterations, stop);
     fit = fit_shape(record, form, fit.shape, kFinalIterations, stop);
     const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
@@ -56,6 +70,15 @@ bool shows_rest(const CleanRecord& r) {
     return r.changes() > 1 || before >= 4;
 }
 
+/// A level of rest far from what u did is no level of rest: the structure is wrong, and the slope stands in for another
+/// lag.
+bool plausible_rest(const CleanRecord& r, const Fit& fit) {
+    const double rest = -fit.linear[2] / fit.linear[0];
+    if (r.changes() == 1) return std::abs(rest) <= 0.5;
+    const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
+    return rest >= std::min(0.0, *low) && rest <= std::max(0.0, *high);
+}
+
 /// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
 /// digits.
 constexpr double kVarianceFloor = 1e-14;
@@ -67,7 +90,7 @@ Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure 
     Fit fit = fit_form(record, thin, {structure, false}, simpler, stop);
     if (!is_integrating(structure) || record.u0_given || !shows_rest(record)) return fit;
     Fit free = fit_form(record, thin, {structure, true}, simpler, stop);
-    if (!free.determined) return fit;
+    if (!free.determined || !plausible_rest(record, free)) return fit;
     const double n = effective_samples(free.residual);
     return information_criterion(record, free, n) + 2 < information_criterion(record, fit, n) ? free : fit;
 }

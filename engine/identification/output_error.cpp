@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tunewright {
 namespace {
@@ -51,8 +52,9 @@ public:
         return result;
     }
 
-    /// d model/d shape at the shape whose regressors were computed last.
+    /// d model/d shape, n_rows x shape_size.
     Eigen::MatrixXd sensitivities(const Shape& shape, const Eigen::VectorXd& linear) {
+        unit_response(record_, shape, now_);
         const int np = shape_size(form_.structure);
         Eigen::MatrixXd D = Eigen::MatrixXd::Zero(rows_, np);
         const double K = linear[0], Kb = form_.offset_index() == 2 ? linear[1] : 0;
@@ -190,6 +192,14 @@ Fit project(const CleanRecord& record, const ModelForm& form, const Shape& shape
     return problem.finish(shape, problem.project(shape));
 }
 
+std::vector<double> sums_of_squares(const CleanRecord& record, const ModelForm& form, const std::vector<Shape>& shapes,
+                                    std::stop_token stop) {
+    OutputError problem(record, form);
+    std::vector<double> sums(shapes.size(), std::numeric_limits<double>::max());
+    for (std::size_t i = 0; i < shapes.size() && !stop.stop_requested(); ++i) sums[i] = problem.project(shapes[i]).sse;
+    return sums;
+}
+
 Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& start, int most_iterations,
               std::stop_token stop) {
     constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
@@ -201,7 +211,6 @@ Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& sta
     int iteration = 0;
     for (; iteration < most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
          ++iteration) {
-        problem.regressors(shape);
         Eigen::MatrixXd D = problem.sensitivities(shape, here.linear);
         D -= here.basis * (here.basis.transpose() * D);
         const Eigen::VectorXd descent = D.transpose() * here.residual;

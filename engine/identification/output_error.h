@@ -45,6 +45,10 @@ struct Fit {
 /// and the fit's residual.
 Fit project(const CleanRecord& record, const ModelForm& form, const Shape& shape);
 
+/// The sum of squares alone, of many shapes.
+std::vector<double> sums_of_squares(const CleanRecord& record, const ModelForm& form, const std::vector<Shape>& shapes,
+                                    std::stop_token stop);
+
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
 /// projected Jacobian), from `start`. Sensitivity to L is exact (-dx/dt), those to the logarithms are central
 /// differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more than

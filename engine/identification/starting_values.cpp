@@ -1,6 +1,7 @@
 #include "engine/identification/starting_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tunewright {
@@ -26,54 +27,56 @@ std::vector<double> dead_times(const CleanRecord& r) {
     return values;
 }
 
-struct Axes {
-    std::vector<double> L, T, rho;
+Shape at(Structure structure, double L, double T, double rho) { return {structure, {L, std::log(T), std::log(rho)}}; }
+
+/// Every combination of the axes' values, the last axis fastest.
+struct Grid {
+    std::array<int, 3> size{};
+    std::vector<Shape> shapes;
+
+    /// Whether no neighbour along an axis is lower.
+    bool is_local_minimum(const std::vector<double>& values, int index) const {
+        int stride = 1, left = index;
+        for (int axis = 2; axis >= 0; --axis) {
+            const int place = left % size[axis];
+            if (place > 0 && values[index - stride] < values[index]) return false;
+            if (place + 1 < size[axis] && values[index + stride] < values[index]) return false;
+            left /= size[axis];
+            stride *= size[axis];
+        }
+        return true;
+    }
 };
 
-Axes scan_axes(const CleanRecord& r, Structure structure) {
-    Axes axes;
-    axes.L = dead_times(r);
+Grid scan_grid(const CleanRecord& r, Structure structure) {
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
-    const int size = shape_size(structure);
-    axes.T = size > 1 ? geometric(0.5 * spacing, 4.0, 10) : std::vector<double>{1};
-    axes.rho = size > 2 ? std::vector<double>{0.05, 0.25, 1.5, 10} : std::vector<double>{1};
-    return axes;
+    const std::vector<double> L = dead_times(r);
+    std::vector<double> T = {1}, rho = {1};
+    if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
+    if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};
+    Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size())}, {}};
+    for (double dead_time : L) {
+        for (double lag : T) {
+            for (double ratio : rho) grid.shapes.push_back(at(structure, dead_time, lag, ratio));
+        }
+    }
+    return grid;
 }
-
-Shape at(Structure structure, double L, double T, double rho) { return {structure, {L, std::log(T), std::log(rho)}}; }
 
 }  // namespace
 
 std::vector<Shape> scan_shapes(const CleanRecord& record, const ModelForm& form, int most, std::stop_token stop) {
-    const Axes axes = scan_axes(record, form.structure);
-    const int nL = static_cast<int>(axes.L.size()), nT = static_cast<int>(axes.T.size()),
-              nr = static_cast<int>(axes.rho.size());
-    std::vector<double> sse(static_cast<std::size_t>(nL) * nT * nr);
-    auto index = [&](int i, int j, int k) { return (static_cast<std::size_t>(i) * nT + j) * nr + k; };
-    for (int i = 0; i < nL && !stop.stop_requested(); ++i) {
-        for (int j = 0; j < nT; ++j) {
-            for (int k = 0; k < nr; ++k)
-                sse[index(i, j, k)] = project(record, form, at(form.structure, axes.L[i], axes.T[j], axes.rho[k])).sse;
-        }
+    const Grid grid = scan_grid(record, form.structure);
+    const std::vector<double> sums = sums_of_squares(record, form, grid.shapes, stop);
+    std::vector<int> minima;
+    for (int i = 0; i < static_cast<int>(sums.size()); ++i) {
+        if (grid.is_local_minimum(sums, i)) minima.push_back(i);
     }
-    auto lowest_of_neighbours = [&](int i, int j, int k) {
-        const double here = sse[index(i, j, k)];
-        return !((i > 0 && sse[index(i - 1, j, k)] < here) || (i + 1 < nL && sse[index(i + 1, j, k)] < here) ||
-                 (j > 0 && sse[index(i, j - 1, k)] < here) || (j + 1 < nT && sse[index(i, j + 1, k)] < here) ||
-                 (k > 0 && sse[index(i, j, k - 1)] < here) || (k + 1 < nr && sse[index(i, j, k + 1)] < here));
-    };
-    std::vector<std::pair<double, Shape>> minima;
-    for (int i = 0; i < nL; ++i) {
-        for (int j = 0; j < nT; ++j) {
-            for (int k = 0; k < nr; ++k) {
-                if (lowest_of_neighbours(i, j, k))
-                    minima.emplace_back(sse[index(i, j, k)], at(form.structure, axes.L[i], axes.T[j], axes.rho[k]));
-            }
-        }
-    }
-    std::stable_sort(minima.begin(), minima.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(minima.begin(), minima.end(), [&](int a, int b) { return sums[a] < sums[b]; });
     std::vector<Shape> best;
-    for (int i = 0; i < std::min<int>(most, static_cast<int>(minima.size())); ++i) best.push_back(minima[i].second);
+    for (int i : minima) {
+        if (static_cast<int>(best.size()) < most) best.push_back(grid.shapes[i]);
+    }
     return best;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/identification/data_quality.h"
 #include "engine/identification/starting_values.h"
 #include "engine/identification/uncertainty.h"
 #include "engine/identification/wording.h"
@@ -63,6 +64,9 @@ Fit fit_form(const CleanRecord& record, const CleanRecord& thin, const ModelForm
     return fit;
 }
 
+/// Differences of the criterion (Kass and Raftery 1995, section 3.2).
+constexpr double kWorthAMention = 2, kStrong = 10;
+
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
 bool shows_rest(const CleanRecord& r) {
@@ -70,13 +74,27 @@ bool shows_rest(const CleanRecord& r) {
     return r.changes() > 1 || before >= 4;
 }
 
-/// A level of rest far from what u did is no level of rest: the structure is wrong, and the slope stands in for another
+/// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
 /// lag.
 bool plausible_rest(const CleanRecord& r, const Fit& fit) {
-    const double rest = -fit.linear[2] / fit.linear[0];
-    if (r.changes() == 1) return std::abs(rest) <= 0.5;
+    const double rest = level_of_rest(fit);
+    if (r.changes() == 1) return std::abs(rest) <= (is_integrating(fit.form.structure) ? 0.5 : 2.0);
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
-    return rest >= std::min(0.0, *low) && rest <= std::max(0.0, *high);
+    const double span = std::max(0.0, *high) - std::min(0.0, *low);
+    return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
+}
+
+/// Where the fit from rest leaves more than noise behind, and the user has not said where u was before: the starts that
+/// could explain it. A single change at the first sample is the unseen step itself.
+std::vector<Start> other_starts(const CleanRecord& r, const Fit& from_rest) {
+    if (r.u0_given) return {};
+    std::vector<Start> starts;
+    if (is_integrating(from_rest.form.structure) && shows_rest(r)) starts.push_back(Start::steady_slope);
+    const double noise = std::max(noise_std(r.y), quantisation_step(r.y) / std::sqrt(12.0));
+    const bool unexplained =
+        from_rest.sse > 2 * r.samples() * noise * noise && correlation_time(from_rest.residual) > 3;
+    if (unexplained && !(r.changes() == 1 && r.v_time[0] == 0)) starts.push_back(Start::other_level);
+    return starts;
 }
 
 /// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
@@ -87,12 +105,19 @@ constexpr double kVarianceFloor = 1e-14;
 
 Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure structure,
                   const std::vector<Fit>& simpler, std::stop_token stop) {
-    Fit fit = fit_form(record, thin, {structure, false}, simpler, stop);
-    if (!is_integrating(structure) || record.u0_given || !shows_rest(record)) return fit;
-    Fit free = fit_form(record, thin, {structure, true}, simpler, stop);
-    if (!free.determined || !plausible_rest(record, free)) return fit;
-    const double n = effective_samples(free.residual);
-    return information_criterion(record, free, n) + 2 < information_criterion(record, fit, n) ? free : fit;
+    Fit best = fit_form(record, thin, {structure, Start::at_rest}, simpler, stop);
+    for (const Start start : other_starts(record, best)) {
+        Fit fit = fit_form(record, thin, {structure, start}, simpler, stop);
+        if (!fit.determined || !plausible_rest(record, fit)) continue;
+        const double n = effective_samples(fit.residual);
+        const bool better = information_criterion(record, fit, n) + kStrong < information_criterion(record, best, n);
+        if (better) best = std::move(fit);
+    }
+    return best;
+}
+
+double level_of_rest(const Fit& fit) {
+    return fit.form.start == Start::at_rest ? 0 : -fit.linear[fit.form.start_index()] / fit.linear[0];
 }
 
 double information_criterion(const CleanRecord& record, const Fit& fit, double independent_samples) {
@@ -112,7 +137,6 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
 
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
               double independent_samples) {
-    constexpr double kWorthAMention = 2, kStrong = 10;
     // A handicap makes "must win by" a comparison like any other.
     auto handicapped = [&](int i) {
         return criteria[i] + (fits[i].form.structure == Structure::sopdt_zero ? kStrong - kWorthAMention : 0);

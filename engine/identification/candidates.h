@@ -11,9 +11,9 @@
 namespace tunewright {
 
 /// Fits one structure: scan on the thinned record, refinement of the best starts there, final fit on the whole record.
-/// `simpler` are fits of the structures that it contains; it never ends worse than they do. Integrating structures are
-/// fitted with the level of rest given (the first u) and, where the record shows it, estimated; the better by the
-/// criterion is returned.
+/// `simpler` are fits of the structures that it contains; it never ends worse than they do. With no
+/// u0 given, starts other than rest are fitted where the record asks for it, and kept if they lower the criterion
+/// by 10.
 Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure structure,
                   const std::vector<Fit>& simpler, std::stop_token stop);
 
@@ -22,7 +22,7 @@ Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure 
 double information_criterion(const CleanRecord& record, const Fit& fit, double independent_samples);
 
 struct Choice {
-    int index = 0;
+    int index = -1;  ///< into the fits; -1: none is determined
     std::string reason;
 };
 
@@ -30,6 +30,9 @@ struct Choice {
 /// must win by 10. `criteria` belong to `fits`; fit_percent only goes into the sentence.
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
               double independent_samples);
+
+/// The level of v at which y was at rest before the record; 0 for Start::at_rest.
+double level_of_rest(const Fit& fit);
 
 /// 100 (1 - ||residual||/||y - mean(y)||).
 double fit_percent(const CleanRecord& record, const Fit& fit);

@@ -20,7 +20,8 @@ double root_mean_square(const std::vector<double>& x) {
 /// for integrating structures.
 double remaining_movement(const CleanRecord& r, const Fit& fit) {
     if (is_integrating(fit.form.structure)) return 1;
-    const double offset = fit.linear[fit.form.offset_index()];
+    double offset = fit.linear[fit.form.offset_index()];
+    if (fit.form.start == Start::other_level) offset += fit.linear[fit.form.start_index()];
     double moved = 0;
     for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
     const double final_value = fit.linear[0] * r.v_level.back() + offset;
@@ -126,9 +127,9 @@ bool responds(const CleanRecord& r, const Fit& fit) {
     const double mean = std::accumulate(r.y.begin(), r.y.end(), 0.0) / r.samples();
     double constant = 0;
     for (double y : r.y) constant += (y - mean) * (y - mean);
+    const double floor = 1e-14 * r.samples(), ratio = (constant + floor) / (fit.sse + floor);
     const double n = effective_samples(fit.residual);
-    const double gain = n * std::log((constant + 1e-14 * r.samples()) / (fit.sse + 1e-14 * r.samples()));
-    return gain > (fit.form.parameters() - 1) * std::log(n) + 10;
+    return ratio > 10 || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + 30;
 }
 
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
@@ -137,7 +138,7 @@ Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std
     const double remaining = remaining_movement(record, fit);
     diagnosis.settled = remaining < 0.05;
     warn_unsettled(record, fit, remaining, diagnosis.warnings);
-    warn_not_at_rest(record, diagnosis.warnings);
+    if (fit.form.start == Start::at_rest) warn_not_at_rest(record, diagnosis.warnings);
     warn_residuals(record, fit, quality, diagnosis.warnings);
     warn_uncertain(values, standard_errors, diagnosis.warnings);
     warn_sampling(record, fit, quality, diagnosis.warnings);

@@ -21,8 +21,8 @@ struct Diagnosis {
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
                    const std::map<std::string, double>& standard_errors, const DataQuality& quality);
 
-/// Whether y responds to u beyond what noise explains: n ln(sse of a constant/sse) must exceed the parameters' price
-/// by 10.
+/// Whether y responds to u beyond what noise explains: n ln(sse of a constant/sse), n independent
+/// samples, must exceed the parameters' price by 30, or less than a tenth of y's variance be left.
 bool responds(const CleanRecord& record, const Fit& fit);
 
 }  // namespace tunewright

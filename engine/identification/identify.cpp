@@ -48,7 +48,7 @@ std::optional<Error> refuse_late_step(const CleanRecord& r) {
     return Error{ErrorKind::not_identifiable, "record",
                  "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
                      ", with " + std::to_string(after) +
-                     " samples left: the response is not in the record. Record until y has settled after the step."};
+                     " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
 }
 
 Error no_response(const CleanRecord& r, double percent) {
@@ -110,11 +110,11 @@ IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const
         model.fit = trace_of(record, fits[i]);
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
-        if (fits[i].form.free_rest) {
-            const double level = -fits[i].linear[2] / fits[i].linear[0] * record.scale.u_scale + record.scale.u_rest;
-            model.data_quality.notes.push_back("y rests at u = " + number_text(level) +
-                                               ", as estimated from the record (the first u is " +
-                                               number_text(record.scale.u_rest) + ").");
+        if (fits[i].form.start != Start::at_rest) {
+            const double level = level_of_rest(fits[i]) * record.scale.u_scale + record.scale.u_rest;
+            model.data_quality.notes.push_back("The record does not start at rest: y rests at u = " +
+                                               number_text(level) + ", as estimated from the record (the first u is " +
+                                               number_text(record.scale.u_rest) + "). Give u0 if it is known.");
         }
     }
     return model;

@@ -31,14 +31,16 @@ public:
     }
 
     Eigen::MatrixXd regressors(const Shape& shape) {
-        unit_response(record_, shape, now_);
+        respond(shape);
         Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows_, form_.linear_size());
-        const int offset = form_.offset_index();
+        const int gains = form_.gains(), offset = form_.offset_index(), start = form_.start_index();
         for (int i = 0; i < n_; ++i) {
             columns(i, 0) = now_.x[i];
-            if (offset == 2) columns(i, 1) = now_.x1[i];
+            if (gains == 2) columns(i, 1) = now_.x1[i];
             columns(i, offset) = 1;
-            if (form_.free_rest) columns(i, offset + 1) = record_.t[i];
+            if (form_.start == Start::steady_slope) columns(i, start) = record_.t[i];
+            if (form_.start == Start::other_level) columns(i, start) = step_.x[i];
+            if (form_.start == Start::other_level && gains == 2) columns(i, start + 1) = step_.x1[i];
         }
         if (record_.y_rest) columns(n_, offset) = kRestWeight;
         return columns;
@@ -54,17 +56,22 @@ public:
 
     /// d model/d shape, n_rows x shape_size.
     Eigen::MatrixXd sensitivities(const Shape& shape, const Eigen::VectorXd& linear) {
-        unit_response(record_, shape, now_);
-        const int np = shape_size(form_.structure);
+        respond(shape);
+        const int np = shape_size(form_.structure), start = form_.start_index();
+        const bool zero = form_.gains() == 2, earlier = form_.start == Start::other_level;
+        const double K = linear[0], Kb = zero ? linear[1] : 0;
+        const double S = earlier ? linear[start] : 0, Sb = earlier && zero ? linear[start + 1] : 0;
         Eigen::MatrixXd D = Eigen::MatrixXd::Zero(rows_, np);
-        const double K = linear[0], Kb = form_.offset_index() == 2 ? linear[1] : 0;
         for (int i = 0; i < n_; ++i) D(i, 0) = -(K * now_.x1[i] + Kb * now_.x2[i]);
+        for (int i = 0; earlier && i < n_; ++i) D(i, 0) -= S * step_.x1[i] + Sb * step_.x2[i];
         for (int k = 1; k < np; ++k) {
             for (const double sign : {1.0, -1.0}) {
                 Shape moved = shape;
                 moved.p[k] += sign * kStep;
-                unit_response(record_, moved, side_);
-                for (int i = 0; i < n_; ++i) D(i, k) += sign / (2 * kStep) * (K * side_.x[i] + Kb * side_.x1[i]);
+                const double weight = sign / (2 * kStep);
+                respond(moved);
+                for (int i = 0; i < n_; ++i) D(i, k) += weight * (K * now_.x[i] + Kb * now_.x1[i]);
+                for (int i = 0; earlier && i < n_; ++i) D(i, k) += weight * (S * step_.x[i] + Sb * step_.x1[i]);
             }
         }
         return D;
@@ -84,6 +91,12 @@ public:
     }
 
 private:
+    void respond(const Shape& shape) {
+        static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
+        unit_response(record_.t, {record_.v_time, record_.v_level}, shape, now_);
+        if (form_.start == Start::other_level) unit_response(record_.t, {kAtOnce, kUnit}, shape, step_);
+    }
+
     /// Gram-Schmidt with one repetition; the gain's column comes last, so that its independence of the others is what
     /// is judged.
     void orthogonalise(const Eigen::MatrixXd& columns, Projection& result) const {
@@ -122,7 +135,7 @@ private:
     ModelForm form_;
     int n_, rows_;
     Eigen::VectorXd y_;
-    UnitResponse now_, side_;
+    UnitResponse now_, step_;
 };
 
 Shape clamped(Shape shape, const ShapeBounds& bounds) {

@@ -8,15 +8,25 @@
 
 namespace tunewright {
 
+/// The state in which the record finds the plant.
+enum class Start {
+    at_rest,       ///< in equilibrium with u0, or with the first u
+    steady_slope,  ///< integrating structures: moving steadily under the first u, the level of rest is unknown
+    other_level,   ///< in equilibrium with an unknown level, which u left for its first value at the first sample
+};
+
 /// What the model of a structure is made of beside its shape. The linear coefficients are, in this order: the gain,
-/// gain times b (sopdt_zero), the offset, and with `free_rest` (integrating structures) a slope: then the level of u at
-/// which y rests is unknown.
+/// gain times b (sopdt_zero), the offset, and what `start` adds: a slope, or the size of the unseen first step (times
+/// the gain, and times gain b).
 struct ModelForm {
     Structure structure = Structure::fopdt;
-    bool free_rest = false;
+    Start start = Start::at_rest;
 
-    int linear_size() const { return 2 + (structure == Structure::sopdt_zero) + free_rest; }
-    int offset_index() const { return structure == Structure::sopdt_zero ? 2 : 1; }
+    int gains() const { return structure == Structure::sopdt_zero ? 2 : 1; }
+    int offset_index() const { return gains(); }
+    int start_index() const { return gains() + 1; }
+    int start_size() const { return start == Start::at_rest ? 0 : start == Start::steady_slope ? 1 : gains(); }
+    int linear_size() const { return gains() + 1 + start_size(); }
     int parameters() const { return shape_size(structure) + linear_size(); }
 };
 

@@ -108,16 +108,16 @@ private:
 };
 
 template <class System>
-void run(const CleanRecord& r, double L, System system, UnitResponse& out) {
+void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
     double now = 0, v = 0;
     std::size_t j = 0;
-    for (std::size_t i = 0; i < r.t.size(); ++i) {
-        const double t = r.t[i];
-        for (; j < r.v_time.size() && r.v_time[j] + L <= t; ++j) {
-            const double event = r.v_time[j] + L;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double t = times[i];
+        for (; j < input.time.size() && input.time[j] + L <= t; ++j) {
+            const double event = input.time[j] + L;
             if (event > now) system.advance(event - now, v);
             now = event;
-            v = r.v_level[j];
+            v = input.level[j];
         }
         if (t > now) system.advance(t - now, v);
         now = t;
@@ -155,14 +155,14 @@ const char* name_of(Structure structure) {
     return "";
 }
 
-void unit_response(const CleanRecord& record, const Shape& shape, UnitResponse& response) {
-    for (auto* column : {&response.x, &response.x1, &response.x2}) column->resize(record.t.size());
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& response) {
+    for (auto* column : {&response.x, &response.x1, &response.x2}) column->resize(t.size());
     switch (shape.structure) {
-        case Structure::fopdt: return run(record, shape.L(), Lag{shape.T()}, response);
-        case Structure::ipdt: return run(record, shape.L(), Integrator{}, response);
-        case Structure::ipdt_lag: return run(record, shape.L(), LaggedIntegrator{shape.T()}, response);
+        case Structure::fopdt: return run(t, input, shape.L(), Lag{shape.T()}, response);
+        case Structure::ipdt: return run(t, input, shape.L(), Integrator{}, response);
+        case Structure::ipdt_lag: return run(t, input, shape.L(), LaggedIntegrator{shape.T()}, response);
         case Structure::sopdt:
-        case Structure::sopdt_zero: return run(record, shape.L(), SecondOrder(shape.a1(), shape.a2()), response);
+        case Structure::sopdt_zero: return run(t, input, shape.L(), SecondOrder(shape.a1(), shape.a2()), response);
     }
 }
 

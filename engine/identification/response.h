@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "engine/identification/clean_record.h"
@@ -35,13 +36,18 @@ bool is_integrating(Structure structure);
 /// The contract's name: "fopdt", ...
 const char* name_of(Structure structure);
 
-/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; each has samples() entries.
+/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
 struct UnitResponse {
     std::vector<double> x, x1, x2;
 };
 
-/// Rest before the first sample. Each interval between samples and delayed changes of v is one step with the exact
+/// A piecewise constant input: 0 at first, level[j] from time[j] on; times ascend strictly from 0.
+struct Input {
+    std::span<const double> time, level;
+};
+
+/// Rest before t = 0. Each interval between samples and delayed changes of v is one step with the exact
 /// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes.
-void unit_response(const CleanRecord& record, const Shape& shape, UnitResponse& response);
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& response);
 
 }  // namespace tunewright

@@ -13,7 +13,7 @@
 namespace tunewright {
 
 struct MethodRequest {
-    std::string method = "robust";
+    std::string method = "robust";  ///< or "all": every method that applies to the plant, with those options it knows
     MethodOptions options;
 };
 

@@ -1,0 +1,276 @@
+#include "engine/tune.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "engine/number_text.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
+
+Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
+
+// A method's request with its place in the answer's errors ("tune/2", or "" for the parts of "all").
+struct Planned {
+    const TuningMethod* method;
+    MethodOptions options;
+    std::string where;
+    bool optional_part = false;  // of "all": left out where it does not apply
+};
+
+// Of "all", each method takes those options that it knows.
+MethodOptions known_options(const MethodOptions& given, const TuningMethod& method) {
+    MethodOptions known;
+    for (const auto& [path, value] : given.values()) {
+        const std::string name = path.substr(0, path.find('/'));
+        if (std::ranges::find(method.options, name, &OptionDescription::name) != method.options.end())
+            known.set(path, value);
+    }
+    return known;
+}
+
+Error unknown_method(const std::string& id, const std::string& where) {
+    std::string known;
+    for (const auto& method : method_registry()) known += method.id + ", ";
+    return {ErrorKind::invalid_argument, where + "/method",
+            "method is \"" + id + "\"; it must be one of " + known + "or all."};
+}
+
+Expected<std::vector<Planned>> plan(const std::vector<MethodRequest>& requests) {
+    std::vector<Planned> planned;
+    for (size_t i = 0; i < requests.size(); ++i) {
+        const auto& [id, options] = requests[i];
+        const std::string where = "tune/" + std::to_string(i);
+        if (id == "all") {
+            for (const auto& method : method_registry())
+                planned.push_back({&method, known_options(options, method), where, true});
+            continue;
+        }
+        const TuningMethod* method = find_method(id);
+        if (!method) return unknown_method(id, where);
+        planned.push_back({method, options, where});
+    }
+    if (planned.empty())
+        return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
+    return planned;
+}
+
+bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
+
+bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms) {
+    const auto key = [&](const Evaluation& e) {
+        const bool within = e.robustness.stable && e.robustness.Ms && *e.robustness.Ms <= rank_Ms;
+        const auto& IAE = e.performance.load.IAE;
+        return std::tuple(!within, !e.robustness.stable, IAE ? *IAE : std::numeric_limits<double>::infinity());
+    };
+    return key(a) < key(b);
+}
+
+std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms) {
+    std::vector<int> order;
+    for (size_t i = 0; i < entries.size(); ++i)
+        if (entries[i].evaluation) order.push_back(static_cast<int>(i));
+    std::ranges::stable_sort(order, [&](int a, int b) {
+        return outranks(*entries[static_cast<size_t>(a)].evaluation, *entries[static_cast<size_t>(b)].evaluation,
+                        rank_Ms);
+    });
+    return order;
+}
+
+// One run of tune(): what its steps share.
+class Run {
+public:
+    Run(const TuningRequest& request, const RunControl& control) : request_(request), control_(control) {}
+
+    Expected<TuningResult> result();
+
+private:
+    std::optional<Error> find_plant();
+    TuningEntry entry(const Planned& planned, const TuningProblem& problem, double from, double to);
+    TuningEntry baseline() const;
+    void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const;
+    Error placed(Error error, const std::string& where) const;
+    void keep_best(const TuningEntry& entry);
+    RunControl share(double from, double to) const;
+    void report(double fraction, const std::string& stage, const std::string& message) const;
+    double now_ms() const { return control_.now_ms ? control_.now_ms() : 0; }
+    bool stopped() const { return control_.stop.stop_requested(); }
+
+    const TuningRequest& request_;
+    const RunControl& control_;
+    Plant plant_;
+    std::optional<double> dead_time_std_;
+    std::optional<BestSoFar> best_;
+    TuningResult result_;
+};
+
+void Run::report(double fraction, const std::string& stage, const std::string& message) const {
+    if (control_.progress) control_.progress({fraction, stage, message, best_});
+}
+
+// A part of the work sees 0 to 1 as its own; the better of its best design and ours is reported.
+RunControl Run::share(double from, double to) const {
+    RunControl part{control_.stop, nullptr, control_.now_ms};
+    if (!control_.progress) return part;
+    part.progress = [this, from, to](const Progress& inner) {
+        Progress outer = inner;
+        outer.fraction = from + (to - from) * std::clamp(inner.fraction, 0.0, 1.0);
+        if (best_ && !(outer.best && outer.best->load_IAE < best_->load_IAE)) outer.best = best_;
+        control_.progress(outer);
+    };
+    return part;
+}
+
+std::optional<Error> Run::find_plant() {
+    if (request_.plant.has_value() == request_.record.has_value())
+        return Error{ErrorKind::invalid_argument, "",
+                     request_.plant ? "Both plant and record are given; give one of them."
+                                    : "Neither plant nor record is given; give one of them."};
+    if (request_.plant) {
+        plant_ = *request_.plant;
+        return std::nullopt;
+    }
+    report(0, "identify", "Fitting models to the record.");
+    auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
+    if (!model) return model.error();
+    plant_ = model->plant;
+    if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
+        dead_time_std_ = at->second;
+    result_.model = std::move(*model);
+    return std::nullopt;
+}
+
+// Methods name an option or a field of the plant; the request has the one under the method's place, and the other only
+// if it gave a plant.
+Error Run::placed(Error error, const std::string& where) const {
+    if (in_plant(error)) {
+        if (request_.record) error.where = "record";
+    } else if (!error.where.empty()) {
+        error.where = where + "/" + error.where;
+    }
+    return error;
+}
+
+void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const {
+    auto evaluation = evaluate(plant_, controller, request_.evaluate);
+    if (!evaluation) {
+        entry.error = evaluation.error();
+        return;
+    }
+    warnings.insert(warnings.end(), evaluation->warnings.begin(), evaluation->warnings.end());
+    evaluation->warnings = std::move(warnings);
+    entry.evaluation = std::move(*evaluation);
+}
+
+TuningEntry Run::entry(const Planned& planned, const TuningProblem& problem, double from, double to) {
+    TuningEntry entry;
+    entry.method = planned.method->id;
+    entry.title = planned.method->title;
+    entry.source = planned.method->source;
+    entry.options = planned.options;
+    const double started = now_ms();
+    auto tuned = planned.method->tune(problem, planned.options, share(from, to));
+    if (!tuned) {
+        entry.error = placed(tuned.error(), planned.where);
+        return entry;
+    }
+    entry.reduced_model = tuned->reduced_model;
+    entry.surface = tuned->surface;
+    result_.partial = result_.partial || tuned->partial;
+    evaluate_into(entry, tuned->controller, tuned->warnings);
+    if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
+    if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
+    return entry;
+}
+
+TuningEntry Run::baseline() const {
+    TuningEntry entry;
+    entry.method = "baseline";
+    entry.title = "Baseline";
+    entry.source = "the settings given in the request";
+    const double started = now_ms();
+    evaluate_into(entry, *request_.baseline, {});
+    if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
+    if (entry.error && entry.error->where.starts_with("controller"))
+        entry.error->where.replace(0, std::string("controller").size(), "baseline");
+    return entry;
+}
+
+void Run::keep_best(const TuningEntry& entry) {
+    if (!entry.evaluation) return;
+    const auto& [robustness, load] = std::tie(entry.evaluation->robustness, entry.evaluation->performance.load);
+    if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
+    if (best_ && best_->load_IAE <= *load.IAE) return;
+    best_ =
+        BestSoFar{std::get<Pid>(entry.evaluation->controller), *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
+}
+
+Error all_failed(const std::vector<TuningEntry>& entries) {
+    Error error = *entries.front().error;
+    const auto same = [&](const TuningEntry& entry) { return entry.error->message == error.message; };
+    if (std::ranges::all_of(entries, same)) return error;
+    error.message = "No method gave a controller.";
+    for (const auto& entry : entries) error.message += " " + entry.method + ": " + entry.error->message;
+    return error;
+}
+
+Expected<TuningResult> Run::result() {
+    const auto planned = plan(request_.tune);
+    if (!planned) return planned.error();
+    if (const auto error = find_plant()) return *error;
+    const auto linear = LinearPlant::make(plant_);
+    if (!linear) return placed(linear.error(), "");
+    const TuningProblem problem{plant_, *linear, dead_time_std_};
+
+    const double start = result_.model ? kIdentifyShare : 0,
+                 share_of_one = (1 - start) / static_cast<double>(planned->size());
+    std::vector<TuningEntry> left_out;
+    for (size_t i = 0; i < planned->size() && !result_.partial; ++i) {
+        const Planned& next = (*planned)[i];
+        if (stopped()) {
+            result_.partial = true;
+            break;
+        }
+        const double from = start + share_of_one * static_cast<double>(i);
+        report(from, "tune", "Tuning with " + next.method->title + ".");
+        TuningEntry entry = this->entry(next, problem, from, from + share_of_one);
+        if (entry.error && entry.error->kind == ErrorKind::cancelled) {
+            result_.partial = true;
+            break;
+        }
+        keep_best(entry);
+        const bool inapplicable = next.optional_part && entry.error && entry.error->kind == ErrorKind::unsupported;
+        (inapplicable ? left_out : result_.controllers).push_back(std::move(entry));
+    }
+
+    const bool found =
+        std::ranges::any_of(result_.controllers, [](const TuningEntry& e) { return e.evaluation.has_value(); });
+    if (!found) {
+        if (result_.partial) return cancelled();
+        result_.controllers.insert(result_.controllers.end(), left_out.begin(), left_out.end());
+        return all_failed(result_.controllers);
+    }
+    if (request_.baseline) {
+        if (stopped())
+            result_.partial = true;
+        else
+            result_.controllers.push_back(baseline());
+    }
+    result_.ranking = ranking(result_.controllers, request_.evaluate.rank_Ms);
+    result_.ranking_by =
+        "load IAE among stable entries with Ms <= " + text(request_.evaluate.rank_Ms) + ", then the rest";
+    report(1, "tune", "Done.");
+    return std::move(result_);
+}
+
+}  // namespace
+
+Expected<TuningResult> tune(const TuningRequest& request, const RunControl& control) {
+    return Run(request, control).result();
+}
+
+}  // namespace tunewright

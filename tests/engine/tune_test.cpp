@@ -1,0 +1,234 @@
+// tune(): the request's methods in order, failures as entries, ranking, progress, cancellation, records.
+#include "engine/tune.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tunewright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+MethodRequest method(const std::string& id, const std::vector<std::pair<std::string, OptionValue>>& given = {}) {
+    MethodRequest request{.method = id, .options = {}};
+    for (const auto& [path, value] : given) request.options.set(path, value);
+    return request;
+}
+
+TuningRequest request_for(const Plant& plant, std::vector<MethodRequest> methods) {
+    TuningRequest request;
+    request.plant = plant;
+    request.tune = std::move(methods);
+    request.evaluate.points = 0;
+    return request;
+}
+
+const Sopdt kPlant{.K = 2, .T1 = 10, .T2 = 4, .L = 3};
+
+std::vector<std::string> methods_of(const TuningResult& result) {
+    std::vector<std::string> ids;
+    for (const auto& entry : result.controllers) ids.push_back(entry.method);
+    return ids;
+}
+
+TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {
+    auto request = request_for(kPlant, {method("simc"), method("amigo"), method("simc", {{"tau_c", 9.0}})});
+    request.baseline = Pid{.Kp = 0.5, .Ti = 10};
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_THAT(methods_of(*result), ElementsAre("simc", "amigo", "simc", "baseline"));
+    for (const auto& entry : result->controllers) {
+        ASSERT_TRUE(entry.evaluation) << entry.method;
+        EXPECT_TRUE(entry.evaluation->robustness.stable) << entry.method;
+        EXPECT_FALSE(entry.title.empty() || entry.source.empty());
+    }
+    EXPECT_EQ(result->controllers[2].options.number("tau_c"), 9.0);
+    EXPECT_TRUE(result->controllers[1].reduced_model);
+    EXPECT_FALSE(result->controllers[0].reduced_model);
+    EXPECT_FALSE(result->model);
+    EXPECT_FALSE(result->partial);
+    EXPECT_EQ(std::get<Pid>(result->controllers[3].evaluation->controller).Kp, 0.5);
+}
+
+TEST(Tune, RanksByLoadIaeWithinTheMsLimitThenTheRestThenTheUnstable) {
+    // Ziegler-Nichols is fast but far above Ms = 2 here; the baseline does not stabilise.
+    auto request =
+        request_for(kPlant, {method("ziegler_nichols_step"), method("simc", {{"tau_c", 12.0}}), method("simc")});
+    request.baseline = Pid{.Kp = 50, .Ti = 10};
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result);
+    const auto& entries = result->controllers;
+    EXPECT_GT(*entries[0].evaluation->robustness.Ms, 2);
+    EXPECT_LT(*entries[0].evaluation->performance.load.IAE, *entries[2].evaluation->performance.load.IAE);
+    EXPECT_FALSE(entries[3].evaluation->robustness.stable);
+    EXPECT_THAT(result->ranking, ElementsAre(2, 1, 0, 3));
+    EXPECT_EQ(result->ranking_by, "load IAE among stable entries with Ms <= 2, then the rest");
+
+    request.evaluate.rank_Ms = 20;
+    EXPECT_THAT(tune(request, {})->ranking, ElementsAre(0, 2, 1, 3));
+}
+
+TEST(Tune, MethodThatFailsIsAnEntryWithItsErrorAndDoesNotRank) {
+    const auto result = tune(request_for(Fopdt{.K = 1, .T = 5, .L = 0}, {method("amigo"), method("lambda")}), {});
+    ASSERT_TRUE(result);
+    ASSERT_TRUE(result->controllers[0].error);
+    EXPECT_EQ(result->controllers[0].error->kind, ErrorKind::unsupported);
+    EXPECT_EQ(result->controllers[0].error->where, "plant/L");
+    EXPECT_FALSE(result->controllers[0].evaluation);
+    EXPECT_THAT(result->ranking, ElementsAre(1));
+}
+
+TEST(Tune, FailsOnlyIfAllMethodsFail) {
+    const Fopdt plant{.K = 1, .T = 5, .L = 0};
+    const auto one = tune(request_for(plant, {method("amigo")}), {});
+    ASSERT_FALSE(one);
+    EXPECT_EQ(one.error().kind, ErrorKind::unsupported);
+    EXPECT_THAT(one.error().message, HasSubstr("AMIGO divides by the dead time"));
+
+    const auto two = tune(request_for(plant, {method("amigo"), method("ziegler_nichols_step")}), {});
+    ASSERT_FALSE(two);
+    EXPECT_THAT(two.error().message, HasSubstr("amigo: AMIGO divides"));
+    EXPECT_THAT(two.error().message, HasSubstr("ziegler_nichols_step: Ziegler-Nichols divides"));
+}
+
+TEST(Tune, OptionErrorsCarryTheirPlaceInTheRequest) {
+    const auto result = tune(request_for(kPlant, {method("amigo"), method("simc", {{"filter/Tf", 99.0}})}), {});
+    ASSERT_TRUE(result);
+    ASSERT_TRUE(result->controllers[1].error);
+    EXPECT_EQ(result->controllers[1].error->where, "tune/1/filter/Tf");
+}
+
+TEST(Tune, AllTakesEveryMethodThatAppliesAndPassesKnownOptions) {
+    const auto result =
+        tune(request_for(Fopdt{.K = 1, .T = 5, .L = 0}, {method("all", {{"lambda", 2.0}, {"tau_c", 4.0}})}), {});
+    ASSERT_TRUE(result);
+    const auto ids = methods_of(*result);
+    EXPECT_THAT(ids, testing::Contains("simc"));
+    EXPECT_THAT(ids, testing::Contains("lambda"));
+    EXPECT_THAT(ids, testing::Not(testing::Contains("amigo")));
+    for (const auto& entry : result->controllers) {
+        if (entry.method == "lambda") {
+            EXPECT_EQ(std::get<Pid>(entry.evaluation->controller).Kp, 2.5);
+        }
+        if (entry.method == "simc") {
+            EXPECT_FALSE(entry.options.has("lambda"));
+        }
+    }
+}
+
+TEST(Tune, RefusesRequestsThatAreNoneWithAPlace) {
+    auto request = request_for(kPlant, {method("imaginary")});
+    auto refused = tune(request, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().where, "tune/0/method");
+    EXPECT_THAT(refused.error().message, HasSubstr("\"imaginary\"; it must be one of "));
+
+    refused = tune(request_for(kPlant, {}), {});
+    EXPECT_EQ(refused.error().where, "tune");
+
+    request = request_for(kPlant, {method("simc")});
+    request.record = Record{};
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Both plant and record"));
+    request.plant.reset();
+    request.record.reset();
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant nor record"));
+
+    EXPECT_EQ(tune(request_for(Fopdt{.K = 0, .T = 1, .L = 1}, {method("simc")}), {}).error().where, "plant/K");
+}
+
+TEST(Tune, MethodWarningsComeBeforeThoseOfTheEvaluation) {
+    const auto result = tune(request_for(Fopdt{.K = 1, .T = 5, .L = 1}, {method("simc")}), {});
+    ASSERT_TRUE(result);
+    ASSERT_FALSE(result->controllers[0].evaluation->warnings.empty());
+    EXPECT_EQ(result->controllers[0].evaluation->warnings[0].code, "no-derivative");
+}
+
+TEST(Tune, ProgressNeverFallsEndsAtOneAndCarriesTheBestSoFar) {
+    std::vector<Progress> seen;
+    RunControl control;
+    control.progress = [&](const Progress& progress) { seen.push_back(progress); };
+    const auto result = tune(request_for(kPlant, {method("simc", {{"tau_c", 12.0}}), method("simc")}), control);
+    ASSERT_TRUE(result);
+    ASSERT_GE(seen.size(), 3u);
+    for (size_t i = 1; i < seen.size(); ++i) EXPECT_GE(seen[i].fraction, seen[i - 1].fraction);
+    EXPECT_EQ(seen.back().fraction, 1);
+    EXPECT_FALSE(seen.front().best);
+    ASSERT_TRUE(seen.back().best);
+    EXPECT_EQ(seen.back().best->load_IAE, *result->controllers[1].evaluation->performance.load.IAE);
+}
+
+TEST(Tune, CancelledBeforeADesignIsAnErrorAfterwardsAPartialResult) {
+    std::stop_source stop;
+    RunControl control;
+    control.stop = stop.get_token();
+    control.progress = [&](const Progress& progress) {
+        if (progress.best) stop.request_stop();
+    };
+    auto request = request_for(kPlant, {method("simc"), method("amigo"), method("lambda")});
+    request.baseline = Pid{.Kp = 0.5, .Ti = 10};
+    const auto partial = tune(request, control);
+    ASSERT_TRUE(partial);
+    EXPECT_TRUE(partial->partial);
+    // The report before the second method carries the first design; that method is still finished.
+    EXPECT_THAT(methods_of(*partial), ElementsAre("simc", "amigo"));
+    EXPECT_EQ(partial->ranking.size(), 2u);
+
+    const auto nothing = tune(request, control);
+    ASSERT_FALSE(nothing);
+    EXPECT_EQ(nothing.error().kind, ErrorKind::cancelled);
+}
+
+TEST(Tune, ComputeTimeIsTheGivenClocks) {
+    double now = 0;
+    RunControl control;
+    control.now_ms = [&] { return now += 5; };
+    const auto result = tune(request_for(kPlant, {method("simc")}), control);
+    ASSERT_TRUE(result);
+    EXPECT_GE(result->controllers[0].evaluation->compute_ms, 5);
+    EXPECT_EQ(tune(request_for(kPlant, {method("simc")}), {})->controllers[0].evaluation->compute_ms, 0);
+}
+
+TEST(Tune, RecordIsIdentifiedFirstAndTheModelIsTuned) {
+    Record record;
+    for (int i = 0; i <= 300; ++i) {
+        const double t = 0.2 * i;
+        record.t.push_back(t);
+        record.u.push_back(t < 4 ? 20 : 30);
+        record.y.push_back(50 + (t < 6 ? 0 : 10 * 1.5 * (1 - std::exp(-(t - 6) / 8))));
+    }
+    TuningRequest request;
+    request.record = record;
+    request.tune = {method("simc", {{"controller", std::string("PI")}})};
+    request.evaluate.points = 0;
+    std::vector<Progress> seen;
+    RunControl control;
+    control.progress = [&](const Progress& progress) { seen.push_back(progress); };
+    const auto result = tune(request, control);
+    ASSERT_TRUE(result) << result.error().message;
+    ASSERT_TRUE(result->model);
+    EXPECT_GT(result->model->fit_percent, 99);
+    // K 1.5, T 8, L 2: Kp = 8/(1.5 4), Ti = 8.
+    const Pid pid = std::get<Pid>(result->controllers[0].evaluation->controller);
+    EXPECT_NEAR(pid.Kp, 8 / 6.0, 0.05);
+    EXPECT_NEAR(pid.Ti, 8, 0.2);
+    EXPECT_EQ(seen.front().stage, "identify");
+    for (size_t i = 1; i < seen.size(); ++i) EXPECT_GE(seen[i].fraction, seen[i - 1].fraction);
+}
+
+TEST(Tune, RecordThatCannotBeIdentifiedFailsWithThatReason) {
+    TuningRequest request;
+    request.record.emplace();
+    request.record->t = {0, 1, 2};
+    request.record->u = {1, 1, 1};
+    request.record->y = {0, 0, 0};
+    request.tune = {method("simc")};
+    const auto result = tune(request, {});
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().kind, ErrorKind::not_identifiable);
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -416,7 +416,10 @@ private:
         offset_ = 0;
         ++segment_;
         segment_started_ = true;
-        if (!echoes_are_over()) push(node_at(system_, time(), x, history_.at(time() - L, true, slack)));
+        if (!echoes_are_over()) {
+            push(node_at(system_, time(), x, history_.at(time() - L, true, slack)));
+            equal_steps_ = 0;
+        }
         if (echoes_are_over()) segment_started_ = false;
     }
 

@@ -18,7 +18,8 @@ export interface RecordedTest {
   u?: number[];
   y?: number[];
   csv?: string;
-  columns?: { t?: string; u?: string; y?: string };
+  /** Headings, or numbers from 1. */
+  columns?: { t?: string | number; u?: string | number; y?: string | number };
   kind?: string;
   u0?: number;
   y0?: number;

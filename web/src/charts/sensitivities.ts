@@ -42,6 +42,6 @@ export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: Tuning
 function topDecades(traces: Trace[], limit: number | null, decades: number): Range {
   const [lo, hi] = extent([...traces.map((trace) => trace.y), limit === null ? [] : [limit]], "log");
   // Room for the limit's name above its line.
-  const top = hi * 2.6;
+  const top = hi * 3.2;
   return [Math.max(lo / 1.2, top / 10 ** decades), top];
 }

@@ -155,7 +155,7 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
     switch (mark.kind) {
       case "level": {
         const line = box.y.toPixel(mark.value);
-        return at(right - 5, line - box.top > 18 ? line - 5 : line + 15, "end");
+        return at(right - 5, line - box.top > 15 ? line - 4 : line + 14, "end");
       }
       case "upright":
         return at(box.x.toPixel(mark.value) + 5, box.top + 14, "start");

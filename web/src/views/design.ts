@@ -108,7 +108,7 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const sentences = [...words.sentences];
     if (status === "cancelled" || result.partial) sentences.unshift("Stopped early: this is the best found until then.");
     verdict.className = `verdict ${words.level}`;
-    verdict.replaceChildren(h("h2", {}, result.controllers.length > 1 ? `${names[selected]}: ${words.head}` : words.head), h("p", {}, sentences.join(" ")));
+    verdict.replaceChildren(h("h2", {}, result.controllers.length > 1 ? h("span", { class: "who" }, `${names[selected]}: `) : null, words.head), h("p", {}, sentences.join(" ")));
     const failures = result.controllers.flatMap((candidate, index) => (candidate.error && index !== selected ? [{ name: names[index]!, error: candidate.error }] : []));
     if (failures.length > 0) {
       verdict.append(h("ul", {}, failures.map(({ name, error }) => h("li", {}, h("strong", {}, `${name}: `), error.detail ?? error.title ?? "no answer"))));
@@ -125,7 +125,7 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const open = figures.querySelector("details")?.open ?? false;
     figures.replaceChildren(
       h("h2", { id: "figures-title" }, "Figures"),
-      figuresTable("Figures", columns, groups.filter((group) => group.main)),
+      figuresTable("Main figures", columns, groups.filter((group) => group.main)),
       h("details", { open }, h("summary", {}, "All figures"), figuresTable("All other figures", columns, groups.filter((group) => !group.main))),
     );
   }

@@ -6,10 +6,13 @@ import type { Field } from "../form/controls.ts";
 import type { Control, FormErrors } from "../form/errors.ts";
 import { fieldsOf, pick, place, readField, typedText } from "../form/fields.ts";
 import type { FieldSpec } from "../form/fields.ts";
+import { namedUnit, unitNames } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
 
 export interface MethodsCard {
   element: HTMLElement;
   setMethods(methods: Method[]): void;
+  setUnits(units: UnitNames): void;
   read(): { tune: TuneEntry[] | string; errors: FieldError[] };
   load(tune: TuneEntry[] | string | undefined): void;
 }
@@ -30,6 +33,7 @@ interface Row {
 
 export function methodsCard(errors: FormErrors): MethodsCard {
   let rows: Row[] = [];
+  let units = unitNames(undefined);
   let wanted: TuneEntry[] | string = DEFAULT_TUNE;
   const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
   const element = h(
@@ -76,6 +80,10 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     for (const { spec, field } of row.fields) field.input.value = typedText(pick(entry, spec.path));
   }
 
+  function writeUnits(): void {
+    for (const row of rows) for (const { spec, field } of row.fields) field.setUnit(namedUnit(spec.unit, units));
+  }
+
   function show(): void {
     const entries = typeof wanted === "string" ? rows.map((row) => ({ method: row.method.id })) : wanted;
     for (const row of rows) fill(row, entries.find((entry) => entry.method === row.method.id));
@@ -94,6 +102,11 @@ export function methodsCard(errors: FormErrors): MethodsCard {
         ...(others.length > 0 ? [h("details", { class: "rules" }, h("summary", {}, `Compare with ${others.length} other ${others.length === 1 ? "method" : "methods"}`), ...others)] : []),
       );
       show();
+      writeUnits();
+    },
+    setUnits(next) {
+      units = next;
+      writeUnits();
     },
     read() {
       // Without the service's list the default of the contract holds.
@@ -123,7 +136,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
 
 function optionField(spec: FieldSpec, pointer: () => string | null, errors: FormErrors): Field<Control["input"]> {
   const hint = [spec.hint, spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""].filter(Boolean).join(" ");
-  const shared = { label: spec.label, hint, unit: spec.unit, pointer };
+  const shared = { label: spec.label, hint, pointer };
   const standard = spec.defaultText ? `as usual (${spec.defaultText})` : "as usual";
   if (spec.kind === "choice") return choiceField({ ...shared, choices: [["", standard], ...spec.choices.map((item) => [item, item] as const)] }, errors);
   if (spec.kind === "boolean") return choiceField({ ...shared, choices: [["", standard], ["true", "yes"], ["false", "no"]] }, errors);

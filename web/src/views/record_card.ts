@@ -93,7 +93,7 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     element,
     read() {
       const record: RecordedTest = { csv: csv.input.value };
-      const named = Object.entries(columns).flatMap(([name, field]) => (field.input.value.trim() ? [[name, field.input.value.trim()] as const] : []));
+      const named = Object.entries(columns).flatMap(([name, field]) => (field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : []));
       if (named.length > 0) record.columns = Object.fromEntries(named);
       if (kind.input.value !== "auto") record.kind = kind.input.value;
       const missing = csv.input.value.trim() === "";
@@ -105,7 +105,7 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     },
     load(record, identify) {
       csv.input.value = record.csv ?? csvOf(record);
-      for (const name of ["t", "u", "y"] as const) columns[name].input.value = record.columns?.[name] ?? "";
+      for (const name of ["t", "u", "y"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
       kind.input.value = record.kind ?? "auto";
       const wanted = identify?.["model"];
       model.input.value = typeof wanted === "string" && MODELS.some(([id]) => id === wanted) ? wanted : "auto";
@@ -113,6 +113,9 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     },
   };
 }
+
+/** A column is named by its heading, or by its number from 1. */
+const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? Number(text) : text);
 
 /** A record given as numbers, as the text that the field shows. */
 function csvOf(record: RecordedTest): string {

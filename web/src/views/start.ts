@@ -40,7 +40,11 @@ export function startView(store: Store, events: StartEvents): StartView {
   const model = modelCard(errors, { onTune: () => void tuneModel(), onChange: events.onModel });
   const record = recordCard(errors, () => void tuneRecord());
   const methods = methodsCard(errors);
-  const today = todayCard(errors, () => model.setUnits(unitNames(today.readUnits())));
+  const today = todayCard(errors, () => {
+    const units = unitNames(today.readUnits());
+    model.setUnits(units);
+    methods.setUnits(units);
+  });
   const examples = h("div", { class: "examples" });
   const recent = h("p", { class: "recent", hidden: true });
   const element = h(

@@ -17,6 +17,13 @@ export function formatNumber(value: number | null | undefined, digits = 3): stri
   return plain.replaceAll("-", MINUS);
 }
 
+/** A parameter in running text: four digits at most, no trailing zeros. */
+export function formatParameter(value: number): string {
+  const short = Number(value.toPrecision(4));
+  const size = Math.abs(short);
+  return short !== 0 && (size < 1e-3 || size >= 1e5) ? formatNumber(short, 4) : String(short).replaceAll("-", MINUS);
+}
+
 /** A figure to enter into a controller: five digits at most, no trailing zeros. */
 export function formatSetting(value: number | null | undefined): string {
   if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
@@ -39,6 +46,13 @@ export function unitNames(units: { time?: string; u?: string; y?: string } | und
 /** degC and degF as they are printed. */
 function pretty(unit: string): string {
   return unit.replace(/^deg([CF])$/, "°$1");
+}
+
+/** A unit of the contract in the user's names: "time" and "u/y"; "" where a needed name is unknown. */
+export function namedUnit(unit: string, units: UnitNames): string {
+  const names: Record<string, string> = { time: units.time, u: units.u, y: units.y };
+  const parts = unit.split(/([/ ])/);
+  return parts.some((part) => part in names && names[part] === "") ? "" : parts.map((part) => names[part] ?? part).join("");
 }
 
 /** "Ti (s)"; the bare name where there is no unit. */

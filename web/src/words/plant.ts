@@ -1,6 +1,6 @@
 // A plant in one line of words.
 import type { Plant } from "../api/types.ts";
-import { formatNumber, quotient } from "./numbers.ts";
+import { formatParameter, quotient } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 const TITLES: Record<string, string> = {
@@ -29,7 +29,7 @@ export function plantWords(plant: Plant, units: UnitNames): string {
     const value = plant[name];
     if (typeof value !== "number" || (name === "L" && value === 0)) return [];
     const unit = parameterUnit(plant, name, units);
-    return [`${name} ${formatNumber(value)}${unit ? ` ${unit}` : ""}`];
+    return [`${name} ${formatParameter(value)}${unit ? ` ${unit}` : ""}`];
   });
   return parts.length > 0 ? parts.join(", ") : plantTitle(plant.type);
 }

@@ -1,0 +1,333 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import test, { after, before } from "node:test";
+import { accessibilityViolations, launchBrowser, openPage, startService } from "../harness.mjs";
+
+let service;
+let browser;
+
+before(async () => {
+  service = await startService();
+  browser = await launchBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await service?.stop();
+});
+
+/** Runs a test body on a fresh page at an address below the service; the page must end without a fault. */
+async function withPage(address, options, body) {
+  const opened = await openPage(browser, options);
+  try {
+    await opened.page.goto(`${service.base}/${address}`);
+    await body(opened.page);
+    assert.deepEqual(await opened.faults(), []);
+  } finally {
+    await opened.close();
+  }
+}
+
+/** The answer of the API for the job that the page's address names. */
+async function jobOf(page) {
+  const id = /#\/jobs\/([^/]+)\/design/.exec(page.url())?.[1];
+  assert.ok(id, `no job in ${page.url()}`);
+  return (await fetch(`${service.base}/v1/jobs/${id}`)).json();
+}
+
+const designShown = (page) => page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+
+/** Text of a figure's cell: row and column by their headings. */
+async function figure(page, group, label, column = 0) {
+  const body = page.locator(".figures-card tbody").filter({ has: page.locator("tr.group", { hasText: new RegExp(`^${group}$`) }) });
+  const row = body.locator("tr").filter({ has: page.locator("th[scope=row]", { hasText: label }) });
+  return (await row.first().locator("td").nth(column).innerText()).replace("−", "-");
+}
+
+/** Every drawn path of a plot must be finite and, for the traces, longer than a single point. */
+async function drawnTraces(page, title) {
+  const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
+  const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
+  assert.ok(paths.every((d) => !/NaN|Infinity|undefined/.test(d)), title);
+  return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
+}
+
+const asShown = (value) => Number(Number(value).toPrecision(3));
+
+test("the FOPDT form runs a job; table, settings and plots show what the API answers", async () => {
+  await withPage("", {}, async (page) => {
+    await page.getByLabel("Kind of process").selectOption("fopdt");
+    await page.getByLabel("K", { exact: true }).fill("1,25");
+    await page.getByLabel("T (s)", { exact: true }).fill("40");
+    await page.getByLabel("L (s)", { exact: true }).fill("8");
+    await page.getByRole("math").waitFor();
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    const job = await jobOf(page);
+    assert.equal(job.status, "succeeded");
+    assert.deepEqual(job.request.plant, { type: "fopdt", K: 1.25, T: 40, L: 8 });
+    assert.deepEqual(job.request.tune.map((entry) => [entry.method, entry.Ms, entry.Mt]), [["robust", 1.4, 1.4]]);
+    const [entry] = job.result.controllers;
+    for (const [group, label, value] of [
+      ["Controller", "Kp", entry.controller.Kp],
+      ["Controller", "Ti", entry.controller.Ti],
+      ["Controller", "Td", entry.controller.Td],
+      ["Controller", "Tf", entry.controller.filter.Tf],
+      ["Robustness", "Ms", entry.robustness.Ms],
+      ["Robustness", "Mt", entry.robustness.Mt],
+      ["Robustness", "Phase margin", entry.robustness.phase_margin_deg],
+      ["Load step", "IAE", entry.performance.load.IAE],
+      ["Load step", "Peak", entry.performance.load.peak],
+      ["Set-point step", "Overshoot", entry.performance.setpoint.overshoot_percent],
+      ["Set-point step", "TV", entry.performance.setpoint.TV],
+    ]) {
+      assert.equal(Number(await figure(page, group, label)), asShown(value), `${group} ${label}`);
+    }
+    assert.ok(entry.robustness.Ms <= 1.4 * (1 + 2e-5) && entry.robustness.Mt <= 1.4 * (1 + 2e-5));
+    for (const [title, traces] of [["Set-point step", 2], ["Load step at the plant input", 2], ["Nyquist curve of L", 1], ["Sensitivities", 3]]) {
+      assert.equal(await drawnTraces(page, title), traces, title);
+    }
+    assert.match(await page.getByRole("region", { name: "Verdict" }).innerText(), /Robust/);
+    // The address alone brings the job back.
+    await page.reload();
+    await designShown(page);
+    assert.equal(Number(await figure(page, "Controller", "Kp")), asShown(entry.controller.Kp));
+  });
+});
+
+test("settings change their form and are copied with all their digits", async () => {
+  await withPage("#/new/fopdt?K=2&T=10&L=3", {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: service.base });
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    const [entry] = (await jobOf(page)).result.controllers;
+    await page.getByRole("radio", { name: "parallel" }).check();
+    await page.getByRole("button", { name: "Copy" }).click();
+    await page.getByRole("button", { name: "Copied" }).waitFor();
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    const Ki = Number(/^Ki = (\S+)/m.exec(copied)[1]);
+    assert.ok(Math.abs(Ki / entry.equivalents.parallel.Ki - 1) < 1e-4, copied);
+  });
+});
+
+test("a dropped record is identified, tuned and drawn with its model", async () => {
+  // A first-order step response with known parameters: K 2, T 30, L 5 from rest at y = 20.
+  const rows = Array.from({ length: 400 }, (_, t) => {
+    const y = 20 + (t > 25 ? 10 * (1 - Math.exp(-(t - 25) / 30)) : 0);
+    return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
+  });
+  await withPage("", {}, async (page) => {
+    const transfer = await page.evaluateHandle((text) => {
+      const data = new DataTransfer();
+      data.items.add(new File([text], "step.csv", { type: "text/csv" }));
+      return data;
+    }, ["t,u,y", ...rows].join("\n"));
+    await page.locator(".drop").dispatchEvent("drop", { dataTransfer: transfer });
+    await page.getByText("step.csv: 401 lines.").waitFor();
+    await page.getByRole("button", { name: "Tune from this test" }).click();
+    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
+    const job = await jobOf(page);
+    const { model } = job.result;
+    assert.ok(model.fit_percent > 99, `fit ${model.fit_percent}`);
+    assert.ok(Math.abs(model.plant.K / 2 - 1) < 0.01, `K ${model.plant.K}`);
+    const card = page.locator("section").filter({ has: page.getByRole("heading", { name: "Model from the record" }) });
+    assert.equal(Number(await card.locator("tr", { hasText: "Fit" }).locator("td").first().innerText()), asShown(model.fit_percent));
+    assert.equal(await drawnTraces(page, "Recorded test and model"), 2 + (model.fit.u ? 1 : 0));
+    assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
+  });
+});
+
+test("a field that cannot be read says so beside itself, and the summary leads to it", async () => {
+  await withPage("", {}, async (page) => {
+    await page.getByLabel("T (s)", { exact: true }).fill("1,2,3");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    const summary = page.getByRole("group", { name: "What to mend" });
+    await summary.waitFor();
+    assert.ok(await summary.evaluate((element) => element === document.activeElement));
+    assert.match(await summary.innerText(), /1 thing to mend/);
+    const input = page.getByLabel("T (s)", { exact: true });
+    assert.equal(await input.getAttribute("aria-invalid"), "true");
+    assert.match(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), /T "1,2,3" is not a number\. Write/);
+    assert.equal(await input.inputValue(), "1,2,3");
+    await summary.getByRole("link").click();
+    assert.ok(await input.evaluate((element) => element === document.activeElement));
+  });
+});
+
+test("faults that the service finds stand at their fields, several at once", async () => {
+  const opened = await openPage(browser);
+  try {
+    const { page } = opened;
+    await page.goto(service.base);
+    await page.getByLabel("L (s)", { exact: true }).fill("-3");
+    await page.getByLabel("Ms", { exact: true }).fill("0.5");
+    const answer = page.waitForResponse((response) => response.url().endsWith("/v1/jobs") && response.request().method() === "POST");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    const response = await answer;
+    assert.equal(response.status(), 422);
+    const { errors } = await response.json();
+    assert.deepEqual(errors.map((error) => error.pointer).sort(), ["/plant/L", "/tune/0/Ms"]);
+    for (const [label, pointer] of [["L (s)", "/plant/L"], ["Ms", "/tune/0/Ms"]]) {
+      const input = page.getByLabel(label, { exact: true });
+      assert.equal(await input.getAttribute("aria-invalid"), "true", label);
+      assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), errors.find((error) => error.pointer === pointer).detail);
+    }
+    // Chromium reports every 4xx answer on the console; nothing else may stand there.
+    assert.deepEqual((await opened.faults()).filter((fault) => !fault.includes("422")), []);
+  } finally {
+    await opened.close();
+  }
+});
+
+test("several methods and today's settings are compared; a second plot and the keyboard follow", async () => {
+  await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
+    await page.getByText(/^Compare with/).click();
+    await page.getByRole("checkbox", { name: /simc$/ }).check();
+    await page.getByLabel("Kp", { exact: true }).fill("1.2");
+    await page.getByLabel("Ti", { exact: true }).fill("40");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    const { controllers } = (await jobOf(page)).result;
+    assert.deepEqual(controllers.map((entry) => entry.method), ["robust", "simc", "baseline"]);
+    for (const [column, entry] of controllers.entries()) {
+      assert.equal(Number(await figure(page, "Load step", "IAE", column)), asShown(entry.performance.load.IAE), entry.method);
+    }
+    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 3);
+    await page.getByRole("checkbox", { name: "Draw simc" }).uncheck();
+    await page.waitForFunction(() => !document.querySelector(".legend input[aria-label='Draw simc']").checked);
+    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 2);
+    await page.getByRole("button", { name: "today", exact: true }).click();
+    await page.getByRole("heading", { name: "Settings to enter: today" }).waitFor();
+    assert.match(page.url(), /entry=2$/);
+
+    const load = page.getByRole("img", { name: "Load step at the plant input" });
+    await load.focus();
+    await page.keyboard.press("Home");
+    await page.keyboard.press("Shift+ArrowRight");
+    const overlayOf = (name) => page.getByRole("img", { name }).locator("> g").nth(1);
+    assert.match(await overlayOf("Load step at the plant input").textContent(), /time .*robust .*today/);
+    assert.ok((await overlayOf("Set-point step").locator("circle").count()) > 0, "the set-point plot follows the cursor");
+    const before = await load.locator("text").allTextContents();
+    await page.keyboard.press("+");
+    assert.notDeepEqual(await load.locator("text").allTextContents(), before);
+    await page.keyboard.press("0");
+    await page.keyboard.press("t");
+    const table = page.getByRole("region", { name: "Data of Load step at the plant input" });
+    assert.ok((await table.locator("tbody tr").count()) >= 40);
+  });
+});
+
+test("a plot is saved as SVG without class and style, and as PNG", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: "Nyquist curve of L" }) });
+    const save = async (kind) => {
+      await plot.getByText("Export").first().click();
+      const [download] = await Promise.all([page.waitForEvent("download"), plot.getByRole("button", { name: kind, exact: true }).click()]);
+      return readFileSync(await download.path());
+    };
+    const svg = (await save("SVG")).toString("utf8");
+    assert.doesNotMatch(svg, /\sclass=|\sstyle=|var\(/);
+    assert.match(svg, /<title>Nyquist curve of L<\/title>/);
+    assert.match(svg, /#2363c5/);
+    const png = await save("PNG");
+    assert.deepEqual([...png.subarray(0, 8)], [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
+    assert.ok(png.readUInt32BE(16) > 600, "drawn at twice its size");
+  });
+});
+
+test("every example of the service is tuned unchanged from the page", async () => {
+  const { examples } = await (await fetch(`${service.base}/v1/examples`)).json();
+  assert.ok(examples.length > 0);
+  for (const example of examples) {
+    await withPage("", {}, async (page) => {
+      await page.getByRole("button", { name: `Tune: ${example.title}` }).click();
+      await designShown(page);
+      const job = await jobOf(page);
+      assert.equal(job.status, "succeeded", example.id);
+      assert.deepEqual(job.request, example.request);
+    });
+  }
+});
+
+test("an example is shown in the form and sent from there as the same plant and methods", async () => {
+  const { examples } = await (await fetch(`${service.base}/v1/examples`)).json();
+  for (const example of examples.filter((candidate) => candidate.request.plant && Array.isArray(candidate.request.tune ?? []))) {
+    await withPage(`#/examples/${example.id}`, {}, async (page) => {
+      await page.getByRole("button", { name: "Tune this model" }).waitFor();
+      await page.waitForLoadState("networkidle");
+      await page.getByRole("button", { name: "Tune this model" }).click();
+      await designShown(page);
+      const { request } = await jobOf(page);
+      assert.deepEqual({ L: 0, ...request.plant }, { L: 0, ...example.request.plant }, example.id);
+      if (example.request.tune) assert.deepEqual(new Set(request.tune.map((entry) => entry.method)), new Set(example.request.tune.map((entry) => entry.method)), example.id);
+    });
+  }
+});
+
+test("a job that cannot be done says why, and leads back to its request", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=10", {}, async (page) => {
+    await page.getByLabel("Ms", { exact: true }).fill("1.01");
+    await page.getByLabel("Mt", { exact: true }).fill("1.01");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByRole("link", { name: "Change the request" }).waitFor();
+    const verdict = page.getByRole("region", { name: "Verdict" });
+    await verdict.waitFor();
+    const job = await jobOf(page);
+    const said = job.status === "failed" ? job.error.detail : job.result.controllers[0].controller.Kp;
+    assert.ok(job.status !== "failed" || (await verdict.innerText()).includes(said));
+    await page.getByRole("link", { name: "Change the request" }).click();
+    await page.getByRole("button", { name: "Tune this model" }).waitFor();
+    await page.waitForFunction(() => [...document.querySelectorAll("label")].some((label) => label.textContent === "Ms" && document.getElementById(label.htmlFor).value === "1.01"));
+  });
+});
+
+test("an address of a job that does not exist says so", async () => {
+  const opened = await openPage(browser);
+  try {
+    await opened.page.goto(`${service.base}/#/jobs/00000000-0000-0000-0000-000000000000/design`);
+    await opened.page.locator(".trouble").filter({ hasText: /\S/ }).waitFor();
+  } finally {
+    await opened.close();
+  }
+});
+
+for (const scheme of ["light", "dark"]) {
+  test(`axe finds nothing on Start and Design in the ${scheme} theme`, async () => {
+    await withPage("#/new/fopdt?K=1.25&T=40&L=8", { scheme }, async (page) => {
+      await page.getByText(/^Compare with/).click();
+      await page.getByRole("checkbox", { name: /simc$/ }).check();
+      await page.getByLabel("Kp", { exact: true }).fill("1.2");
+      assert.deepEqual(await accessibilityViolations(page), []);
+      await page.getByRole("button", { name: "Tune this model" }).click();
+      await designShown(page);
+      for (const summary of ["All figures", "How it was computed"]) await page.getByText(summary, { exact: true }).click();
+      await page.getByRole("button", { name: "Table" }).first().click();
+      assert.deepEqual(await accessibilityViolations(page), []);
+    });
+  });
+}
+
+for (const [name, width, height] of [["desktop", 1440, 900], ["tablet", 834, 1194], ["phone", 390, 844]]) {
+  test(`nothing is wider than the window on a ${name}`, async () => {
+    await withPage("", { width, height }, async (page) => {
+      const overflow = () => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.equal(await overflow(), 0);
+      await page.getByRole("button", { name: "Tune this model" }).click();
+      await designShown(page);
+      assert.equal(await overflow(), 0);
+    });
+  });
+}
+
+test("what the first visit loads stays below 100 kB compressed", async () => {
+  const { gzipSync } = await import("node:zlib");
+  const html = await (await fetch(`${service.base}/`)).text();
+  const assets = [...html.matchAll(/(?:src|href)="\.\/([^"]+)"/g)].map((match) => match[1]);
+  let total = gzipSync(html).length;
+  for (const asset of assets) total += gzipSync(Buffer.from(await (await fetch(`${service.base}/${path.posix.normalize(asset)}`)).arrayBuffer())).length;
+  assert.ok(assets.length >= 2);
+  assert.ok(total <= 100 * 1024, `${total} bytes`);
+});

@@ -243,7 +243,10 @@ test("every example of the service is tuned unchanged from the page", async () =
   assert.ok(examples.length > 0);
   for (const example of examples) {
     await withPage("", {}, async (page) => {
-      await page.getByRole("button", { name: `Tune: ${example.title}` }).click();
+      await page.getByRole("button", { name: /^Tune: / }).first().waitFor();
+      const folded = page.locator(".examples details summary");
+      if ((await folded.count()) > 0) await folded.click();
+      await page.getByRole("button", { name: `Tune: ${example.title}`, exact: true }).click();
       await designShown(page);
       const job = await jobOf(page);
       assert.equal(job.status, "succeeded", example.id);

@@ -11,14 +11,14 @@ export interface RecordCard {
 }
 
 const KINDS = [
-  ["auto", "found by the service"],
+  ["auto", "automatic"],
   ["step", "step test"],
   ["relay", "relay test"],
   ["general", "any other movement"],
 ] as const;
 
 const MODELS = [
-  ["auto", "the best that the record supports"],
+  ["auto", "automatic"],
   ["fopdt", "first order with dead time"],
   ["sopdt", "second order with dead time"],
   ["ipdt", "integrating with dead time"],
@@ -43,7 +43,7 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     errors,
   );
   const column = (name: "t" | "u" | "y", meaning: string): ReturnType<typeof textField> =>
-    textField({ label: `Column ${name}`, hint: meaning, placeholder: "found by itself", pointer: () => `/record/columns/${name}` }, errors);
+    textField({ label: `Column ${name}`, hint: `${meaning}; heading or number`, placeholder: "auto", pointer: () => `/record/columns/${name}` }, errors);
   const columns = { t: column("t", "time"), u: column("u", "output"), y: column("y", "measurement") };
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);

@@ -30,6 +30,9 @@ export interface StartView extends View {
   loadTyped(form: string, values: Record<string, string>): void;
 }
 
+/** So many examples stand open; the others are folded. */
+const EXAMPLES_SHOWN = 3;
+
 export function startView(store: Store, events: StartEvents): StartView {
   const errors = new FormErrors();
   // Parts of a loaded request that have no field: sent back as they came.
@@ -129,7 +132,9 @@ export function startView(store: Store, events: StartEvents): StartView {
       status.textContent = workspace.serviceTrouble;
       status.hidden = false;
     }
-    examples.replaceChildren(...workspace.examples.map((example) => exampleElement(example, () => void send(example.request, []))));
+    const elements = workspace.examples.map((example) => exampleElement(example, () => void send(example.request, [])));
+    const [first, others] = [elements.slice(0, EXAMPLES_SHOWN), elements.slice(EXAMPLES_SHOWN)];
+    examples.replaceChildren(...first, ...(others.length > 0 ? [h("details", {}, h("summary", {}, `${others.length} more`), h("div", { class: "examples" }, others))] : []));
     recent.hidden = workspace.recent.length === 0;
     recent.replaceChildren(
       "Recent: ",

@@ -14,13 +14,12 @@ const store = createStore({
   route: { screen: "start" },
   job: null,
   jobTrouble: "",
-  selected: 0,
+  selected: null,
   drawn: null,
   methods: [],
   examples: [],
   recent: [],
   serviceTrouble: "",
-  units: {},
 });
 
 const status = h("p", { class: "visually-hidden", role: "status" });
@@ -67,7 +66,7 @@ function mount(next: View, title: string, focus: boolean): void {
 function startScreen(): StartView {
   start ??= startView(store, {
     onJob(job) {
-      store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: 0, drawn: null }));
+      store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null }));
       location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
     },
     onModel(form, values) {
@@ -134,7 +133,7 @@ function go(first: boolean): void {
       ...workspace,
       job: same ? workspace.job : null,
       jobTrouble: "",
-      selected: route.entry ?? (same ? workspace.selected : 0),
+      selected: route.entry ?? (same ? workspace.selected : null),
       drawn: same ? workspace.drawn : null,
     }));
     links.design.href = formatRoute({ ...route, entry: null });

@@ -1,5 +1,5 @@
 // The page's state: one immutable workspace. Every change is a function from one workspace to the next; subscribers run once per frame.
-import type { Job, Method, Example, Units } from "./api/types.ts";
+import type { Example, Job, Method } from "./api/types.ts";
 import type { Route } from "./routes.ts";
 
 export interface Workspace {
@@ -7,7 +7,8 @@ export interface Workspace {
   job: Job | null;
   /** Why the job cannot be shown or followed at the moment, or "". */
   jobTrouble: string;
-  selected: number;
+  /** Whose settings and verdict are shown; null: the first entry that has an answer. */
+  selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;
   methods: Method[];
@@ -15,7 +16,6 @@ export interface Workspace {
   recent: Job[];
   /** Why methods or examples could not be had, or "". */
   serviceTrouble: string;
-  units: Units;
 }
 
 export interface Store {

@@ -287,6 +287,65 @@ test("a job that cannot be done says why, and leads back to its request", async 
   });
 });
 
+test("a running job shows its fraction, stage, message and best design, and Cancel ends it", async () => {
+  await withPage("", {}, async (page) => {
+    const job = {
+      id: "running", name: "slow loop", status: "running", created_at: "2026-01-01T00:00:00Z", attempts: 1, request: { plant: { type: "fopdt", K: 1, T: 10, L: 1 } },
+      progress: { fraction: 0.42, stage: "tune", message: "Searching from 3 of 7 starts.", best: { controller: { Kp: 2.5, Ti: 16 }, load_IAE: 8.4, Ms: 1.4, Mt: 1.3 } },
+    };
+    // The service is asked for nothing here: how long a real search takes must not decide the test.
+    await page.route("**/v1/jobs/running", (route) => route.fulfill({ json: job }));
+    await page.route("**/v1/jobs/running/cancel", (route) => {
+      job.status = "cancelled";
+      return route.fulfill({ status: 202, json: job });
+    });
+    await page.goto(`${service.base}/#/jobs/running/design`);
+    await page.getByRole("heading", { name: "Searching for the best controller: 42 %" }).waitFor();
+    assert.equal(await page.getByRole("progressbar").evaluate((bar) => bar.value), 0.42);
+    await page.getByText("Searching from 3 of 7 starts.").waitFor();
+    await page.getByText("Best so far: Kp 2.50, Ti 16.0, load IAE 8.40, Ms 1.40, Mt 1.30.").waitFor();
+    await page.getByRole("button", { name: "Cancel" }).click();
+    await page.getByRole("heading", { name: "Stopped before a controller was found." }).waitFor();
+    assert.equal(await page.getByRole("progressbar").count(), 0);
+  });
+});
+
+test("a lost connection is said, and the job is found again when it is back", async () => {
+  const opened = await openPage(browser);
+  try {
+    const { page } = opened;
+    await page.goto(`${service.base}/#/new/fopdt?K=1&T=10&L=2`);
+    let lost = true;
+    await page.route("**/v1/jobs/*", (route) => (lost ? route.abort() : route.continue()));
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByText("Not connected to the service.").waitFor();
+    lost = false;
+    await designShown(page);
+    await page.getByText("Not connected to the service.").waitFor({ state: "hidden" });
+  } finally {
+    await opened.close();
+  }
+});
+
+test("dragging zooms, equal axes stay equal, and Show all goes back", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    const nyquist = page.getByRole("img", { name: "Nyquist curve of L" });
+    await nyquist.scrollIntoViewIfNeeded();
+    const circle = () => nyquist.locator("circle").first().getAttribute("r").then(Number);
+    const before = await circle();
+    const box = await nyquist.boundingBox();
+    await page.mouse.move(box.x + 150, box.y + 60);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 300, box.y + 130, { steps: 4 });
+    await page.mouse.up();
+    assert.ok((await circle()) > 1.5 * before, "the circle grows with the zoom and stays a circle");
+    await page.getByRole("button", { name: "Show all" }).click();
+    assert.equal(await circle(), before);
+  });
+});
+
 test("an address of a job that does not exist says so", async () => {
   const opened = await openPage(browser);
   try {

@@ -28,9 +28,14 @@ test("a design that touches its limit says which, where, what it tolerates and w
   assert.equal(verdict.head, "Robust, limited by the margin you asked for.");
   const text = verdict.sentences.join(" ");
   assert.match(text, /Ms = 1\.60 at 0\.213 rad\/s\. Mt \(1\.46\) has room\./);
-  assert.match(text, /The process gain may grow 2\.7-fold, or the dead time by 8\.7 s, before the loop oscillates\./);
+  assert.match(text, /The process gain may grow 2\.7-fold, or the dead time by 8\.7 s before the loop oscillates\./);
   assert.match(text, /costs 8\.44 °C s instead of 33\.0 with today's settings: 3\.9 times less/);
   assert.match(text, /The valve moves 3\.8 times as much/);
+});
+
+test("a gain that may not fall is said, as unstable plants have it", () => {
+  const text = verdictOf(entry({ gain_margin_low: 0.4 }), undefined, {}).sentences.join(" ");
+  assert.match(text, /The process gain may fall to 0\.40 of itself or grow 2\.7-fold, or the dead time may grow by 8\.7 s before/);
 });
 
 test("levels follow Ms", () => {

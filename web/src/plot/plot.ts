@@ -42,7 +42,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   svg.append(drawing, overlay);
 
   const table = h("div", { class: "data-table", tabindex: 0, role: "region", "aria-label": `Data of ${frame.title}`, hidden: true });
-  const tableButton = h("button", { type: "button", class: "quiet", "aria-expanded": "false", onclick: () => toggleTable() }, "Table");
+  const tableButton = h("button", { type: "button", class: "quiet", "aria-expanded": "false", onclick: () => toggleTable() }, "Table", h("span", { class: "visually-hidden" }, ` of ${frame.title}`));
   const resetButton = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => setView(wholeView(frame)) }, "Show all");
   const exportMenu = h(
     "details",
@@ -70,8 +70,14 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     h("header", {}, title, h("div", { class: "tools" }, resetButton, tableButton, exportMenu)),
     description,
     svg,
+    h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),
     table,
   );
+  table.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    toggleTable();
+    svg.focus();
+  });
 
   function draw(): void {
     const box = svg.getBoundingClientRect();

@@ -193,7 +193,8 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const names = entryNames(result.controllers);
     const indices = workspace.drawn ?? defaultDrawn(result);
     const drawn = drawnEntries(result, indices);
-    const selected = Math.min(workspace.selected, result.controllers.length - 1);
+    const answered = Math.max(0, result.controllers.findIndex((candidate) => !candidate.error));
+    const selected = Math.min(workspace.selected ?? answered, result.controllers.length - 1);
     const entry = result.controllers[selected];
     if (!entry) return;
     const focused = document.activeElement instanceof HTMLElement && legend.contains(document.activeElement) ? controlsOf(legend).indexOf(document.activeElement) : -1;

@@ -82,11 +82,14 @@ function limitSentences(entry: Entry, time: string): string[] {
 function toleranceSentences(entry: Entry, time: string): string[] {
   const gain = entry.robustness!.gain_margin;
   const delay = entry.robustness!.tolerates?.extra_dead_time ?? entry.robustness!.delay_margin;
+  const low = entry.robustness!.gain_margin_low;
+  const falls = typeof low === "number" && low > 0 ? `fall to ${formatNumber(low, 2)} of itself` : "";
+  const grows = typeof gain === "number" ? `grow ${formatNumber(gain, 2)}-fold` : "";
   const parts: string[] = [];
-  if (gain !== null && gain !== undefined) parts.push(`the process gain may grow ${formatNumber(gain, 2)}-fold`);
-  if (delay !== null && delay !== undefined) parts.push(`the dead time by ${formatNumber(delay, 2)} ${time}`);
+  if (falls || grows) parts.push(`the process gain may ${[falls, grows].filter(Boolean).join(" or ")}`);
+  if (typeof delay === "number") parts.push(`the dead time ${falls || !grows ? "may grow " : ""}by ${formatNumber(delay, 2)} ${time}`);
   if (parts.length === 0) return [];
-  const sentence = `${parts.join(", or ")}, before the loop oscillates.`;
+  const sentence = `${parts.join(", or ")} before the loop oscillates.`;
   return [sentence[0]!.toUpperCase() + sentence.slice(1)];
 }
 

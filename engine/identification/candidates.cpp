@@ -84,13 +84,27 @@ bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
 }
 
+/// Whether the record contradicts an unseen step at its first sample: y stays within the noise until u first moves, for
+/// longer than the dead time.
+bool seen_at_rest(const CleanRecord& r, double L, double noise) {
+    const double until = r.v_time.front();
+    int n = 0;
+    double sum = 0, squares = 0;
+    for (; n < r.samples() && r.t[n] <= until; ++n) {
+        sum += r.y[n];
+        squares += r.y[n] * r.y[n];
+    }
+    if (n < 5 || until <= L) return false;
+    const double mean = sum / n, spread = std::sqrt(std::max(0.0, squares / n - mean * mean));
+    return spread <= std::max(2 * noise, 0.01);
+}
+
 /// Where the fit from rest leaves more than noise behind, and the user has not said where u was before: the starts that
 /// could explain it. A single change at the first sample is the unseen step itself.
-std::vector<Start> other_starts(const CleanRecord& r, const Fit& from_rest) {
+std::vector<Start> other_starts(const CleanRecord& r, const Fit& from_rest, double noise) {
     if (r.u0_given) return {};
     std::vector<Start> starts;
     if (is_integrating(from_rest.form.structure) && shows_rest(r)) starts.push_back(Start::steady_slope);
-    const double noise = std::max(noise_std(r.y), quantisation_step(r.y) / std::sqrt(12.0));
     const bool unexplained =
         from_rest.sse > 2 * r.samples() * noise * noise && correlation_time(from_rest.residual) > 3;
     if (unexplained && !(r.changes() == 1 && r.v_time[0] == 0)) starts.push_back(Start::other_level);
@@ -105,10 +119,22 @@ constexpr double kVarianceFloor = 1e-14;
 
 Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure structure,
                   const std::vector<Fit>& simpler, std::stop_token stop) {
+    // A start that the simplest self-regulating structure needed, its extensions need too.
+    const auto fopdt =
+        std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
+    const bool known_start =
+        fopdt != simpler.end() && fopdt->form.start == Start::other_level && !is_integrating(structure);
+    if (known_start) {
+        Fit fit = fit_form(record, thin, {structure, Start::other_level}, simpler, stop);
+        if (fit.determined && plausible_rest(record, fit)) return fit;
+    }
     Fit best = fit_form(record, thin, {structure, Start::at_rest}, simpler, stop);
-    for (const Start start : other_starts(record, best)) {
+    if (known_start) return best;
+    const double noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
+    for (const Start start : other_starts(record, best, noise)) {
         Fit fit = fit_form(record, thin, {structure, start}, simpler, stop);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
+        if (start == Start::other_level && seen_at_rest(record, fit.shape.L(), noise)) continue;
         const double n = effective_samples(fit.residual);
         const bool better = information_criterion(record, fit, n) + kStrong < information_criterion(record, best, n);
         if (better) best = std::move(fit);

@@ -45,10 +45,11 @@ std::optional<Error> refuse_method(const IdentifyOptions& options) {
 std::optional<Error> refuse_late_step(const CleanRecord& r) {
     const auto after = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t > r.v_time.front(); });
     if (after > 3) return std::nullopt;
-    return Error{ErrorKind::not_identifiable, "record",
-                 "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
-                     ", with " + std::to_string(after) +
-                     " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
+    return Error{
+        ErrorKind::not_identifiable, "record",
+        "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
+            std::to_string(after) +
+            " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
 }
 
 Error no_response(const CleanRecord& r, double percent) {

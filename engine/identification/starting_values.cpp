@@ -13,15 +13,15 @@ std::vector<double> geometric(double from, double to, int count) {
     return values;
 }
 
-/// 0, then geometric; for an input of many changes also evenly spaced, because each interval between changes can hold a
-/// minimum.
-std::vector<double> dead_times(const CleanRecord& r) {
+/// 0, then geometric; for an input of many changes also `even` ones evenly spaced, because each interval between
+/// changes can hold a minimum.
+std::vector<double> dead_times(const CleanRecord& r, int even) {
     const double longest = 0.8 * r.response_time();
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
     std::vector<double> values = geometric(std::min(0.5 * spacing, 0.1 * longest), longest, 10);
     values.push_back(0);
     if (r.changes() > 2) {
-        for (int i = 1; i < 24; ++i) values.push_back(0.5 * longest * i / 24);
+        for (int i = 1; i <= even; ++i) values.push_back(0.5 * longest * i / (even + 1));
     }
     std::sort(values.begin(), values.end());
     return values;
@@ -50,7 +50,7 @@ struct Grid {
 
 Grid scan_grid(const CleanRecord& r, Structure structure) {
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
-    const std::vector<double> L = dead_times(r);
+    const std::vector<double> L = dead_times(r, shape_size(structure) > 2 ? 8 : 23);
     std::vector<double> T = {1}, rho = {1};
     if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
     if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};

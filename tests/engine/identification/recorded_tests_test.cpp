@@ -90,6 +90,8 @@ TEST(RecordedTests, FopdtOfAnInverseResponseIsFlagged) {
     const IdentifiedModel model = identified(read_record("step_inverse_response.csv"), ModelChoice::fopdt);
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_EQ(model.warnings.front().code, "structured-residuals");
+    // y rests before the step: no other start may stand in for the missing zero and bend the gain.
+    EXPECT_NEAR(std::get<Fopdt>(model.plant).K, 1, 0.05);
 }
 
 TEST(RecordedTests, ConstantInputIsRefusedWithTheCure) {

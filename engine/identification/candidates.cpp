@@ -165,7 +165,9 @@ Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
               double independent_samples) {
     // A handicap makes "must win by" a comparison like any other.
     auto handicapped = [&](int i) {
-        return criteria[i] + (fits[i].form.structure == Structure::sopdt_zero ? kStrong - kWorthAMention : 0);
+        const bool unusual =
+            fits[i].form.structure == Structure::sopdt_zero || fits[i].form.structure == Structure::unstable;
+        return criteria[i] + (unusual ? kStrong - kWorthAMention : 0);
     };
     int best = -1;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {

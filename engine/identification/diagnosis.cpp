@@ -16,10 +16,14 @@ double root_mean_square(const std::vector<double>& x) {
     return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
-/// What is still to come after the last sample, relative to the largest distance from rest so far. Infinite input: 1
-/// for integrating structures.
+bool self_regulating(const Fit& fit) {
+    return !is_integrating(fit.form.structure) && fit.form.structure != Structure::unstable;
+}
+
+/// What is still to come after the last sample, relative to the largest distance from rest so far. 1 for structures
+/// that do not settle.
 double remaining_movement(const CleanRecord& r, const Fit& fit) {
-    if (is_integrating(fit.form.structure)) return 1;
+    if (!self_regulating(fit)) return 1;
     double offset = fit.linear[fit.form.offset_index()];
     if (fit.form.start == Start::other_level) offset += fit.linear[fit.form.start_index()];
     double moved = 0;
@@ -29,7 +33,7 @@ double remaining_movement(const CleanRecord& r, const Fit& fit) {
 }
 
 void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {
-    if (is_integrating(fit.form.structure) || remaining <= 0.05 || r.changes() > 2) return;
+    if (!self_regulating(fit) || remaining <= 0.05 || r.changes() > 2) return;
     warnings.push_back(
         {"unsettled-record",
          "The record ends while y still moves: by the model " + number_text(100 * remaining / (1 + remaining), 3) +
@@ -59,7 +63,7 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
 void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
                     std::vector<Warning>& warnings) {
     double lag_sum = values.at("L");
-    for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? values.at(lag) : 0;
+    for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? std::abs(values.at(lag)) : 0;
     for (const auto& [name, error] : errors) {
         const bool is_time = name == "L" || name == "T2" || name == "b" || name == "T";
         const double yardstick =

@@ -15,17 +15,33 @@ namespace {
 constexpr int kThinSamples = 240;
 constexpr int kTracePoints = 2000;
 
-/// The structures to fit, simpler ones first; the last is the one asked for unless the choice is automatic.
-std::vector<Structure> structures_for(ModelChoice model) {
+/// The structures to fit, simpler ones first, and those that answer the request: the others only give starting values.
+struct Plan {
+    std::vector<Structure> fitted, answers;
+};
+
+Plan plan_for(ModelChoice model, const CleanRecord& record) {
+    using enum Structure;
+    // An unstable plant is recorded under feedback, so u moves often; after one step any curve may look like its
+    // beginning.
+    const bool maybe_unstable = record.changes() > 2;
+    Plan plan;
     switch (model) {
-        case ModelChoice::fopdt: return {Structure::fopdt};
-        case ModelChoice::sopdt: return {Structure::fopdt, Structure::sopdt};
-        case ModelChoice::sopdt_zero: return {Structure::fopdt, Structure::sopdt, Structure::sopdt_zero};
-        case ModelChoice::ipdt: return {Structure::ipdt};
-        case ModelChoice::ipdt_lag: return {Structure::ipdt, Structure::ipdt_lag};
+        case ModelChoice::fopdt:
+            plan.fitted = {fopdt};
+            if (maybe_unstable) plan.fitted.push_back(unstable);
+            plan.answers = plan.fitted;
+            return plan;
+        case ModelChoice::sopdt: return {{fopdt, sopdt}, {sopdt}};
+        case ModelChoice::sopdt_zero: return {{fopdt, sopdt, sopdt_zero}, {sopdt_zero}};
+        case ModelChoice::ipdt: return {{ipdt}, {ipdt}};
+        case ModelChoice::ipdt_lag: return {{ipdt, ipdt_lag}, {ipdt_lag}};
         case ModelChoice::automatic: break;
     }
-    return {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, Structure::sopdt_zero};
+    plan.fitted = {ipdt, fopdt, ipdt_lag, sopdt, sopdt_zero};
+    if (maybe_unstable) plan.fitted.push_back(unstable);
+    plan.answers = plan.fitted;
+    return plan;
 }
 
 std::optional<Error> refuse_method(const IdentifyOptions& options) {
@@ -131,7 +147,8 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     const CleanRecord thin = thin_out(*clean, kThinSamples);
 
     const bool automatic = options.model == ModelChoice::automatic;
-    const std::vector<Structure> structures = structures_for(options.model);
+    const Plan plan = plan_for(options.model, *clean);
+    const std::vector<Structure>& structures = plan.fitted;
     std::vector<Fit> fits;
     for (std::size_t i = 0; i < structures.size(); ++i) {
         if (control.stop.stop_requested()) return cancelled();
@@ -140,7 +157,9 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
         fits.push_back(fit_structure(*clean, thin, structures[i], fits, control.stop));
     }
     if (control.stop.stop_requested()) return cancelled();
-    if (!automatic) fits = {fits.back()};
+    std::erase_if(fits, [&](const Fit& fit) {
+        return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
+    });
 
     const double independent = independent_samples(fits);
     std::vector<double> criteria, percents;
@@ -152,7 +171,9 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     if (choice.index < 0 || !responds(*clean, fits[choice.index])) {
         return no_response(*clean, *std::max_element(percents.begin(), percents.end()));
     }
-    if (!automatic) choice.reason = std::string(name_of(structures.back())) + " was asked for.";
+    if (plan.answers.size() == 1 || (!automatic && fits[choice.index].form.structure == plan.answers.front())) {
+        choice.reason = std::string(name_of(plan.answers.front())) + " was asked for.";
+    }
     IdentifiedModel model = assemble(*clean, std::move(fits), criteria, percents, choice);
     report(control, 1, "model found");
     return model;

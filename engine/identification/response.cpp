@@ -137,6 +137,7 @@ int shape_size(Structure structure) {
     switch (structure) {
         case Structure::ipdt: return 1;
         case Structure::fopdt:
+        case Structure::unstable:
         case Structure::ipdt_lag: return 2;
         default: return 3;
     }
@@ -147,6 +148,7 @@ bool is_integrating(Structure structure) { return structure == Structure::ipdt |
 const char* name_of(Structure structure) {
     switch (structure) {
         case Structure::fopdt: return "fopdt";
+        case Structure::unstable: return "unstable fopdt";
         case Structure::sopdt: return "sopdt";
         case Structure::sopdt_zero: return "sopdt_zero";
         case Structure::ipdt: return "ipdt";
@@ -159,6 +161,7 @@ void unit_response(std::span<const double> t, const Input& input, const Shape& s
     for (auto* column : {&response.x, &response.x1, &response.x2}) column->resize(t.size());
     switch (shape.structure) {
         case Structure::fopdt: return run(t, input, shape.L(), Lag{shape.T()}, response);
+        case Structure::unstable: return run(t, input, shape.L(), Lag{-shape.T()}, response);
         case Structure::ipdt: return run(t, input, shape.L(), Integrator{}, response);
         case Structure::ipdt_lag: return run(t, input, shape.L(), LaggedIntegrator{shape.T()}, response);
         case Structure::sopdt:

@@ -11,6 +11,7 @@ namespace tunewright {
 
 enum class Structure {
     fopdt,       ///< e^(-Ls)/(T s + 1)
+    unstable,    ///< e^(-Ls)/(1 - T s): an fopdt with a negative time constant
     sopdt,       ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
     sopdt_zero,  ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
     ipdt,        ///< e^(-Ls)/s
@@ -25,7 +26,7 @@ struct Shape {
     std::array<double, 3> p{};
 
     double L() const { return p[0]; }
-    double T() const;   ///< fopdt, ipdt_lag
+    double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
     double a1() const;  ///< sopdt, sopdt_zero
     double a2() const;
 };
@@ -33,7 +34,7 @@ struct Shape {
 /// 1 to 3: how many entries of `p` count.
 int shape_size(Structure structure);
 bool is_integrating(Structure structure);
-/// The contract's name: "fopdt", ...
+/// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
 /// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.

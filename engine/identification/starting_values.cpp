@@ -53,6 +53,7 @@ Grid scan_grid(const CleanRecord& r, Structure structure) {
     const std::vector<double> L = dead_times(r, shape_size(structure) > 2 ? 8 : 23);
     std::vector<double> T = {1}, rho = {1};
     if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
+    if (structure == Structure::unstable) T = geometric(0.05, 2.0, 12);
     if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};
     Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size())}, {}};
     for (double dead_time : L) {

@@ -18,6 +18,7 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shap
     p["K"] = is_integrating(form.structure) ? K / s.t_scale : K;
     switch (form.structure) {
         case Structure::ipdt: break;
+        case Structure::unstable: p["T"] = -shape.T() * s.t_scale; break;
         case Structure::fopdt:
         case Structure::ipdt_lag: p["T"] = shape.T() * s.t_scale; break;
         case Structure::sopdt:
@@ -45,7 +46,8 @@ bool has_two_lags(const Shape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1
 Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
     auto at = [&](const char* name) { return p.at(name); };
     switch (form.structure) {
-        case Structure::fopdt: return Fopdt{at("K"), at("T"), at("L")};
+        case Structure::fopdt:
+        case Structure::unstable: return Fopdt{at("K"), at("T"), at("L")};
         case Structure::sopdt:
             if (lags) return Sopdt{at("K"), at("T1"), at("T2"), at("L")};
             return OscillatorySopdt{at("K"), at("T"), at("zeta"), at("L")};

@@ -101,6 +101,36 @@ TEST(RecordedTests, ConstantInputIsRefusedWithTheCure) {
     EXPECT_THAT(error.message, ::testing::HasSubstr("Record a test in which u changes"));
 }
 
+TEST(RecordedTests, RelayRecordThatDoesNotShowTheLevelBeforeItIsFitted) {
+    const IdentifiedModel model = identified(read_record("relay_ex3_unbiased.csv"));
+    ASSERT_TRUE(std::holds_alternative<Sopdt>(model.plant)) << model.choice_reason;
+    const auto& got = std::get<Sopdt>(model.plant);
+    expect_relative(got.K, 1, 1e-3, "K");
+    expect_relative(got.T1, 20, 1e-3, "T1");
+    expect_relative(got.T2, 2, 1e-3, "T2");
+    expect_relative(got.L, 1, 1e-3, "L");
+}
+
+TEST(RecordedTests, RelayOnAnIntegratorIsIntegrating) {
+    const IdentifiedModel model = identified(read_record("relay_integrating_unbiased.csv"));
+    ASSERT_TRUE(std::holds_alternative<Ipdt>(model.plant)) << model.choice_reason;
+    expect_relative(std::get<Ipdt>(model.plant).K, 0.05, 1e-3, "K");
+    expect_relative(std::get<Ipdt>(model.plant).L, 4, 1e-3, "L");
+}
+
+TEST(RecordedTests, UnstablePlantUnderARelayHasANegativeTimeConstant) {
+    for (const ModelChoice choice : {ModelChoice::automatic, ModelChoice::fopdt}) {
+        // 1/(s - 1) is K = -1, T = -1.
+        expect_fopdt(identified(read_record("relay_unstable_unbiased.csv"), choice), {-1, -1, 0.4}, {1e-3, 1e-3, 1e-3});
+    }
+}
+
+TEST(RecordedTests, HiddenLoadIsFlagged) {
+    const IdentifiedModel model = identified(read_record("relay_ex1_biased_load_offset.csv"), ModelChoice::fopdt);
+    ASSERT_FALSE(model.warnings.empty());
+    EXPECT_EQ(model.warnings.front().code, "structured-residuals");
+}
+
 TEST(RecordedTests, LabKitReaches97Point2PercentWithFopdtAndMoreWithAuto) {
     const Record record = read_record("tclab-step.csv", "Time", "Q1", "T1");
     const IdentifiedModel simple = identified(record, ModelChoice::fopdt);

@@ -13,7 +13,7 @@ export const MOST_DRAWN = 4;
 
 /** Short names of the entries: the method, numbered where it occurs twice; "today" for the baseline. */
 export function entryNames(entries: Entry[]): string[] {
-  const base = entries.map((entry) => (entry.method === "baseline" ? "today" : entry.method));
+  const base = entries.map((entry) => (entry.method === "baseline" ? "today" : entry.method.replaceAll("_", " ")));
   const distinguishing = base.map((name, index) => {
     if (base.filter((other) => other === name).length < 2) return name;
     const twins = entries.filter((_, at) => base[at] === name);

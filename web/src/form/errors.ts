@@ -58,10 +58,10 @@ export class FormErrors {
       control.error.textContent = [control.error.textContent, error.detail].filter(Boolean).join(" ");
       control.error.hidden = false;
       control.input.setAttribute("aria-invalid", "true");
+      openAround(control.input);
       const link = h("a", { href: `#${control.input.id}` }, error.detail);
       link.addEventListener("click", (event) => {
         event.preventDefault();
-        openAround(control.input);
         control.input.focus();
       });
       return h("li", {}, link);

@@ -27,8 +27,9 @@ import { progressCard } from "./progress_card.ts";
 import { settingsCard } from "./settings_card.ts";
 import type { View } from "./start.ts";
 
-/** From so many entries on the figures stand across the page. */
-const WIDE_FROM = 3;
+/** From so many entries on the column of the figures is broader, and from so many they stand across the page. */
+const BROAD_FROM = 3;
+const WIDE_FROM = 5;
 
 export function designView(store: Store, announce: (sentence: string) => void, onJob: (job: Job) => void): View {
   const heading = h("h1", { tabindex: -1 }, "Design");
@@ -119,7 +120,7 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const units = unitNames(request?.units);
     const columns = result.controllers.map((entry, index) => {
       const shown = drawn.find((item) => item.index === index);
-      return { name: names[index]!, entry, swatch: shown ? swatch(shown.look) : null };
+      return { name: names[index]!, entry, swatch: () => (shown ? swatch(shown.look) : null) };
     });
     const groups = figureGroups(units);
     const open = figures.querySelector("details")?.open ?? false;
@@ -199,7 +200,9 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     if (!entry) return;
     const focused = document.activeElement instanceof HTMLElement && legend.contains(document.activeElement) ? controlsOf(legend).indexOf(document.activeElement) : -1;
     if (!side.isConnected) body.replaceChildren(side, main);
-    body.classList.toggle("wide", result.controllers.length >= WIDE_FROM);
+    const entries = result.controllers.length;
+    element.classList.toggle("broad", entries >= BROAD_FROM && entries < WIDE_FROM);
+    body.classList.toggle("wide", entries >= WIDE_FROM);
     showVerdict(result, selected, names, job.request, job.status);
     settings.show(entry, names[selected]!, unitNames(job.request?.units));
     showFigures(result, drawn, names, job.request);

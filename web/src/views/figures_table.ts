@@ -8,7 +8,7 @@ export interface TableColumn {
   name: string;
   entry: Entry;
   /** The swatch of its line in the plots, if it is drawn. */
-  swatch: Element | null;
+  swatch(): Element | null;
 }
 
 export function figuresTable(caption: string, columns: TableColumn[], groups: FigureGroup[]): HTMLElement {
@@ -28,7 +28,7 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
         "tr",
         {},
         h("td", {}),
-        columns.map((column) => h("th", { scope: "col", title: column.entry.title ?? column.name }, column.swatch, column.name)),
+        columns.map((column) => h("th", { scope: "col", title: column.entry.title ?? column.name }, column.swatch(), column.name)),
       ),
     ),
     groups.map((group) =>

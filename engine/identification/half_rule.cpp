@@ -22,11 +22,7 @@ struct TimeConstants {
     std::vector<Warning> warnings;
 };
 
-Error not_applicable(const std::string& reason) {
-    return {ErrorKind::unsupported, "reduction/method",
-            "half_rule does not apply: " + reason +
-                " Choose the reduction tangent, or the method robust, which needs no reduction."};
-}
+Error not_applicable(const std::string& reason) { return {ErrorKind::unsupported, "reduction/method", reason}; }
 
 Expected<TimeConstants> time_constants(const LinearPlant& plant) {
     TimeConstants found;

@@ -5,8 +5,8 @@
 
 namespace tunewright {
 
-/// See reduction.h. Errors: unsupported, `where` "reduction/method", for complex zeros, weakly damped poles, a lead
-/// without a lag to cancel.
+/// See reduction.h. Errors (the message is the bare reason, which reduce() puts into its sentence): unsupported,
+/// `where` "reduction/method", for complex zeros, weakly damped poles, a lead without a lag to cancel.
 Expected<ReducedModel> half_rule(const LinearPlant& plant, ReducedOrder order);
 
 }  // namespace tunewright

@@ -40,6 +40,24 @@ Expected<ReducedModel> reduce_by(ReductionMethod method, const LinearPlant& plan
     return tangent(plant, request.tangent_time);
 }
 
+const char* kCure = "the method robust, which needs no reduction.";
+
+ReductionMethod other_than(ReductionMethod method) {
+    return method == ReductionMethod::tangent ? ReductionMethod::half_rule : ReductionMethod::tangent;
+}
+
+Error named_method_fails(ReductionMethod method, const Error& reason) {
+    return {ErrorKind::unsupported, reason.where,
+            std::string(to_string(method)) + " does not apply: " + reason.message + " Choose the reduction " +
+                to_string(other_than(method)) + ", or " + kCure};
+}
+
+Error both_fail(ReductionMethod preferred, const Error& first, const Error& second) {
+    return {ErrorKind::unsupported, "plant",
+            std::string("The plant has no simple model. ") + to_string(preferred) + ": " + first.message + " " +
+                to_string(other_than(preferred)) + ": " + second.message + " Use " + kCure};
+}
+
 // A plant that has the asked form already is taken as it is, whichever method is named.
 bool has_form(const LinearPlant& plant, ReducedOrder order) {
     if (!plant.zeros().empty()) return false;
@@ -70,14 +88,14 @@ Plant ReducedModel::plant() const {
 Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request) {
     if (const auto error = beyond_reduction(plant, request.order)) return *error;
     if (has_form(plant, request.order)) return half_rule(plant, request.order);
-    if (request.method != ReductionMethod::automatic) return reduce_by(request.method, plant, request);
-
+    if (request.method != ReductionMethod::automatic) {
+        auto model = reduce_by(request.method, plant, request);
+        return model ? model : named_method_fails(request.method, model.error());
+    }
     auto first = reduce_by(request.preferred, plant, request);
     if (first) return first;
-    const auto other =
-        request.preferred == ReductionMethod::tangent ? ReductionMethod::half_rule : ReductionMethod::tangent;
-    auto second = reduce_by(other, plant, request);
-    return second ? second : first;
+    auto second = reduce_by(other_than(request.preferred), plant, request);
+    return second ? second : both_fail(request.preferred, first.error(), second.error());
 }
 
 }  // namespace tunewright

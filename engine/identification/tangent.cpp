@@ -13,11 +13,7 @@ const double kReached = 1 - std::exp(-1.0);
 constexpr double kEssentiallyMonotone =
     0.8;  // least |static gain| / total variation (Astrom & Hagglund 2006, Section 2.6)
 
-Error not_applicable(const std::string& reason) {
-    return {ErrorKind::unsupported, "reduction/method",
-            "tangent does not apply: " + reason +
-                " Choose the reduction half_rule, or the method robust, which needs no reduction."};
-}
+Error not_applicable(const std::string& reason) { return {ErrorKind::unsupported, "reduction/method", reason}; }
 
 // Zero of f(sample) between two samples at which it has opposite signs: regula falsi with the Illinois rule on the
 // exact response.
@@ -94,8 +90,8 @@ Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time) {
     model.L += foot;
     model.T1 =
         time == TangentTime::by_slope ? model.K / at.slope : time_at(plant, samples, kReached * model.K, sign) - foot;
-    if (!(std::isfinite(model.T1) && model.T1 > 0 && foot >= 0))
-        return not_applicable("its construction gives T = " + text(model.T1) + ".");
+    if (!(std::isfinite(model.T1) && std::isfinite(model.L) && model.T1 > 0 && foot >= 0))
+        return not_applicable("the response passes 63 % of its change before the foot of its steepest tangent.");
 
     const double index = monotonicity(samples, model.K);
     if (index < kEssentiallyMonotone)

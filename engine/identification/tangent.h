@@ -6,8 +6,9 @@
 
 namespace tunewright {
 
-/// See reduction.h; integrating plants: the ramp's asymptote, exactly. Errors: unsupported, `where` "reduction/method",
-/// where the response jumps, where a lead leaves no dead time, or where no tangent model with T > 0 exists.
+/// See reduction.h; integrating plants: the ramp's asymptote, exactly. Errors (the message is the bare reason, which
+/// reduce() puts into its sentence): unsupported, `where` "reduction/method", where the response jumps, where a lead
+/// leaves no dead time, or where no tangent model with T > 0 exists.
 Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time);
 
 }  // namespace tunewright

@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostSamples = 50'000;
+constexpr int kMostSamples = 20'000;
 constexpr double kSamplesPerUnit = 10;    // per time constant or radian of a mode that is alive
 constexpr double kSamplesPerDouble = 24;  // spacing at most t/24
 constexpr double kDecay = 14;             // e^-14 = 8e-7

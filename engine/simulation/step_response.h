@@ -16,7 +16,7 @@ struct StepSample {
     double curvature = 0;  ///< d2y/dt2
 };
 
-/// Samples from t = 0+ until every decaying mode is below 1e-6 of itself, at most 50,000 of them. The spacing follows
+/// Samples from t = 0+ until every decaying mode is below 1e-6 of itself, at most 20,000 of them. The spacing follows
 /// the modes that are still alive (a tenth of the shortest time constant or radian) and else grows with t: a plant with
 /// lags of 1 ms and 1 h needs some hundreds. Each sample is propagated by matrix exponentials: no discretisation error.
 std::vector<StepSample> step_response(const LinearPlant& plant);

@@ -46,7 +46,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators == 0 && model->T1 <= 0)
-        return degenerate("plant/T", "Lambda tuning sets Ti = T, and the plant is a pure dead time (T = 0).",
+        return degenerate("plant/T", "Lambda tuning sets Ti = T, and the model is a pure dead time (T = 0).",
                           "Use amigo or robust.");
     const double lambda = options.number("lambda").value_or(default_lambda(*model));
     if (lambda <= 0)

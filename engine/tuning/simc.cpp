@@ -50,7 +50,7 @@ std::optional<Error> unfit(const ReducedModel& model, double tau_c) {
                           "Give tau_c, the closed-loop time constant that you want.");
     if (model.integrators == 0 && model.T1 <= 0)
         return degenerate("plant/T",
-                          "The plant is a pure dead time (T = 0), for which SIMC gives pure integral action; the ideal "
+                          "The model is a pure dead time (T = 0), for which SIMC gives pure integral action; the ideal "
                           "form cannot carry that.",
                           "Use amigo or robust.");
     return std::nullopt;
@@ -65,21 +65,13 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     const double tau_c = options.number("tau_c").value_or(model->L);
     if (const auto error = unfit(*model, tau_c)) return *error;
 
-    SeriesPid settings = series(*model, tau_c);
-    settings.filter = chosen_filter(options, FilterType::derivative, settings.Td);
-    const std::vector<Warning> warnings = remarks(*model, tau_c, settings, wants_PID);
-    if (settings.filter.Tf > settings.Td)
-        return Error{ErrorKind::invalid_argument, "filter/Tf",
-                     "Tf is " + text(settings.filter.Tf) + "; it must not exceed SIMC's derivative time " +
-                         text(settings.Td) + ", or the lead turns into a lag. Give a smaller Tf."};
+    const SeriesPid settings = series(*model, tau_c);
     auto ideal = to_ideal(settings);
     if (!ideal) return ideal.error();
-    // The weight that the series form's own b = 1 amounts to is below 1; the source gives none, so the contract's
-    // default holds.
-    ideal->b = 1;
-    // Tf equal to the lead cancels it: only rounding is left of Td.
-    if (settings.filter.Tf == settings.Td) ideal->Td = 0, ideal->filter = {};
-    return rule_answer(problem, *model, *ideal, warnings);
+    ideal->b = 1;  // the source gives no weight; what the series form's own b = 1 amounts to is not meant
+    ideal->filter = chosen_filter(options, FilterType::derivative, ideal->Td);
+    std::vector<Warning> warnings = remarks(*model, tau_c, settings, wants_PID);
+    return rule_answer(problem, *model, *ideal, std::move(warnings));
 }
 
 }  // namespace
@@ -97,7 +89,7 @@ TuningMethod simc_method() {
     method.id = "simc";
     method.title = "SIMC (Skogestad)";
     method.formula =
-        "series form Kp (1 + 1/(s Ti)) (1 + s Td)/(1 + s Tf): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td "
+        "series form Kp (1 + 1/(s Ti)) (1 + s Td): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td "
         "= T2; "
         "integrating (lag T): Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; "
         "double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti = Td = 4 (tau_c + L); answered in the ideal form, exactly";
@@ -107,7 +99,7 @@ TuningMethod simc_method() {
     method.options = {
         controller_option({"PI", "PID"}), tau_c,
         reduction_option("half_rule, as in the source; tangent (first order: PI) where that does not apply."),
-        filter_option("of the lead (1 + s Td)/(1 + s Tf); Td is that of the series form.")};
+        filter_option("of the derivative part of the ideal form, Td s/(1 + s Tf).")};
     method.tune = tune;
     return method;
 }

@@ -23,7 +23,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     if (model->integrators == 0 && model->T1 <= 0)
         return degenerate(
             "plant/T",
-            "Ziegler-Nichols needs a reaction curve with a slope, and the plant is a pure dead time (T = 0).",
+            "Ziegler-Nichols needs a reaction curve with a slope, and the model is a pure dead time (T = 0).",
             "Use amigo or robust.");
 
     const double slope = model->integrators == 1 ? model->K : model->K / model->T1;

@@ -95,10 +95,12 @@ TEST(Tune, FailsOnlyIfAllMethodsFail) {
 }
 
 TEST(Tune, OptionErrorsCarryTheirPlaceInTheRequest) {
-    const auto result = tune(request_for(kPlant, {method("amigo"), method("simc", {{"filter/Tf", 99.0}})}), {});
+    const TransferFunction jumps{.num = {1, 2}, .den = {1, 1}, .L = 1};
+    const auto result = tune(
+        request_for(jumps, {method("amigo"), method("amigo", {{"reduction/method", std::string("tangent")}})}), {});
     ASSERT_TRUE(result);
     ASSERT_TRUE(result->controllers[1].error);
-    EXPECT_EQ(result->controllers[1].error->where, "tune/1/filter/Tf");
+    EXPECT_EQ(result->controllers[1].error->where, "tune/1/reduction/method");
 }
 
 TEST(Tune, AllTakesEveryMethodThatAppliesAndPassesKnownOptions) {

@@ -149,6 +149,7 @@ TEST(Tangent, RefusesAResponseThatJumps) {
     const auto model = reduced(TransferFunction{.num = {1, 2}, .den = {1, 1}}, ReductionMethod::tangent);
     ASSERT_FALSE(model);
     EXPECT_THAT(model.error().message, HasSubstr("jumps at once"));
+    EXPECT_THAT(model.error().message, HasSubstr("Choose the reduction half_rule, or the method robust"));
 }
 
 TEST(Reduction, APlantOfTheFormIsTakenAsItIsByEveryMethod) {
@@ -171,6 +172,15 @@ TEST(Reduction, AutomaticFallsBackOnTheOtherMethod) {
         reduce(made(OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 1}), {.preferred = ReductionMethod::half_rule}));
     EXPECT_TRUE(
         reduce(made(TransferFunction{.num = {1, 2}, .den = {1, 1}, .L = 1}), {.preferred = ReductionMethod::tangent}));
+}
+
+TEST(Reduction, AutomaticNamesBothReasonsWhereNeitherMethodApplies) {
+    // As many zeros as poles, and ringing poles.
+    const auto model = reduced(TransferFunction{.num = {1, 1, 2}, .den = {1, 0.1, 1}}, ReductionMethod::automatic);
+    ASSERT_FALSE(model);
+    EXPECT_EQ(model.error().where, "plant");
+    EXPECT_THAT(model.error().message, HasSubstr("half_rule: the plant has poles with damping 0.05"));
+    EXPECT_THAT(model.error().message, HasSubstr("tangent: the step response jumps at once"));
 }
 
 TEST(Reduction, NamesTheReasonForPlantsBeyondIt) {

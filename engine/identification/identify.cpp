@@ -68,7 +68,13 @@ std::optional<Error> refuse_late_step(const CleanRecord& r) {
             " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
 }
 
-Error no_response(const CleanRecord& r, double percent) {
+Error no_response(const CleanRecord& r, double percent, const char* asked) {
+    if (asked != nullptr) {
+        return {ErrorKind::not_identifiable, "identify/model",
+                std::string("No ") + asked + " model explains y beyond noise and drift (the best reaches a fit of " +
+                    number_text(std::max(0.0, percent), 3) +
+                    " %). Use model auto, or look whether y responds to u at all."};
+    }
     return {ErrorKind::not_identifiable, "record",
             "y does not respond to u beyond what its own noise and drift explain (the best model reaches a fit of " +
                 number_text(std::max(0.0, percent), 3) +
@@ -169,7 +175,8 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     }
     Choice choice = choose(fits, criteria, percents, independent);
     if (choice.index < 0 || !responds(*clean, fits[choice.index])) {
-        return no_response(*clean, *std::max_element(percents.begin(), percents.end()));
+        return no_response(*clean, *std::max_element(percents.begin(), percents.end()),
+                           automatic ? nullptr : name_of(plan.answers.front()));
     }
     if (plan.answers.size() == 1 || (!automatic && fits[choice.index].form.structure == plan.answers.front())) {
         choice.reason = std::string(name_of(plan.answers.front())) + " was asked for.";

@@ -27,7 +27,7 @@ struct Candidate {
     Plant plant;
     double fit_percent = 0;  ///< 100 (1 - ||y - yhat||/||y - mean(y)||), free run, offset estimated
     double criterion = 0;    ///< information criterion, smaller is better
-    std::map<std::string, double> standard_errors;  ///< by parameter symbol; robust to autocorrelated residuals
+    std::map<std::string, double> standard_errors;  ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b (sopdt_zero)
 };
 
 /// The chosen model beside the record: for the plot.
@@ -44,7 +44,7 @@ struct DataQuality {
     double quantisation = 0;  ///< step of y's grid, 0 if none found
     int steps = 0;            ///< changes of u
     bool settled = false;
-    int samples_dropped = 0;  ///< repeated or backward times, non-numbers
+    int samples_dropped = 0;  ///< backward times, non-numbers
     std::vector<std::string> notes;
 };
 
@@ -59,8 +59,23 @@ struct IdentifiedModel {
     std::vector<Warning> warnings;
 };
 
-/// Output-error least squares with continuous dead time and free offset. Errors: not_identifiable, with the cure;
-/// invalid_argument.
+/// /// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), comes nearest to y: least squares over gain,
+/// time constants, continuous dead time and offset (output error: Ljung 1999, section 4.2). No resampling: the response to the piecewise
+/// constant u is exact at every time stamp.
+///
+/// - Rows of equal time: the last u counts from that time on, each y is data. Rows with a time before the row above or without numbers
+///   are dropped; u of a row whose y is no number counts.
+/// - `u0`: u stepped from u0 to its first value at the first sample. Without it a start that is not at rest is recognised where the
+///   record shows it, and noted. `y0` is weighed as ten samples of y at rest.
+/// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are equal within
+///   noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which u changes more than twice.
+/// - Standard errors count correlated residuals as the few independent samples they are worth, and rounding of y as its least noise.
+/// - `fit` has at most 2,000 points. Warning codes: diagnosis.h.
+///
+/// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or y constant, no
+/// response, a step in the last samples); invalid_argument (columns of unequal length, times out of order); unsupported (`method`
+/// relay_fourier, two_point); cancelled.
+
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control);
 
 }  // namespace tunewright

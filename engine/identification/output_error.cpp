@@ -217,7 +217,7 @@ std::vector<double> sums_of_squares(const CleanRecord& record, const ModelForm& 
 
 Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& start, int most_iterations,
               std::stop_token stop) {
-    constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
+    constexpr double kSmallestStep = 1e-9, kSmallestGain = 1e-11, kLargestDamping = 1e10;
     OutputError problem(record, form);
     const ShapeBounds bounds = shape_bounds(record, form.structure);
     Shape shape = clamped(start, bounds);
@@ -240,6 +240,7 @@ Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& sta
             converged = !(moved > kSmallestStep);
             better = there.sse < here.sse;
             if (better) {
+                converged |= here.sse - there.sse < kSmallestGain * here.sse;
                 shape = next;
                 here = std::move(there);
                 lambda = std::max(1e-9, lambda / 8);

@@ -62,7 +62,7 @@ std::vector<double> sums_of_squares(const CleanRecord& record, const ModelForm& 
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
 /// projected Jacobian), from `start`. Sensitivity to L is exact (-dx/dt), those to the logarithms are central
 /// differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more than
-/// 1e-9, after `most_iterations`, or when asked to.
+/// 1e-9 or lowers the sum of squares by less than 1e-11 of itself, after `most_iterations`, or when asked to.
 Fit fit_shape(const CleanRecord& record, const ModelForm& form, const Shape& start, int most_iterations,
               std::stop_token stop);
 

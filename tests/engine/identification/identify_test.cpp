@@ -325,6 +325,18 @@ TEST(Identify, MeasurementThatIgnoresTheInputIsRefused) {
     }
 }
 
+TEST(Identify, RefusalOfAnAskedModelNamesItAndItsAlternative) {
+    Record record = simulate(even_times(300, 1), 0, 20, {{100, 1}}, first_order(0, 1, 0));
+    add_noise(record, 0.5, 40);
+    IdentifyOptions options;
+    options.model = ModelChoice::ipdt;
+    const Error error = refusal(record, options);
+    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
+    EXPECT_EQ(error.where, "identify/model");
+    EXPECT_THAT(error.message, HasSubstr("No ipdt model explains y"));
+    EXPECT_THAT(error.message, HasSubstr("Use model auto"));
+}
+
 TEST(Identify, ColumnsOfUnequalLengthAreAnInvalidArgument) {
     Record record = simulate(even_times(100, 1), 0, 0, {{10, 1}}, first_order(1, 12, 3));
     record.y.pop_back();

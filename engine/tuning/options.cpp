@@ -14,6 +14,8 @@ std::optional<T> find(const std::map<std::string, OptionValue>& values, const st
 
 std::optional<double> MethodOptions::number(const std::string& path) const { return find<double>(values_, path); }
 std::optional<bool> MethodOptions::boolean(const std::string& path) const { return find<bool>(values_, path); }
-std::optional<std::string> MethodOptions::text(const std::string& path) const { return find<std::string>(values_, path); }
+std::optional<std::string> MethodOptions::text(const std::string& path) const {
+    return find<std::string>(values_, path);
+}
 
 }  // namespace tunewright

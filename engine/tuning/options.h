@@ -15,13 +15,13 @@ enum class OptionType { number, integer, boolean, choice, object };
 struct OptionDescription {
     std::string name;  ///< as in JSON, e.g. "Ms"
     OptionType type = OptionType::number;
-    std::string sentence;  ///< what it does
-    std::string unit;      ///< "", "time", "u/y", ...
-    std::optional<std::variant<bool, double, std::string>> default_value;
-    std::optional<double> minimum, exclusive_minimum, maximum;  ///< of a number
-    std::vector<std::string> choices;                           ///< of a choice
-    std::vector<OptionDescription> fields;                      ///< of an object
-    int at_most_fields = 0;                                     ///< of an object: 0, any number may be given
+    std::string sentence;   ///< what it does
+    std::string unit = {};  ///< "", "time", "u/y", ...
+    std::optional<std::variant<bool, double, std::string>> default_value = {};
+    std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};  ///< of a number
+    std::vector<std::string> choices = {};                                     ///< of a choice
+    std::vector<OptionDescription> fields = {};                                ///< of an object
+    int at_most_fields = 0;  ///< of an object: 0, any number may be given
 };
 
 using OptionValue = std::variant<bool, double, std::string>;

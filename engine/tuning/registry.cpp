@@ -3,6 +3,7 @@
 #include "engine/tuning/amigo.h"
 #include "engine/tuning/lambda.h"
 #include "engine/tuning/method.h"
+#include "engine/tuning/robust.h"
 #include "engine/tuning/simc.h"
 #include "engine/tuning/ziegler_nichols_step.h"
 
@@ -10,6 +11,7 @@ namespace tunewright {
 
 const std::vector<TuningMethod>& method_registry() {
     static const std::vector<TuningMethod> methods = {
+        robust_method(),
         amigo_method(),
         simc_method(),
         lambda_method(),

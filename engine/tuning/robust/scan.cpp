@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/loop/stability.h"
-#include "engine/tuning/robust/cost.h"
 #include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
@@ -50,31 +48,20 @@ std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
     return gains;
 }
 
-std::optional<ScanPoint> scan(const Sweep& sweep, const ScanOptions& options) {
+std::vector<ScanPoint> scan(const Sweep& sweep, int Ti_points, int Td_points) {
     const Problem& problem = sweep.problem();
     const double unit = 1 / sweep.reference();
     std::vector<ScanPoint> found;
-    const auto Td_values =
-        problem.pid ? spaced(kTdLow * unit, kTdHigh * unit, options.Td_points) : std::vector<double>{1.0};
-    for (const double Ti : spaced(kTiLow * unit, kTiHigh * unit, options.Ti_points))
+    const auto Td_values = problem.pid ? spaced(kTdLow * unit, kTdHigh * unit, Td_points) : std::vector<double>{1.0};
+    for (const double Ti : spaced(kTiLow * unit, kTiHigh * unit, Ti_points))
         for (const double Td : Td_values) {
             const auto gains = feasible_gains(sweep, Ti, Td);
             if (gains.empty()) continue;
             const double Kp = *std::max_element(gains.begin(), gains.end());
             found.push_back({{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp)});
         }
-    if (found.empty()) return std::nullopt;
-    std::sort(found.begin(), found.end(),
-              [](const ScanPoint& a, const ScanPoint& b) { return a.log_cost < b.log_cost; });
-    if (!options.cost || problem.objective == Objective::load_ie) return found.front();
-    const bool bounded = problem.objective == Objective::load_iae;
-    ScanPoint best{{}, std::numeric_limits<double>::infinity()};
-    for (const auto& point : found) {
-        if (bounded && point.log_cost >= best.log_cost) break;
-        const double cost = log_cost(problem, point.x, options.simulation_tolerance);
-        if (cost < best.log_cost) best = {point.x, cost};
-    }
-    return std::isfinite(best.log_cost) ? std::optional<ScanPoint>(best) : std::nullopt;
+    std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
+    return found;
 }
 
 }  // namespace tunewright::robust

@@ -1,0 +1,328 @@
+#include "engine/tuning/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/tuning/robust/fast_search.h"
+#include "engine/tuning/robust/feasibility.h"
+#include "engine/tuning/robust/plane_search.h"
+#include "engine/tuning/robust/scan.h"
+
+namespace tunewright {
+namespace {
+
+using namespace robust;
+
+constexpr double kAllowedExcess =
+    2e-5;  // relative, of Ms and Mt on the independent grid: above it nothing is returned as a success
+
+std::string shown(double value) {
+    std::ostringstream out;
+    out.precision(4);
+    out << value;
+    return out.str();
+}
+
+Objective objective_named(const std::string& name) {
+    if (name == "load_ie") return Objective::load_ie;
+    if (name == "setpoint_iae") return Objective::setpoint_iae;
+    if (name == "weighted") return Objective::weighted;
+    return Objective::load_iae;
+}
+
+/// The contract's filter rule. Error: a plant with neither dead time nor lags has no natural filter time.
+Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptions& options, bool pid) {
+    if (const auto Tf = options.number("filter/Tf")) return FilterRule{.Tf = *Tf, .Tf_over_Td = std::nullopt};
+    if (const auto ratio = options.number("filter/Tf_over_Td")) {
+        if (!pid)
+            return Error{ErrorKind::invalid_argument, "filter/Tf_over_Td",
+                         "A PI controller has no Td; give the filter as Tf."};
+        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = *ratio};
+    }
+    if (!pid) return FilterRule{};
+    const LinearPlant& plant = problem.linear;
+    const bool dead_time = plant.dead_time() > problem.dead_time_std.value_or(0);
+    if (dead_time || plant.has_right_half_plane_zero() || plant.pole_excess() >= 3)
+        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+    const double T_ar = plant.lag_sum();
+    if (T_ar > 0) return FilterRule{.Tf = 0.05 * T_ar, .Tf_over_Td = std::nullopt};
+    return Error{ErrorKind::unbounded_optimum, "filter",
+                 "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
+                 "a filter time. "
+                 "Give filter {\"Tf\": ...}, e.g. the sampling time or the time constant of the sensor."};
+}
+
+/// Low gain of the right sign must push the output towards the set point: K/T of the plant's first slope decides.
+double first_sign(const LinearPlant& plant) {
+    const double sign = plant.low_frequency_gain() < 0 ? -1 : 1;
+    return plant.unstable_poles() % 2 == 0 ? sign : -sign;
+}
+
+Problem make_problem(const TuningProblem& tuning, const MethodOptions& options, const FilterRule& filter, bool pid) {
+    Problem problem;
+    problem.plant = &tuning.linear;
+    problem.pid = pid;
+    problem.sign = first_sign(tuning.linear);
+    problem.filter = filter;
+    problem.limits.Ms = options.number("Ms").value_or(1.4);
+    problem.limits.Mt = options.number("Mt").value_or(1.4);
+    problem.limits.Mks = options.number("Mks");
+    problem.limits.m_circle = options.text("constraint").value_or("circles") == "m_circle";
+    problem.objective = objective_named(options.text("objective").value_or("load_iae"));
+    problem.rho = options.number("rho").value_or(0.5);
+    return problem;
+}
+
+struct Excess {
+    double relative = 0;
+    std::string peak;
+    double value = 0;
+};
+
+/// The largest excess over a limit, on a grid that the search never saw. Unstable loops exceed everything.
+Excess measured_excess(const Problem& problem, const Point& x) {
+    const auto loop = Loop::make(*problem.plant, to_parallel(controller_at(problem, x)));
+    if (!loop || !count_unstable_poles(*loop).stable()) return {INFINITY, "stability", 0};
+    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop, 0.06, 53));
+    Excess worst{-1, "", 0};
+    const auto note = [&](const char* name, double value, double limit) {
+        if (value / limit - 1 > worst.relative) worst = {value / limit - 1, name, value};
+    };
+    note("Ms", peaks.S.value, problem.limits.Ms);
+    note("Mt", peaks.T.value, problem.limits.Mt);
+    if (problem.limits.Mks) note("Mks", peaks.CS.value, *problem.limits.Mks);
+    return worst;
+}
+
+Problem tightened(Problem problem, double relative) {
+    problem.limits.Ms = 1 + (problem.limits.Ms - 1) * (1 - relative);
+    problem.limits.Mt = 1 + (problem.limits.Mt - 1) * (1 - relative);
+    if (problem.limits.Mks) *problem.limits.Mks *= 1 - relative;
+    return problem;
+}
+
+class ProgressReport {
+public:
+    ProgressReport(const Problem& problem, const RunControl& control) : problem_(problem), control_(control) {}
+
+    bool operator()(const Point& x, double log_cost) {
+        ++steps_;
+        if (control_.progress) {
+            Progress progress;
+            progress.fraction = 1 - std::pow(0.9, steps_);
+            progress.stage = "tune";
+            progress.message = "robust design: " + std::to_string(steps_) + " improvements so far.";
+            BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
+            if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
+            progress.best = best;
+            control_.progress(progress);
+        }
+        return !control_.stop.stop_requested();
+    }
+
+private:
+    const Problem& problem_;
+    const RunControl& control_;
+    int steps_ = 0;
+};
+
+std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, CostSurface* surface,
+                            const Report& report) {
+    if (kind == "fast" && surface == nullptr) return fast_search(sweep, problem, report);
+    // The plane searches start from the least integrated error of a coarse scan, as AMIGO's formulas would place them.
+    const auto points = scan(sweep);
+    if (points.empty()) return std::nullopt;
+    const double Ti = std::exp(points.front().x[1]), Td = problem.pid ? std::exp(points.front().x[2]) : 0;
+    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, Ti, Td, report);
+    auto gridded = grid_search(sweep, problem, Ti, Td, surface, report);
+    return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
+}
+
+/// The weighted objective measures each part against its own optimum.
+std::optional<Error> set_reference_optima(Problem& problem, const Sweep& sweep, const Report& report) {
+    if (problem.objective != Objective::weighted) return std::nullopt;
+    for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
+        Problem alone = problem;
+        alone.objective = part;
+        const auto found = fast_search(sweep, alone, [&](const Point&, double) { return !report || report({}, 0); });
+        if (!found) return Error{ErrorKind::no_feasible_controller, "", ""};
+        (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
+    }
+    return std::nullopt;
+}
+
+Error why_infeasible(Problem problem) {
+    std::optional<double> M = smallest_common_peak(problem);
+    if (!M) {
+        problem.sign = -problem.sign;
+        M = smallest_common_peak(problem);
+    }
+    const std::string name = problem.pid ? "PID" : "PI";
+    if (!M)
+        return {ErrorKind::unstable_plant, "",
+                "No " + name + " controller was found that stabilises this plant" +
+                    (problem.pid ? std::string(". ") : std::string("; a PID might. ")) +
+                    "Check the signs and the unit of the dead time, or shorten the dead time."};
+    // Rounded up by 1 %, so that asking for it works.
+    const double workable = std::ceil(*M * 1.01 * 1000) / 1000;
+    const bool only_Mks = problem.limits.Mks && workable <= std::min(problem.limits.Ms, problem.limits.Mt);
+    if (only_Mks)
+        return {ErrorKind::no_feasible_controller, "Mks",
+                "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
+                    " together with the other limits. Raise Mks or leave it out."};
+    return {ErrorKind::no_feasible_controller, "",
+            "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
+                " and Mt <= " + shown(problem.limits.Mt) + " on this plant" +
+                (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
+                ". The smallest common limit that works is Ms = Mt = " + shown(workable) + "; use that or more."};
+}
+
+/// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
+/// ones.
+Expected<Found> verified_search(const std::string& kind, Problem& problem, CostSurface* surface,
+                                const RunControl& control) {
+    const double reference = reference_frequency(problem);
+    ProgressReport progress(problem, control);
+    const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
+    const Sweep sweep(problem, reference);
+    if (set_reference_optima(problem, sweep, {})) return why_infeasible(problem);
+    auto found = search(kind, sweep, problem, surface, report);
+    if (!found && !problem.limits.Mks) {
+        problem.sign = -problem.sign;
+        const Sweep other(problem, reference_frequency(problem));
+        found = search(kind, other, problem, surface, report);
+        if (!found) problem.sign = -problem.sign;
+    }
+    if (!found)
+        return control.stop.stop_requested()
+                   ? Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."}
+                   : why_infeasible(problem);
+    double tighter = 0;
+    for (int round = 0; round < 4; ++round) {
+        const Excess excess = measured_excess(problem, found->x);
+        if (excess.relative <= 0.5 * kAllowedExcess) return *found;
+        if (!std::isfinite(excess.relative) || round == 3) break;
+        tighter += 1.5 * excess.relative * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
+        const Problem narrowed = tightened(problem, std::min(tighter, 0.5));
+        const Sweep narrow_sweep(narrowed, reference);
+        const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
+        found->x = again.x;
+        found->log_cost = again.log_cost;
+    }
+    return Error{ErrorKind::numerical_failure, "",
+                 "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
+                 "Try another search or a filter with a longer Tf."};
+}
+
+void add_warnings(TunedController& result, const Problem& problem, const Point& x) {
+    const double reference = reference_frequency(problem), Ti = std::exp(x[1]);
+    if (Ti * reference < 1e-3 || (problem.pid && std::exp(x[2]) * reference > 1e3))
+        result.warnings.push_back(
+            {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + shown(Ti) +
+                                      "): a smaller Ms or a longer filter time gives an ordinary PID."});
+}
+
+Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
+                                      const RunControl& control) {
+    const bool pid = options.text("controller").value_or("PID") == "PID";
+    if (tuning.linear.integrators() < 0)
+        return Error{ErrorKind::unstable_plant, "",
+                     "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
+                     "controller without integral action."};
+    const auto filter = filter_rule(tuning, options, pid);
+    if (!filter) return filter.error();
+    Problem problem = make_problem(tuning, options, *filter, pid);
+    if (has_no_finite_optimum(problem))
+        return Error{ErrorKind::unbounded_optimum, "filter",
+                     "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "
+                     "dead time to stop it. "
+                     "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
+    CostSurface surface;
+    const bool with_surface = options.boolean("surface").value_or(false);
+    const auto found =
+        verified_search(options.text("search").value_or("fast"), problem, with_surface ? &surface : nullptr, control);
+    if (!found) return found.error();
+    TunedController result;
+    result.controller = controller_at(problem, found->x);
+    result.partial = found->stopped;
+    if (with_surface) result.surface = surface;
+    add_warnings(result, problem, found->x);
+    return result;
+}
+
+OptionDescription limit_option(const char* name, const char* sentence, std::optional<double> default_value) {
+    OptionDescription option{.name = name, .type = OptionType::number, .sentence = sentence};
+    if (default_value) option.default_value = *default_value;
+    option.exclusive_minimum = default_value ? 1 : 0;
+    if (default_value) option.maximum = 4;
+    return option;
+}
+
+std::vector<OptionDescription> option_descriptions() {
+    const auto choice = [](const char* name, const char* sentence, std::vector<std::string> choices) {
+        OptionDescription option{.name = name, .type = OptionType::choice, .sentence = sentence};
+        option.default_value = choices.front();
+        option.choices = std::move(choices);
+        return option;
+    };
+    OptionDescription Tf{
+        .name = "Tf", .type = OptionType::number, .sentence = "Filter time constant, fixed.", .unit = "time"};
+    Tf.exclusive_minimum = 0;
+    OptionDescription ratio{
+        .name = "Tf_over_Td", .type = OptionType::number, .sentence = "Filter time constant as a fraction of Td."};
+    ratio.exclusive_minimum = 0;
+    ratio.maximum = 10;
+    OptionDescription filter{.name = "filter",
+                             .type = OptionType::object,
+                             .sentence =
+                                 "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a "
+                                 "right-half-plane zero or pole excess >= 3, else "
+                                 "Tf = 0.05 times the sum of the lags minus the leads. PI default: none."};
+    filter.fields = {Tf, ratio};
+    filter.at_most_fields = 1;
+    OptionDescription rho{.name = "rho",
+                          .type = OptionType::number,
+                          .sentence = "Weight of the load in the weighted objective; the set point has 1 - rho."};
+    rho.default_value = 0.5;
+    rho.minimum = 0;
+    rho.maximum = 1;
+    OptionDescription surface{.name = "surface",
+                              .type = OptionType::boolean,
+                              .sentence = "Also return the least cost over the (Ti, Td) plane."};
+    surface.default_value = false;
+    return {choice("controller", "PI or PID.", {"PID", "PI"}),
+            limit_option("Ms", "Largest allowed sensitivity max |S|.", 1.4),
+            limit_option("Mt", "Largest allowed complementary sensitivity max |T|.", 1.4),
+            limit_option("Mks", "Largest allowed max |C S|: how strongly u may react.", std::nullopt),
+            choice("constraint", "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
+                   {"circles", "m_circle"}),
+            choice("objective", "What is minimised.", {"load_iae", "load_ie", "setpoint_iae", "weighted"}),
+            rho,
+            choice("search", "fast: scan and quadratic programming. nelder_mead, grid: the paper's searches.",
+                   {"fast", "nelder_mead", "grid"}),
+            surface,
+            filter};
+}
+
+}  // namespace
+
+TuningMethod robust_method() {
+    TuningMethod method;
+    method.id = "robust";
+    method.title = "Robust optimum";
+    method.formula =
+        "minimise the integral of |e| after a load step subject to max |S| <= Ms, max |T| <= Mt and a stable loop";
+    method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
+    method.needs = "any linear plant";
+    method.validity =
+        "Ms, Mt in (1, 4]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
+        "on Mks";
+    method.options = option_descriptions();
+    method.tune = tune_robust;
+    return method;
+}
+
+}  // namespace tunewright

@@ -22,20 +22,33 @@ async function bundleUnitTests() {
   const entryPoints = readdirSync(folder)
     .filter((name) => name.endsWith(".test.ts"))
     .map((name) => path.join(folder, name));
-  await build({ entryPoints, outdir, bundle: true, platform: "node", format: "esm", target: "node18", outExtension: { ".js": ".mjs" }, logLevel: "warning" });
+  await build({
+    entryPoints,
+    outdir,
+    bundle: true,
+    platform: "node",
+    format: "esm",
+    target: "node18",
+    outExtension: { ".js": ".mjs" },
+    logLevel: "warning",
+  });
   return readdirSync(outdir).map((name) => path.join(outdir, name));
 }
 
 function runTests(files, environment = {}) {
   if (files.length === 0) throw new Error("There are no tests to run.");
-  const run = spawnSync(process.execPath, ["--test", ...files], { stdio: "inherit", env: { ...process.env, TUNEWRIGHT_ROOT: root, ...environment } });
+  const run = spawnSync(process.execPath, ["--test", ...files], {
+    stdio: "inherit",
+    env: { ...process.env, TUNEWRIGHT_ROOT: root, ...environment },
+  });
   process.exitCode = run.status ?? 1;
 }
 
 /** The service's binary; fails with what to do if it is not there. */
 export function serviceBinary() {
   const binary = process.env.TUNEWRIGHT_BIN ?? path.join(root, "build/release/tunewright");
-  if (!existsSync(binary)) throw new Error(`There is no service at ${binary}. Build it first, or name another with TUNEWRIGHT_BIN.`);
+  if (!existsSync(binary))
+    throw new Error(`There is no service at ${binary}. Build it first, or name another with TUNEWRIGHT_BIN.`);
   return binary;
 }
 
@@ -53,13 +66,18 @@ function freePort() {
 /** Starts the service on a free loopback port with an empty store. `stop` ends it and removes the store. */
 export async function startService() {
   const web = path.join(root, "build/web");
-  if (!existsSync(path.join(web, "index.html"))) throw new Error("The page is not built: run `npm run build` in web/ first.");
+  if (!existsSync(path.join(web, "index.html")))
+    throw new Error("The page is not built: run `npm run build` in web/ first.");
   const port = await freePort();
   const folder = mkdtempSync(path.join(tmpdir(), "tunewright-web-test-"));
   const base = `http://127.0.0.1:${port}`;
-  const child = spawn(serviceBinary(), ["serve", "--listen", `127.0.0.1:${port}`, "--store", `sqlite:${path.join(folder, "jobs.db")}`, "--web", web], {
-    stdio: ["ignore", "pipe", "pipe"],
-  });
+  const child = spawn(
+    serviceBinary(),
+    ["serve", "--listen", `127.0.0.1:${port}`, "--store", `sqlite:${path.join(folder, "jobs.db")}`, "--web", web],
+    {
+      stdio: ["ignore", "pipe", "pipe"],
+    },
+  );
   let log = "";
   let ended = null;
   for (const stream of [child.stdout, child.stderr]) stream.on("data", (chunk) => (log += chunk));
@@ -94,7 +112,10 @@ export async function startService() {
 
 export function launchBrowser() {
   const { chromium } = fromWeb("playwright-core");
-  return chromium.launch({ executablePath: process.env.CHROMIUM_BIN ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM_BIN ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu"],
+  });
 }
 
 /**
@@ -108,7 +129,9 @@ export async function openPage(browser, { scheme = "light", width = 1440, height
   const faults = [];
   await page.addInitScript(() => {
     globalThis.policyViolations = [];
-    document.addEventListener("securitypolicyviolation", (event) => globalThis.policyViolations.push(`${event.violatedDirective}: ${event.blockedURI || event.sample}`));
+    document.addEventListener("securitypolicyviolation", (event) =>
+      globalThis.policyViolations.push(`${event.violatedDirective}: ${event.blockedURI || event.sample}`),
+    );
   });
   page.on("console", (message) => {
     if (message.type() === "error" || message.type() === "warning") faults.push(`${message.type()}: ${message.text()}`);
@@ -131,7 +154,10 @@ export async function accessibilityViolations(page) {
   const source = readFileSync(fromWeb.resolve("axe-core/axe.min.js"), "utf8");
   await page.evaluate(source);
   const violations = await page.evaluate(async () => (await globalThis.axe.run(document)).violations);
-  return violations.map((violation) => `${violation.id}: ${violation.help} (${violation.nodes.map((item) => item.target.join(" ")).join(", ")})`);
+  return violations.map(
+    (violation) =>
+      `${violation.id}: ${violation.help} (${violation.nodes.map((item) => item.target.join(" ")).join(", ")})`,
+  );
 }
 
 if (process.argv[1] && import.meta.url === pathToFileURL(process.argv[1]).href) {

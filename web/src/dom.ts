@@ -38,7 +38,11 @@ export interface TreeNode {
 }
 
 /** Shorthand for TreeNode. */
-export function node(tag: string, attributes: Record<string, string | number> = {}, ...children: (TreeNode | string)[]): TreeNode {
+export function node(
+  tag: string,
+  attributes: Record<string, string | number> = {},
+  ...children: (TreeNode | string)[]
+): TreeNode {
   return { tag, attributes, children };
 }
 

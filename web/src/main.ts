@@ -85,7 +85,11 @@ function follow(id: string): void {
 }
 
 function takeJob(job: Job): void {
-  store.set((workspace) => (workspace.route.screen === "design" && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace));
+  store.set((workspace) =>
+    workspace.route.screen === "design" && workspace.route.job === job.id
+      ? { ...workspace, job, jobTrouble: "" }
+      : workspace,
+  );
 }
 
 async function refreshRecent(): Promise<void> {
@@ -113,7 +117,10 @@ async function loadForm(route: Route): Promise<void> {
       else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
     }
   } catch (error) {
-    store.set((workspace) => ({ ...workspace, serviceTrouble: error instanceof Error ? error.message : String(error) }));
+    store.set((workspace) => ({
+      ...workspace,
+      serviceTrouble: error instanceof Error ? error.message : String(error),
+    }));
   }
 }
 
@@ -166,13 +173,22 @@ async function loadLists(): Promise<void> {
     ...workspace,
     methods: methods.status === "fulfilled" ? methods.value : workspace.methods,
     examples: examples.status === "fulfilled" ? examples.value : workspace.examples,
-    serviceTrouble: methods.status === "rejected" ? "The service's list of methods could not be read; the default method is used." : "",
+    serviceTrouble:
+      methods.status === "rejected"
+        ? "The service's list of methods could not be read; the default method is used."
+        : "",
   }));
 }
 
 function fault(reason: unknown): void {
   const words = reason instanceof Error ? reason.message : String(reason);
-  stage.prepend(h("p", { class: "trouble", role: "alert" }, `Something went wrong in this page: ${words}. Reload it; your jobs are kept by the service.`));
+  stage.prepend(
+    h(
+      "p",
+      { class: "trouble", role: "alert" },
+      `Something went wrong in this page: ${words}. Reload it; your jobs are kept by the service.`,
+    ),
+  );
 }
 
 window.addEventListener("error", (event) => fault(event.error ?? event.message));

@@ -40,7 +40,9 @@ const designShown = (page) => page.getByRole("heading", { name: /^Settings to en
 
 /** Text of a figure's cell: row and column by their headings. */
 async function figure(page, group, label, column = 0) {
-  const body = page.locator(".figures-card tbody").filter({ has: page.locator("tr.group", { hasText: new RegExp(`^${group}$`) }) });
+  const body = page
+    .locator(".figures-card tbody")
+    .filter({ has: page.locator("tr.group", { hasText: new RegExp(`^${group}$`) }) });
   const row = body.locator("tr").filter({ has: page.locator("th[scope=row]", { hasText: label }) });
   return (await row.first().locator("td").nth(column).innerText()).replace("−", "-");
 }
@@ -49,7 +51,10 @@ async function figure(page, group, label, column = 0) {
 async function drawnTraces(page, title) {
   const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
   const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
-  assert.ok(paths.every((d) => !/NaN|Infinity|undefined/.test(d)), title);
+  assert.ok(
+    paths.every((d) => !/NaN|Infinity|undefined/.test(d)),
+    title,
+  );
   return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
 }
 
@@ -67,7 +72,10 @@ test("the FOPDT form runs a job; table, settings and plots show what the API ans
     const job = await jobOf(page);
     assert.equal(job.status, "succeeded");
     assert.deepEqual(job.request.plant, { type: "fopdt", K: 1.25, T: 40, L: 8 });
-    assert.deepEqual(job.request.tune.map((entry) => [entry.method, entry.Ms, entry.Mt]), [["robust", 1.4, 1.4]]);
+    assert.deepEqual(
+      job.request.tune.map((entry) => [entry.method, entry.Ms, entry.Mt]),
+      [["robust", 1.4, 1.4]],
+    );
     const [entry] = job.result.controllers;
     for (const [group, label, value] of [
       ["Controller", "Kp", entry.controller.Kp],
@@ -85,7 +93,12 @@ test("the FOPDT form runs a job; table, settings and plots show what the API ans
       assert.equal(Number(await figure(page, group, label)), asShown(value), `${group} ${label}`);
     }
     assert.ok(entry.robustness.Ms <= 1.4 * (1 + 2e-5) && entry.robustness.Mt <= 1.4 * (1 + 2e-5));
-    for (const [title, traces] of [["Set-point step", 2], ["Load step at the plant input", 2], ["Nyquist curve of L", 1], ["Sensitivities", 3]]) {
+    for (const [title, traces] of [
+      ["Set-point step", 2],
+      ["Load step at the plant input", 2],
+      ["Nyquist curve of L", 1],
+      ["Sensitivities", 3],
+    ]) {
       assert.equal(await drawnTraces(page, title), traces, title);
     }
     assert.match(await page.getByRole("region", { name: "Verdict" }).innerText(), /Robust/);
@@ -118,11 +131,14 @@ test("a dropped record is identified, tuned and drawn with its model", async () 
     return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
   });
   await withPage("", {}, async (page) => {
-    const transfer = await page.evaluateHandle((text) => {
-      const data = new DataTransfer();
-      data.items.add(new File([text], "step.csv", { type: "text/csv" }));
-      return data;
-    }, ["t,u,y", ...rows].join("\n"));
+    const transfer = await page.evaluateHandle(
+      (text) => {
+        const data = new DataTransfer();
+        data.items.add(new File([text], "step.csv", { type: "text/csv" }));
+        return data;
+      },
+      ["t,u,y", ...rows].join("\n"),
+    );
     await page.locator(".drop").dispatchEvent("drop", { dataTransfer: transfer });
     await page.getByText("step.csv: 401 lines.").waitFor();
     await page.getByRole("button", { name: "Tune from this test" }).click();
@@ -132,7 +148,10 @@ test("a dropped record is identified, tuned and drawn with its model", async () 
     assert.ok(model.fit_percent > 99, `fit ${model.fit_percent}`);
     assert.ok(Math.abs(model.plant.K / 2 - 1) < 0.01, `K ${model.plant.K}`);
     const card = page.locator("section").filter({ has: page.getByRole("heading", { name: "Model from the record" }) });
-    assert.equal(Number(await card.locator("tr", { hasText: "Fit" }).locator("td").first().innerText()), asShown(model.fit_percent));
+    assert.equal(
+      Number(await card.locator("tr", { hasText: "Fit" }).locator("td").first().innerText()),
+      asShown(model.fit_percent),
+    );
     assert.equal(await drawnTraces(page, "Recorded test and model"), 2 + (model.fit.u ? 1 : 0));
     assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
   });
@@ -148,7 +167,10 @@ test("a field that cannot be read says so beside itself, and the summary leads t
     assert.match(await summary.innerText(), /1 thing to mend/);
     const input = page.getByLabel("T (s)", { exact: true });
     assert.equal(await input.getAttribute("aria-invalid"), "true");
-    assert.match(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), /T "1,2,3" is not a number\. Write/);
+    assert.match(
+      await page.locator(`#${await input.getAttribute("id")}-error`).innerText(),
+      /T "1,2,3" is not a number\. Write/,
+    );
     assert.equal(await input.inputValue(), "1,2,3");
     await summary.getByRole("link").click();
     assert.ok(await input.evaluate((element) => element === document.activeElement));
@@ -162,19 +184,30 @@ test("faults that the service finds stand at their fields, several at once", asy
     await page.goto(service.base);
     await page.getByLabel("L (s)", { exact: true }).fill("-3");
     await page.getByLabel("Ms", { exact: true }).fill("0.5");
-    const answer = page.waitForResponse((response) => response.url().endsWith("/v1/jobs") && response.request().method() === "POST");
+    const answer = page.waitForResponse(
+      (response) => response.url().endsWith("/v1/jobs") && response.request().method() === "POST",
+    );
     await page.getByRole("button", { name: "Tune this model" }).click();
     const response = await answer;
     assert.equal(response.status(), 422);
     const { errors } = await response.json();
     assert.deepEqual(errors.map((error) => error.pointer).sort(), ["/plant/L", "/tune/0/Ms"]);
-    for (const [label, pointer] of [["L (s)", "/plant/L"], ["Ms", "/tune/0/Ms"]]) {
+    for (const [label, pointer] of [
+      ["L (s)", "/plant/L"],
+      ["Ms", "/tune/0/Ms"],
+    ]) {
       const input = page.getByLabel(label, { exact: true });
       assert.equal(await input.getAttribute("aria-invalid"), "true", label);
-      assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), errors.find((error) => error.pointer === pointer).detail);
+      assert.equal(
+        await page.locator(`#${await input.getAttribute("id")}-error`).innerText(),
+        errors.find((error) => error.pointer === pointer).detail,
+      );
     }
     // Chromium reports every 4xx answer on the console; nothing else may stand there.
-    assert.deepEqual((await opened.faults()).filter((fault) => !fault.includes("422")), []);
+    assert.deepEqual(
+      (await opened.faults()).filter((fault) => !fault.includes("422")),
+      [],
+    );
   } finally {
     await opened.close();
   }
@@ -189,9 +222,16 @@ test("several methods and today's settings are compared; a second plot and the k
     await page.getByRole("button", { name: "Tune this model" }).click();
     await designShown(page);
     const { controllers } = (await jobOf(page)).result;
-    assert.deepEqual(controllers.map((entry) => entry.method), ["robust", "simc", "baseline"]);
+    assert.deepEqual(
+      controllers.map((entry) => entry.method),
+      ["robust", "simc", "baseline"],
+    );
     for (const [column, entry] of controllers.entries()) {
-      assert.equal(Number(await figure(page, "Load step", "IAE", column)), asShown(entry.performance.load.IAE), entry.method);
+      assert.equal(
+        Number(await figure(page, "Load step", "IAE", column)),
+        asShown(entry.performance.load.IAE),
+        entry.method,
+      );
     }
     assert.equal(await drawnTraces(page, "Nyquist curve of L"), 3);
     await page.getByRole("checkbox", { name: "Draw simc" }).uncheck();
@@ -207,7 +247,10 @@ test("several methods and today's settings are compared; a second plot and the k
     await page.keyboard.press("Shift+ArrowRight");
     const overlayOf = (name) => page.getByRole("img", { name }).locator("> g").nth(1);
     assert.match(await overlayOf("Load step at the plant input").textContent(), /time .*robust .*today/);
-    assert.ok((await overlayOf("Set-point step").locator("circle").count()) > 0, "the set-point plot follows the cursor");
+    assert.ok(
+      (await overlayOf("Set-point step").locator("circle").count()) > 0,
+      "the set-point plot follows the cursor",
+    );
     const before = await load.locator("text").allTextContents();
     await page.keyboard.press("+");
     assert.notDeepEqual(await load.locator("text").allTextContents(), before);
@@ -222,10 +265,15 @@ test("a plot is saved as SVG without class and style, and as PNG", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
     await page.getByRole("button", { name: "Tune this model" }).click();
     await designShown(page);
-    const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: "Nyquist curve of L" }) });
+    const plot = page
+      .locator("section.plot")
+      .filter({ has: page.getByRole("heading", { name: "Nyquist curve of L" }) });
     const save = async (kind) => {
       await plot.getByText("Export").first().click();
-      const [download] = await Promise.all([page.waitForEvent("download"), plot.getByRole("button", { name: kind, exact: true }).click()]);
+      const [download] = await Promise.all([
+        page.waitForEvent("download"),
+        plot.getByRole("button", { name: kind, exact: true }).click(),
+      ]);
       return readFileSync(await download.path());
     };
     const svg = (await save("SVG")).toString("utf8");
@@ -243,7 +291,10 @@ test("every example of the service is tuned unchanged from the page", async () =
   assert.ok(examples.length > 0);
   for (const example of examples) {
     await withPage("", {}, async (page) => {
-      await page.getByRole("button", { name: /^Tune: / }).first().waitFor();
+      await page
+        .getByRole("button", { name: /^Tune: / })
+        .first()
+        .waitFor();
       const folded = page.locator(".examples details summary");
       if ((await folded.count()) > 0) await folded.click();
       await page.getByRole("button", { name: `Tune: ${example.title}`, exact: true }).click();
@@ -257,7 +308,9 @@ test("every example of the service is tuned unchanged from the page", async () =
 
 test("an example is shown in the form and sent from there as the same plant and methods", async () => {
   const { examples } = await (await fetch(`${service.base}/v1/examples`)).json();
-  for (const example of examples.filter((candidate) => candidate.request.plant && Array.isArray(candidate.request.tune ?? []))) {
+  for (const example of examples.filter(
+    (candidate) => candidate.request.plant && Array.isArray(candidate.request.tune ?? []),
+  )) {
     await withPage(`#/examples/${example.id}`, {}, async (page) => {
       await page.getByRole("button", { name: "Tune this model" }).waitFor();
       await page.waitForLoadState("networkidle");
@@ -265,7 +318,12 @@ test("an example is shown in the form and sent from there as the same plant and 
       await designShown(page);
       const { request } = await jobOf(page);
       assert.deepEqual({ L: 0, ...request.plant }, { L: 0, ...example.request.plant }, example.id);
-      if (example.request.tune) assert.deepEqual(new Set(request.tune.map((entry) => entry.method)), new Set(example.request.tune.map((entry) => entry.method)), example.id);
+      if (example.request.tune)
+        assert.deepEqual(
+          new Set(request.tune.map((entry) => entry.method)),
+          new Set(example.request.tune.map((entry) => entry.method)),
+          example.id,
+        );
     });
   }
 });
@@ -283,15 +341,29 @@ test("a job that cannot be done says why, and leads back to its request", async 
     assert.ok(job.status !== "failed" || (await verdict.innerText()).includes(said));
     await page.getByRole("link", { name: "Change the request" }).click();
     await page.getByRole("button", { name: "Tune this model" }).waitFor();
-    await page.waitForFunction(() => [...document.querySelectorAll("label")].some((label) => label.textContent === "Ms" && document.getElementById(label.htmlFor).value === "1.01"));
+    await page.waitForFunction(() =>
+      [...document.querySelectorAll("label")].some(
+        (label) => label.textContent === "Ms" && document.getElementById(label.htmlFor).value === "1.01",
+      ),
+    );
   });
 });
 
 test("a running job shows its fraction, stage, message and best design, and Cancel ends it", async () => {
   await withPage("", {}, async (page) => {
     const job = {
-      id: "running", name: "slow loop", status: "running", created_at: "2026-01-01T00:00:00Z", attempts: 1, request: { plant: { type: "fopdt", K: 1, T: 10, L: 1 } },
-      progress: { fraction: 0.42, stage: "tune", message: "Searching from 3 of 7 starts.", best: { controller: { Kp: 2.5, Ti: 16 }, load_IAE: 8.4, Ms: 1.4, Mt: 1.3 } },
+      id: "running",
+      name: "slow loop",
+      status: "running",
+      created_at: "2026-01-01T00:00:00Z",
+      attempts: 1,
+      request: { plant: { type: "fopdt", K: 1, T: 10, L: 1 } },
+      progress: {
+        fraction: 0.42,
+        stage: "tune",
+        message: "Searching from 3 of 7 starts.",
+        best: { controller: { Kp: 2.5, Ti: 16 }, load_IAE: 8.4, Ms: 1.4, Mt: 1.3 },
+      },
     };
     // The service is asked for nothing here: how long a real search takes must not decide the test.
     await page.route("**/v1/jobs/running", (route) => route.fulfill({ json: job }));
@@ -365,17 +437,23 @@ for (const scheme of ["light", "dark"]) {
       assert.deepEqual(await accessibilityViolations(page), []);
       await page.getByRole("button", { name: "Tune this model" }).click();
       await designShown(page);
-      for (const summary of ["All figures", "How it was computed"]) await page.getByText(summary, { exact: true }).click();
+      for (const summary of ["All figures", "How it was computed"])
+        await page.getByText(summary, { exact: true }).click();
       await page.getByRole("button", { name: "Table" }).first().click();
       assert.deepEqual(await accessibilityViolations(page), []);
     });
   });
 }
 
-for (const [name, width, height] of [["desktop", 1440, 900], ["tablet", 834, 1194], ["phone", 390, 844]]) {
+for (const [name, width, height] of [
+  ["desktop", 1440, 900],
+  ["tablet", 834, 1194],
+  ["phone", 390, 844],
+]) {
   test(`nothing is wider than the window on a ${name}`, async () => {
     await withPage("", { width, height }, async (page) => {
-      const overflow = () => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const overflow = () =>
+        page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
       assert.equal(await overflow(), 0);
       await page.getByRole("button", { name: "Tune this model" }).click();
       await designShown(page);
@@ -389,7 +467,10 @@ test("what the first visit loads stays below 100 kB compressed", async () => {
   const html = await (await fetch(`${service.base}/`)).text();
   const assets = [...html.matchAll(/(?:src|href)="\.\/([^"]+)"/g)].map((match) => match[1]);
   let total = gzipSync(html).length;
-  for (const asset of assets) total += gzipSync(Buffer.from(await (await fetch(`${service.base}/${path.posix.normalize(asset)}`)).arrayBuffer())).length;
+  for (const asset of assets)
+    total += gzipSync(
+      Buffer.from(await (await fetch(`${service.base}/${path.posix.normalize(asset)}`)).arrayBuffer()),
+    ).length;
   assert.ok(assets.length >= 2);
   assert.ok(total <= 100 * 1024, `${total} bytes`);
 });

@@ -10,7 +10,15 @@ test("axes without data have a range and ticks, linear and logarithmic", () => {
     const list = ticks(kind, range, 5);
     assert.ok(list.length >= 3 && list.length <= 20, `${kind}: ${list.join(" ")}`);
   }
-  for (const range of [[NaN, NaN], [Infinity, -Infinity], [0, 0], [-1, 0], [5, 5], [1, -1], [0, Infinity]] as const) {
+  for (const range of [
+    [NaN, NaN],
+    [Infinity, -Infinity],
+    [0, 0],
+    [-1, 0],
+    [5, 5],
+    [1, -1],
+    [0, Infinity],
+  ] as const) {
     for (const kind of ["linear", "log"] as const) {
       const usable = usableRange(range[0], range[1], kind);
       assert.ok(usable[0] < usable[1] && Number.isFinite(usable[0]) && Number.isFinite(usable[1]));
@@ -34,7 +42,9 @@ test("linear ticks are round, inside the range and at least three", () => {
     for (const count of [1, 3, 6]) {
       const list = ticks("linear", [lo, hi], count);
       assert.ok(list.length >= 3 && list.length <= 40, `${lo} ${hi}: ${list.length}`);
-      assert.ok(list.every((value) => value >= lo - 1e-9 * Math.abs(hi - lo) && value <= hi + 1e-9 * Math.abs(hi - lo)));
+      assert.ok(
+        list.every((value) => value >= lo - 1e-9 * Math.abs(hi - lo) && value <= hi + 1e-9 * Math.abs(hi - lo)),
+      );
     }
   }
 });

@@ -8,22 +8,53 @@ import { responseFrame } from "../../../web/src/charts/responses.ts";
 import { sensitivityFrame } from "../../../web/src/charts/sensitivities.ts";
 
 const traces = { setpoint: { t: [0, 1], y: [0, 1], u: [2, 1] }, load: { t: [0, 1], y: [0, 0.2], u: [0, -1] } };
-const frequency = { omega: [0.1, 1], L: { re: [0, -0.5], im: [-5, -0.5] }, S_abs: [0.1, 1.4], T_abs: [1, 0.5], CS_abs: [1, 3] };
-const make = (method: string, extra: Partial<Entry> = {}): Entry => ({ method, options: {}, responses: traces, frequency, ...extra });
+const frequency = {
+  omega: [0.1, 1],
+  L: { re: [0, -0.5], im: [-5, -0.5] },
+  S_abs: [0.1, 1.4],
+  T_abs: [1, 0.5],
+  CS_abs: [1, 3],
+};
+const make = (method: string, extra: Partial<Entry> = {}): Entry => ({
+  method,
+  options: {},
+  responses: traces,
+  frequency,
+  ...extra,
+});
 
 test("the best of the ranking and today's settings are drawn, four at most, today always as series 2", () => {
   const result: Result = {
-    controllers: [make("robust"), make("simc"), make("lambda", { error: { detail: "no" } }), make("amigo"), make("imc"), make("baseline")],
+    controllers: [
+      make("robust"),
+      make("simc"),
+      make("lambda", { error: { detail: "no" } }),
+      make("amigo"),
+      make("imc"),
+      make("baseline"),
+    ],
     ranking: [4, 1, 0, 3, 5],
   };
   assert.deepEqual(defaultDrawn(result), [0, 1, 4, 5]);
-  assert.deepEqual(drawnEntries(result, [0, 1, 4, 5]).map((item) => item.look), [1, 3, 4, 2]);
-  assert.deepEqual(drawnEntries(result, [0, 2, 9]).map((item) => item.index), [0]);
-  assert.deepEqual(drawnEntries({ controllers: [make("a"), make("b"), make("c"), make("d")] }, [0, 1, 2, 3]).map((item) => item.look), [1, 2, 3, 4]);
+  assert.deepEqual(
+    drawnEntries(result, [0, 1, 4, 5]).map((item) => item.look),
+    [1, 3, 4, 2],
+  );
+  assert.deepEqual(
+    drawnEntries(result, [0, 2, 9]).map((item) => item.index),
+    [0],
+  );
+  assert.deepEqual(
+    drawnEntries({ controllers: [make("a"), make("b"), make("c"), make("d")] }, [0, 1, 2, 3]).map((item) => item.look),
+    [1, 2, 3, 4],
+  );
 });
 
 test("entries of one method are told apart by the option that differs", () => {
-  assert.deepEqual(entryNames([make("robust", { options: { Ms: 1.4 } }), make("robust", { options: { Ms: 1.6 } }), make("baseline")]), ["robust Ms 1.4", "robust Ms 1.6", "today"]);
+  assert.deepEqual(
+    entryNames([make("robust", { options: { Ms: 1.4 } }), make("robust", { options: { Ms: 1.6 } }), make("baseline")]),
+    ["robust Ms 1.4", "robust Ms 1.6", "today"],
+  );
   assert.deepEqual(entryNames([make("simc"), make("simc")]), ["simc", "simc #2"]);
 });
 

@@ -22,9 +22,17 @@ const schema: Schema = {
 
 test("a method's schema becomes fields; nested objects are opened, shapes without a field left out", () => {
   const fields = fieldsOf(schema);
-  assert.deepEqual(fields.map((field) => [field.label, field.kind]), [
-    ["Ms", "number"], ["controller", "choice"], ["order", "integer"], ["surface", "boolean"], ["poles", "numbers"], ["filter Tf", "number"],
-  ]);
+  assert.deepEqual(
+    fields.map((field) => [field.label, field.kind]),
+    [
+      ["Ms", "number"],
+      ["controller", "choice"],
+      ["order", "integer"],
+      ["surface", "boolean"],
+      ["poles", "numbers"],
+      ["filter Tf", "number"],
+    ],
+  );
   assert.deepEqual(fields[0]!.words, ["free"]);
   assert.equal(fields[0]!.defaultText, "1.4");
   assert.equal(fields[0]!.hint, "limit of |S|");
@@ -36,12 +44,26 @@ test("a method's schema becomes fields; nested objects are opened, shapes withou
 test("what is typed becomes values at their paths; empty fields send nothing", () => {
   const [Ms, controller, order, surface, poles, Tf] = fieldsOf(schema);
   const entry: Record<string, unknown> = { method: "robust" };
-  for (const [field, text] of [[Ms, "free"], [controller, ""], [order, "2"], [surface, "true"], [poles, "-1 -2"], [Tf, "0,1"]] as const) {
+  for (const [field, text] of [
+    [Ms, "free"],
+    [controller, ""],
+    [order, "2"],
+    [surface, "true"],
+    [poles, "-1 -2"],
+    [Tf, "0,1"],
+  ] as const) {
     const parsed = readField(field!, text);
     assert.ok(parsed.ok);
     place(entry, field!.path, parsed.value);
   }
-  assert.deepEqual(entry, { method: "robust", Ms: "free", order: 2, surface: true, poles: [-1, -2], filter: { Tf: 0.1 } });
+  assert.deepEqual(entry, {
+    method: "robust",
+    Ms: "free",
+    order: 2,
+    surface: true,
+    poles: [-1, -2],
+    filter: { Tf: 0.1 },
+  });
   assert.equal(pick(entry, ["filter", "Tf"]), 0.1);
   assert.equal(typedText(pick(entry, ["poles"])), "-1 -2");
   assert.equal(readField(order!, "2.5").ok, false);
@@ -72,7 +94,10 @@ test("each plant form writes the contract's plant and reads it back", () => {
 
 test("faults of a plant name their field", () => {
   const { errors } = readPlant(PLANT_FORMS[0]!, (name) => (name === "T" ? "forty" : ""));
-  assert.deepEqual(errors.map((error) => error.pointer), ["/plant/K", "/plant/T", "/plant/L"]);
+  assert.deepEqual(
+    errors.map((error) => error.pointer),
+    ["/plant/K", "/plant/T", "/plant/L"],
+  );
   assert.match(errors[1]!.detail, /T "forty" is not a number/);
 });
 

@@ -24,13 +24,28 @@ test("plants are written as in the contract", () => {
   assert.equal(formula({ type: "sopdt", K: 3, T: 10, zeta: 0.4, L: 0 }), "P(s)=(3)/(100s^(2)+8s+1)");
   assert.equal(formula({ type: "ipdt", K: 0.02, L: 8 }), "P(s)=(0.02e^(−8s))/(s)");
   assert.equal(formula({ type: "ipdt", K: 0.02, L: 0, T: 3 }), "P(s)=(0.02)/(s(3s+1))");
-  assert.equal(formula({ type: "transfer_function", num: [-1, 1], den: [1, 0, 4], L: 1 }), "P(s)=((−s+1)e^(−s))/(s^(2)+4)");
-  assert.equal(formula({ type: "zpk", K: 2, zeros: [], poles: [0, -1, [-2, 1], [-2, -1]] }), "P(s)=(2)/(s(s+1)(s^(2)+4s+5))");
-  assert.equal(formula({ type: "state_space", A: [[-1]], B: [[1]], C: [[2]], D: 0, L: 0 }), "P(s)=[2;](sI−[−1;])^(−1)[1;]");
+  assert.equal(
+    formula({ type: "transfer_function", num: [-1, 1], den: [1, 0, 4], L: 1 }),
+    "P(s)=((−s+1)e^(−s))/(s^(2)+4)",
+  );
+  assert.equal(
+    formula({ type: "zpk", K: 2, zeros: [], poles: [0, -1, [-2, 1], [-2, -1]] }),
+    "P(s)=(2)/(s(s+1)(s^(2)+4s+5))",
+  );
+  assert.equal(
+    formula({ type: "state_space", A: [[-1]], B: [[1]], C: [[2]], D: 0, L: 0 }),
+    "P(s)=[2;](sI−[−1;])^(−1)[1;]",
+  );
 });
 
 test("an incomplete or unknown plant has no formula", () => {
-  for (const plant of [{ type: "fopdt", K: 1 }, { type: "sopdt", K: 1, T1: 1 }, { type: "zpk", K: 1 }, { type: "nonlinear" }]) assert.equal(plantFormula(plant), null);
+  for (const plant of [
+    { type: "fopdt", K: 1 },
+    { type: "sopdt", K: 1, T1: 1 },
+    { type: "zpk", K: 1 },
+    { type: "nonlinear" },
+  ])
+    assert.equal(plantFormula(plant), null);
 });
 
 test("the tree is MathML only", () => {
@@ -39,5 +54,17 @@ test("the tree is MathML only", () => {
     assert.ok(allowed.has(tree.tag), tree.tag);
     for (const child of tree.children ?? []) if (typeof child !== "string") walk(child);
   };
-  walk(plantFormula({ type: "state_space", A: [[-1, 0], [1, -2]], B: [[1], [0]], C: [[0, 1]], D: [[1]], L: 2 })!);
+  walk(
+    plantFormula({
+      type: "state_space",
+      A: [
+        [-1, 0],
+        [1, -2],
+      ],
+      B: [[1], [0]],
+      C: [[0, 1]],
+      D: [[1]],
+      L: 2,
+    })!,
+  );
 });

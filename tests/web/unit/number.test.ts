@@ -44,7 +44,10 @@ test("matrices have rows of one length", () => {
     const parsed = parseMatrix(text, "A");
     return parsed.ok ? parsed.value : parsed.sentence;
   };
-  assert.deepEqual(matrix("-1 0; 1 -2"), [[-1, 0], [1, -2]]);
+  assert.deepEqual(matrix("-1 0; 1 -2"), [
+    [-1, 0],
+    [1, -2],
+  ]);
   assert.deepEqual(matrix("1\n0"), [[1], [0]]);
   assert.deepEqual(matrix("0,5"), [[0.5]]);
   assert.match(String(matrix("1 2; 3")), /Row 2 of A has 1 numbers, the first has 2/);
@@ -57,8 +60,14 @@ test("roots are real, complex, or pairs", () => {
   };
   assert.deepEqual(roots(""), []);
   assert.deepEqual(roots("-1 -2±1i"), [-1, [-2, 1], [-2, -1]]);
-  assert.deepEqual(roots("-0,5+2i; -0,5-2j"), [[-0.5, 2], [-0.5, -2]]);
-  assert.deepEqual(roots("2i -i"), [[0, 2], [0, -1]]);
+  assert.deepEqual(roots("-0,5+2i; -0,5-2j"), [
+    [-0.5, 2],
+    [-0.5, -2],
+  ]);
+  assert.deepEqual(roots("2i -i"), [
+    [0, 2],
+    [0, -1],
+  ]);
   assert.deepEqual(roots("-1 + 2i"), [[-1, 2]]);
   assert.match(String(roots("-1 q")), /"q" is not a number/);
 });

@@ -15,7 +15,13 @@ const plane: Frame = {
   panes: [
     {
       y: { kind: "linear", label: "Im", range: [-1, 1] },
-      traces: [1, 2, 3, 4].map((look) => ({ name: `trace ${look}`, look: look as 1 | 2 | 3 | 4, x: [-1, 0, null, 0.5], y: [0, 0.5, 1, NaN], parameter: [1, 2, 3, 4] })),
+      traces: [1, 2, 3, 4].map((look) => ({
+        name: `trace ${look}`,
+        look: look as 1 | 2 | 3 | 4,
+        x: [-1, 0, null, 0.5],
+        y: [0, 0.5, 1, NaN],
+        parameter: [1, 2, 3, 4],
+      })),
       marks: [
         { kind: "circle", x: -1, y: 0, radius: 0.7, label: "Ms 1.4", labelAt: "above" },
         { kind: "point", x: -1, y: 0, label: "−1" },
@@ -41,7 +47,11 @@ const times: Frame = {
   ],
 };
 
-const empty: Frame = { ...times, panes: [{ y: { kind: "log", label: "|S|" }, traces: [] }], x: { kind: "log", label: "ω" } };
+const empty: Frame = {
+  ...times,
+  panes: [{ y: { kind: "log", label: "|S|" }, traces: [] }],
+  x: { kind: "log", label: "ω" },
+};
 
 test("an exported SVG holds no class, style, variable or unescaped text, and has title, description and the circle's transparency", () => {
   const svg = frameToSvg(plane, wholeView(plane), 500, 300, (token) => (token === "--surface" ? "#ffffff" : "#123456"));
@@ -60,7 +70,19 @@ test("every colour that drawings use is a token", () => {
     asked.add(token);
     return "#000000";
   });
-  for (const token of ["--series-1", "--series-2", "--series-3", "--series-4", "--limit", "--grid", "--text", "--muted", "--surface", "--bad"]) assert.ok(asked.has(token), token);
+  for (const token of [
+    "--series-1",
+    "--series-2",
+    "--series-3",
+    "--series-4",
+    "--limit",
+    "--grid",
+    "--text",
+    "--muted",
+    "--surface",
+    "--bad",
+  ])
+    assert.ok(asked.has(token), token);
 });
 
 test("a plot without data is drawn with axes and no broken number", () => {
@@ -82,7 +104,14 @@ test("equal axes are equal at first and stay so through every zoom", () => {
     const box = layout.boxes[0]!;
     view =
       step % 2 === 0
-        ? zoomToRectangle(plane, layout, view, box, { x: box.left + 50, y: box.top + 20 }, { x: box.left + 250, y: box.top + 60 })
+        ? zoomToRectangle(
+            plane,
+            layout,
+            view,
+            box,
+            { x: box.left + 50, y: box.top + 20 },
+            { x: box.left + 250, y: box.top + 60 },
+          )
         : zoomAbout(plane, layout, view, box.left + 100, 0.5);
   }
 });
@@ -92,7 +121,14 @@ test("panes of one plot share their x axis, and a flat drag zooms x alone", () =
   assert.deepEqual(layout.boxes[0]!.x.range, layout.boxes[1]!.x.range);
   assert.ok(layout.boxes[0]!.height > 1.9 * layout.boxes[1]!.height);
   const box = layout.boxes[0]!;
-  const view = zoomToRectangle(times, layout, wholeView(times), box, { x: box.left + 50, y: 40 }, { x: box.left + 150, y: 44 });
+  const view = zoomToRectangle(
+    times,
+    layout,
+    wholeView(times),
+    box,
+    { x: box.left + 50, y: 40 },
+    { x: box.left + 150, y: 44 },
+  );
   assert.notEqual(view.x, null);
   assert.deepEqual(view.y, [null, null]);
 });
@@ -101,16 +137,25 @@ test("a logarithmic pane skips zero, gaps break the line", () => {
   const layout = layoutFrame(times, 500, 300, wholeView(times));
   const path = tracePath(layout.boxes[1]!, times.panes[1]!.traces[0]!);
   assert.equal(path.match(/[ML]/g)?.length, 2);
-  assert.deepEqual(drawableRuns([0, 1, null, 3], [1, 1, 1, 1], false, false), [[0, 1], [3, 3]]);
+  assert.deepEqual(drawableRuns([0, 1, null, 3], [1, 1, 1, 1], false, false), [
+    [0, 1],
+    [3, 3],
+  ]);
   assert.deepEqual(drawableRuns([], [], false, false), []);
 });
 
 test("long traces keep the extremes of each pixel column", () => {
   const values = Array.from({ length: 100 }, (_, index) => (index === 57 ? 9 : index === 12 ? -9 : Math.sin(index)));
-  const kept = columnExtremes(values.map((_, index) => Math.floor(index / 50)), values);
+  const kept = columnExtremes(
+    values.map((_, index) => Math.floor(index / 50)),
+    values,
+  );
   assert.ok(kept.includes(57) && kept.includes(12) && kept.includes(0) && kept.includes(99));
   assert.ok(kept.length <= 8);
-  assert.deepEqual(kept, [...kept].sort((a, b) => a - b));
+  assert.deepEqual(
+    kept,
+    [...kept].sort((a, b) => a - b),
+  );
 });
 
 test("a cursor finds the nearest sample", () => {

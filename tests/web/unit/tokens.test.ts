@@ -4,7 +4,9 @@ import path from "node:path";
 import test from "node:test";
 
 const css = readFileSync(path.join(process.env["TUNEWRIGHT_ROOT"]!, "web/src/style/tokens.css"), "utf8");
-const blocks = [...css.matchAll(/\{([^{}]*--bg:[^{}]*)\}/g)].map((match) => Object.fromEntries([...match[1]!.matchAll(/--([\w-]+):\s*(#[0-9a-f]{6})/g)].map((pair) => [pair[1]!, pair[2]!])));
+const blocks = [...css.matchAll(/\{([^{}]*--bg:[^{}]*)\}/g)].map((match) =>
+  Object.fromEntries([...match[1]!.matchAll(/--([\w-]+):\s*(#[0-9a-f]{6})/g)].map((pair) => [pair[1]!, pair[2]!])),
+);
 
 /** Contrast ratio as WCAG 2.2 defines it. */
 function contrast(a: string, b: string): number {
@@ -27,7 +29,20 @@ test("there are a light palette and two equal dark ones", () => {
 
 test("text, lines and borders have enough contrast on both palettes", () => {
   for (const colours of blocks) {
-    for (const name of ["text", "muted", "accent", "good", "warn", "bad", "series-1", "series-2", "series-3", "series-4", "setpoint", "limit"]) {
+    for (const name of [
+      "text",
+      "muted",
+      "accent",
+      "good",
+      "warn",
+      "bad",
+      "series-1",
+      "series-2",
+      "series-3",
+      "series-4",
+      "setpoint",
+      "limit",
+    ]) {
       assert.ok(contrast(colours[name]!, colours["surface"]!) >= 4.5, `${name} ${colours[name]}`);
     }
     for (const name of ["text", "muted"]) assert.ok(contrast(colours[name]!, colours["bg"]!) >= 4.5, `${name} on bg`);

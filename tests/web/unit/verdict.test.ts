@@ -10,17 +10,42 @@ function entry(changes: Record<string, unknown> = {}, performance: Record<string
   return {
     method: "robust",
     options: { Ms: 1.6, Mt: 1.6 },
-    controller: { form: "ideal", Kp: 2.58, Ti: 16.1, Td: 3.43, b: 1, c: 0, action: "reverse", filter: { type: "measurement_second_order", Tf: 0.343 } },
+    controller: {
+      form: "ideal",
+      Kp: 2.58,
+      Ti: 16.1,
+      Td: 3.43,
+      b: 1,
+      c: 0,
+      action: "reverse",
+      filter: { type: "measurement_second_order", Tf: 0.343 },
+    },
     equivalents: { parallel: { Kp: 2.58, Ki: 0.16, Kd: 8.85 }, series: null },
     robustness: {
-      stable: true, Ms: 1.6, omega_Ms: 0.213, Mt: 1.46, omega_Mt: 0.1, Mks: 20, gain_margin: 2.67, gain_margin_low: null, phase_margin_deg: 40,
-      delay_margin: 8.7, gain_crossover: 0.1, phase_crossover: 0.3, why_null: { gain_margin_low: "It stays stable however small the gain." }, ...changes,
+      stable: true,
+      Ms: 1.6,
+      omega_Ms: 0.213,
+      Mt: 1.46,
+      omega_Mt: 0.1,
+      Mks: 20,
+      gain_margin: 2.67,
+      gain_margin_low: null,
+      phase_margin_deg: 40,
+      delay_margin: 8.7,
+      gain_crossover: 0.1,
+      phase_crossover: 0.3,
+      why_null: { gain_margin_low: "It stays stable however small the gain." },
+      ...changes,
     },
     performance: { setpoint: { TV: 7.9 }, load: { IAE: 8.44, ...performance } },
   };
 }
 
-const today: Entry = { ...entry({ Ms: 1.35 }, { IAE: 33 }), method: "baseline", performance: { setpoint: { TV: 2.1 }, load: { IAE: 33 } } };
+const today: Entry = {
+  ...entry({ Ms: 1.35 }, { IAE: 33 }),
+  method: "baseline",
+  performance: { setpoint: { TV: 2.1 }, load: { IAE: 33 } },
+};
 
 test("a design that touches its limit says which, where, what it tolerates and what it saves", () => {
   const verdict = verdictOf(entry(), today, { units: { time: "s", y: "degC" } });
@@ -35,7 +60,10 @@ test("a design that touches its limit says which, where, what it tolerates and w
 
 test("a gain that may not fall is said, as unstable plants have it", () => {
   const text = verdictOf(entry({ gain_margin_low: 0.4 }), undefined, {}).sentences.join(" ");
-  assert.match(text, /The process gain may fall to 0\.40 of itself or grow 2\.7-fold, or the dead time may grow by 8\.7 s before/);
+  assert.match(
+    text,
+    /The process gain may fall to 0\.40 of itself or grow 2\.7-fold, or the dead time may grow by 8\.7 s before/,
+  );
 });
 
 test("levels follow Ms", () => {
@@ -45,7 +73,11 @@ test("levels follow Ms", () => {
 });
 
 test("unstable loops and failed methods are said to be so, in the service's words", () => {
-  const unstable = verdictOf({ ...entry({ stable: false, Ms: null }), warnings: [{ code: "unstable", detail: "Lower Kp." }] }, undefined, {});
+  const unstable = verdictOf(
+    { ...entry({ stable: false, Ms: null }), warnings: [{ code: "unstable", detail: "Lower Kp." }] },
+    undefined,
+    {},
+  );
   assert.equal(unstable.level, "bad");
   assert.match(unstable.sentences.join(" "), /Lower Kp\./);
   const failed = verdictOf({ method: "lambda", error: { detail: "lambda needs a first-order plant." } }, undefined, {});

@@ -18,7 +18,12 @@ export interface Reply {
 }
 
 /** Addresses are relative to the page, so that a prefix before it does not matter. */
-export async function call(method: string, path: string, body?: unknown, headers: Record<string, string> = {}): Promise<Reply> {
+export async function call(
+  method: string,
+  path: string,
+  body?: unknown,
+  headers: Record<string, string> = {},
+): Promise<Reply> {
   let response: Response;
   let text: string;
   try {
@@ -33,7 +38,10 @@ export async function call(method: string, path: string, body?: unknown, headers
     });
     text = response.status === 304 ? "" : await response.text();
   } catch {
-    throw new ApiError({ type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." }, 0);
+    throw new ApiError(
+      { type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." },
+      0,
+    );
   }
   const etag = response.headers.get("ETag");
   if (response.status === 304) return { status: 304, data: null, etag };

@@ -151,7 +151,12 @@ export interface Entry {
 export interface Model {
   plant: Plant;
   fit_percent: number | null;
-  candidates?: { plant: Plant; fit_percent: number | null; criterion?: number | null; standard_errors?: Record<string, number | null> }[];
+  candidates?: {
+    plant: Plant;
+    fit_percent: number | null;
+    criterion?: number | null;
+    standard_errors?: Record<string, number | null>;
+  }[];
   fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
   standard_errors?: Record<string, number | null>;
   data_quality?: Record<string, unknown>;
@@ -231,4 +236,5 @@ export interface Example {
   request: TuningRequest;
 }
 
-export const isFinal = (status: JobStatus): boolean => status === "succeeded" || status === "failed" || status === "cancelled";
+export const isFinal = (status: JobStatus): boolean =>
+  status === "succeeded" || status === "failed" || status === "cancelled";

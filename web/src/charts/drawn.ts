@@ -19,7 +19,8 @@ export function entryNames(entries: Entry[]): string[] {
     const twins = entries.filter((_, at) => base[at] === name);
     const options = entries[index]!.options ?? {};
     const telling = Object.entries(options).find(
-      ([key, value]) => (typeof value === "number" || typeof value === "string") && twins.some((twin) => twin.options?.[key] !== value),
+      ([key, value]) =>
+        (typeof value === "number" || typeof value === "string") && twins.some((twin) => twin.options?.[key] !== value),
     );
     return telling ? `${name} ${telling[0]} ${String(telling[1])}` : name;
   });
@@ -29,7 +30,8 @@ export function entryNames(entries: Entry[]): string[] {
   });
 }
 
-const drawable = (entry: Entry | undefined): boolean => Boolean(entry && !entry.error && (entry.responses || entry.frequency));
+const drawable = (entry: Entry | undefined): boolean =>
+  Boolean(entry && !entry.error && (entry.responses || entry.frequency));
 
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
 export function defaultDrawn(result: Result): number[] {

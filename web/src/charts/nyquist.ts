@@ -27,19 +27,26 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
     marks.push({ kind: "circle", ...circle, y: 0, label: `Mt ${formatNumber(Mt)}`, labelAt: "below" });
     left = Math.min(left, Math.max(circle.x - circle.radius - 0.2, -4.5));
   }
-  if (Ms !== null && Ms > 1) marks.push({ kind: "circle", ...sensitivityCircle(Ms), y: 0, label: `Ms ${formatNumber(Ms)}`, labelAt: "above" });
+  if (Ms !== null && Ms > 1)
+    marks.push({ kind: "circle", ...sensitivityCircle(Ms), y: 0, label: `Ms ${formatNumber(Ms)}`, labelAt: "above" });
   marks.push({ kind: "point", x: -1, y: 0, label: "−1" });
   return {
     title: "Nyquist curve of L",
     description:
-      drawn.map((item) => `${item.name}: nearest to −1 at a distance of ${formatNumber(inverse(item.entry.robustness?.Ms))}.`).join(" ") || "No curve to draw.",
+      drawn
+        .map(
+          (item) => `${item.name}: nearest to −1 at a distance of ${formatNumber(inverse(item.entry.robustness?.Ms))}.`,
+        )
+        .join(" ") || "No curve to draw.",
     x: { kind: "linear", label: "Re L", range: [left, 0.8] },
     panes: [
       {
         y: { kind: "linear", label: "Im L", range: [-1.8, 1.2] },
         traces: drawn.flatMap((item) => {
           const frequency = item.entry.frequency;
-          return frequency ? [{ name: item.name, look: item.look, x: frequency.L.re, y: frequency.L.im, parameter: frequency.omega }] : [];
+          return frequency
+            ? [{ name: item.name, look: item.look, x: frequency.L.re, y: frequency.L.im, parameter: frequency.omega }]
+            : [];
         }),
         marks: [{ kind: "upright", value: 0, role: "zero" }, ...marks],
       },
@@ -52,4 +59,5 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
   };
 }
 
-const inverse = (value: number | null | undefined): number | null => (typeof value === "number" && value > 0 ? 1 / value : null);
+const inverse = (value: number | null | undefined): number | null =>
+  typeof value === "number" && value > 0 ? 1 / value : null;

@@ -18,7 +18,11 @@ export function recordFrame(model: Model, request: TuningRequest | undefined): F
       weight: 2,
     },
   ];
-  if (u) panes.push({ y: { kind: "linear", label: withUnit("u", units.u) }, traces: [{ name: "input", look: "data", x: u.t, y: u.u }] });
+  if (u)
+    panes.push({
+      y: { kind: "linear", label: withUnit("u", units.u) },
+      traces: [{ name: "input", look: "data", x: u.t, y: u.u }],
+    });
   return {
     title: "Recorded test and model",
     description: `The model reproduces ${formatNumber(model.fit_percent)} % of the record's movement.`,

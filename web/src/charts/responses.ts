@@ -12,7 +12,8 @@ export function responseFrame(kind: "setpoint" | "load", drawn: Drawn[], request
       return response ? [{ name: item.name, look: item.look, x: response.t, y: response[signal] }] : [];
     });
   const step = request?.evaluate?.setpoint_step ?? 1;
-  const setpoint: Mark[] = kind === "setpoint" ? [{ kind: "level", value: step, role: "setpoint", label: "set point" }] : [];
+  const setpoint: Mark[] =
+    kind === "setpoint" ? [{ kind: "level", value: step, role: "setpoint", label: "set point" }] : [];
   return {
     title: kind === "setpoint" ? "Set-point step" : "Load step at the plant input",
     description: describe(kind, drawn, units.time, units.y),
@@ -30,7 +31,9 @@ export function responseFrame(kind: "setpoint" | "load", drawn: Drawn[], request
 
 function actuatorMarks(request: TuningRequest | undefined): Mark[] {
   const actuator = request?.evaluate?.actuator;
-  return [actuator?.min, actuator?.max].flatMap((value): Mark[] => (typeof value === "number" ? [{ kind: "level", value, role: "limit" }] : []));
+  return [actuator?.min, actuator?.max].flatMap((value): Mark[] =>
+    typeof value === "number" ? [{ kind: "level", value, role: "limit" }] : [],
+  );
 }
 
 function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: string): string {

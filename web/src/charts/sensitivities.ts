@@ -16,14 +16,20 @@ export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: Tuning
       const frequency: FrequencyTraces | undefined = item.entry.frequency;
       return frequency ? [{ name: item.name, look: item.look, x: frequency.omega, y: frequency[curve] }] : [];
     });
-    const marks: Mark[] = limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label: `${limitName} ${formatNumber(limit)}` }];
+    const marks: Mark[] =
+      limit === null
+        ? []
+        : [{ kind: "level", value: limit, role: "limit", label: `${limitName} ${formatNumber(limit)}` }];
     return { y: { kind: "log", label, range: topDecades(traces, limit, decades) }, traces, marks };
   };
   return {
     title: "Sensitivities",
     description:
       drawn
-        .map(({ name, entry }) => `${name}: Ms ${formatNumber(entry.robustness?.Ms)}, Mt ${formatNumber(entry.robustness?.Mt)}, Mks ${formatNumber(entry.robustness?.Mks)}.`)
+        .map(
+          ({ name, entry }) =>
+            `${name}: Ms ${formatNumber(entry.robustness?.Ms)}, Mt ${formatNumber(entry.robustness?.Mt)}, Mks ${formatNumber(entry.robustness?.Mks)}.`,
+        )
         .join(" ") || "No curve to draw.",
     x: { kind: "log", label: `ω (rad/${units.time})` },
     panes: [

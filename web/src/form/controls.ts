@@ -29,7 +29,14 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
   input.setAttribute("aria-describedby", [hint?.id, error.id].filter(Boolean).join(" "));
   const control: Control = { input, error, pointer: options.pointer };
   errors.add(control);
-  const element = h("div", { class: options.wide ? "field wide" : "field" }, h("label", { for: input.id }, options.label, unit), input, error, hint);
+  const element = h(
+    "div",
+    { class: options.wide ? "field wide" : "field" },
+    h("label", { for: input.id }, options.label, unit),
+    input,
+    error,
+    hint,
+  );
   return {
     element,
     input,
@@ -42,7 +49,13 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
 
 /** A text field: numbers are text too, read by our own parser. */
 export function textField(options: ControlOptions, errors: FormErrors): Field<HTMLInputElement> {
-  const input = h("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: options.placeholder, value: options.value });
+  const input = h("input", {
+    type: "text",
+    autocomplete: "off",
+    spellcheck: "false",
+    placeholder: options.placeholder,
+    value: options.value,
+  });
   return assemble(input, options, errors);
 }
 
@@ -53,7 +66,10 @@ export function areaField(options: ControlOptions, errors: FormErrors): Field<HT
 }
 
 /** A choice of [value, text] pairs. */
-export function choiceField(options: ControlOptions & { choices: readonly (readonly [string, string])[] }, errors: FormErrors): Field<HTMLSelectElement> {
+export function choiceField(
+  options: ControlOptions & { choices: readonly (readonly [string, string])[] },
+  errors: FormErrors,
+): Field<HTMLSelectElement> {
   const input = h(
     "select",
     {},

@@ -24,11 +24,19 @@ export function matchPointer(pointer: string, known: readonly (string | null)[])
     }
   });
   if (best >= 0) return best;
-  return pointer === "" ? -1 : known.findIndex((candidate) => candidate !== null && candidate.startsWith(`${pointer}/`));
+  return pointer === ""
+    ? -1
+    : known.findIndex((candidate) => candidate !== null && candidate.startsWith(`${pointer}/`));
 }
 
 export class FormErrors {
-  readonly summary = h("div", { class: "summary", role: "group", "aria-label": "What to mend", tabindex: -1, hidden: true });
+  readonly summary = h("div", {
+    class: "summary",
+    role: "group",
+    "aria-label": "What to mend",
+    tabindex: -1,
+    hidden: true,
+  });
   private readonly controls = new Set<Control>();
 
   add(control: Control): void {

@@ -20,7 +20,11 @@ export interface FieldSpec {
 }
 
 /** One field for each simple property, nested objects opened up. Properties of a shape that no field can hold are left out. */
-export function fieldsOf(schema: Schema | undefined, root: Schema | undefined = schema, path: string[] = []): FieldSpec[] {
+export function fieldsOf(
+  schema: Schema | undefined,
+  root: Schema | undefined = schema,
+  path: string[] = [],
+): FieldSpec[] {
   const properties = resolve(schema, root)?.properties ?? {};
   return Object.entries(properties).flatMap(([name, raw]): FieldSpec[] => {
     const property = resolve(raw, root);
@@ -37,7 +41,10 @@ export function fieldsOf(schema: Schema | undefined, root: Schema | undefined = 
         label: here.join(" "),
         hint: sentences(property),
         unit: own,
-        defaultText: property.default === undefined || property.default === null || typeof property.default === "object" ? "" : String(property.default),
+        defaultText:
+          property.default === undefined || property.default === null || typeof property.default === "object"
+            ? ""
+            : String(property.default),
       },
     ];
   });
@@ -56,8 +63,13 @@ type Shape = Pick<FieldSpec, "kind" | "choices" | "words">;
 
 function fieldOf(schema: Schema, root: Schema | undefined): Shape | null {
   const alternatives = schema.oneOf ?? schema.anyOf;
-  if (alternatives) return combined(alternatives.flatMap((item) => resolve(item, root) ?? []), root);
-  if (schema.enum) return { kind: "choice", choices: schema.enum.filter((item) => item !== null).map(String), words: [] };
+  if (alternatives)
+    return combined(
+      alternatives.flatMap((item) => resolve(item, root) ?? []),
+      root,
+    );
+  if (schema.enum)
+    return { kind: "choice", choices: schema.enum.filter((item) => item !== null).map(String), words: [] };
   const type = Array.isArray(schema.type) ? schema.type.find((item) => item !== "null") : schema.type;
   switch (type) {
     case "number":
@@ -77,7 +89,9 @@ function fieldOf(schema: Schema, root: Schema | undefined): Shape | null {
 
 /** "a number or one of these words" and "one of these words" are the unions that options have. */
 function combined(alternatives: Schema[], root: Schema | undefined): Shape | null {
-  const words = alternatives.flatMap((item) => (typeof item.const === "string" ? [item.const] : (item.enum ?? []).map(String)));
+  const words = alternatives.flatMap((item) =>
+    typeof item.const === "string" ? [item.const] : (item.enum ?? []).map(String),
+  );
   const rest = alternatives.filter((item) => item.const === undefined && !item.enum && item.type !== "null");
   if (rest.length === 0) return { kind: "choice", choices: words, words: [] };
   const first = rest.map((item) => fieldOf(item, root)).find((shape) => shape !== null);
@@ -120,7 +134,10 @@ export function place(target: Record<string, unknown>, path: string[], value: un
 
 /** The value at a path, or undefined. */
 export function pick(source: unknown, path: string[]): unknown {
-  return path.reduce<unknown>((at, key) => (typeof at === "object" && at !== null ? (at as Record<string, unknown>)[key] : undefined), source);
+  return path.reduce<unknown>(
+    (at, key) => (typeof at === "object" && at !== null ? (at as Record<string, unknown>)[key] : undefined),
+    source,
+  );
 }
 
 /** A value as it would be typed. */

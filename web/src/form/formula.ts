@@ -68,14 +68,23 @@ function delay(L: number): TreeNode[] {
 /** Numerator times the dead time over the denominator. */
 function quotient(sign: number, top: TreeNode[], bottom: TreeNode[], L: number): TreeNode[] {
   const numerator = [...top, ...delay(L)];
-  const body = bottom.length === 0 ? numerator : [fraction(row(...(numerator.length > 0 ? numerator : [mn(1)])), row(...bottom))];
+  const body =
+    bottom.length === 0 ? numerator : [fraction(row(...(numerator.length > 0 ? numerator : [mn(1)])), row(...bottom))];
   return [...(sign < 0 ? [mo("−")] : []), ...body];
 }
 
 const gain = (K: number, others: boolean): TreeNode[] => (one(K) && others ? [] : [mn(K)]);
 
 function matrix(rows: readonly (readonly number[])[]): TreeNode {
-  return row(mo("["), node("mtable", {}, ...rows.map((line) => node("mtr", {}, ...line.map((value) => node("mtd", {}, ...signed(value)))))), mo("]"));
+  return row(
+    mo("["),
+    node(
+      "mtable",
+      {},
+      ...rows.map((line) => node("mtr", {}, ...line.map((value) => node("mtd", {}, ...signed(value))))),
+    ),
+    mo("]"),
+  );
 }
 
 /** The formula's right-hand side, or null where the plant is not complete. */
@@ -123,8 +132,10 @@ function body(plant: Plant): TreeNode[] | null {
   }
 }
 
-const asRows = (value: unknown[]): number[][] => (Array.isArray(value[0]) ? (value as number[][]) : [value as number[]]);
-const asColumn = (value: unknown[]): number[][] => (Array.isArray(value[0]) ? (value as number[][]) : (value as number[]).map((item) => [item]));
+const asRows = (value: unknown[]): number[][] =>
+  Array.isArray(value[0]) ? (value as number[][]) : [value as number[]];
+const asColumn = (value: unknown[]): number[][] =>
+  Array.isArray(value[0]) ? (value as number[][]) : (value as number[]).map((item) => [item]);
 
 /** P(s) = ..., or null for a plant that has no such formula or lacks a value. */
 export function plantFormula(plant: Plant): TreeNode | null {

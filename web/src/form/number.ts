@@ -11,7 +11,8 @@ const plain = (text: string): string => text.trim().replaceAll("−", "-");
 export function parseNumber(text: string, name: string): Parsed<number> {
   const tidy = plain(text);
   if (tidy === "") return fail(`${name} is empty. Write a number, for example 1.25.`);
-  if (!NUMBER.test(tidy)) return fail(`${name} "${text.trim()}" is not a number. Write for example 1.25, 1,25 or 1e-3.`);
+  if (!NUMBER.test(tidy))
+    return fail(`${name} "${text.trim()}" is not a number. Write for example 1.25, 1,25 or 1e-3.`);
   const value = Number(tidy.replace(",", "."));
   if (!Number.isFinite(value)) return fail(`${name} "${text.trim()}" is too large to be used.`);
   return { ok: true, value };
@@ -31,12 +32,15 @@ export function parseNumbers(text: string, name: string): Parsed<number[]> {
   const list = items(tidy);
   if (list.length === 0) return fail(`${name} is empty. Write numbers with spaces between them, for example 1 2.5 1.`);
   if (list.length === 1 && list[0]!.includes(",")) {
-    return fail(`${name} "${text.trim()}" may be one number or several. Put spaces between numbers, and write one number with a point.`);
+    return fail(
+      `${name} "${text.trim()}" may be one number or several. Put spaces between numbers, and write one number with a point.`,
+    );
   }
   const values: number[] = [];
   for (const item of list) {
     const parsed = parseNumber(item, name);
-    if (!parsed.ok) return fail(`In ${name}, "${item}" is not a number. Put spaces between numbers, for example 1 2.5 1.`);
+    if (!parsed.ok)
+      return fail(`In ${name}, "${item}" is not a number. Put spaces between numbers, for example 1 2.5 1.`);
     values.push(parsed.value);
   }
   return { ok: true, value: values };
@@ -48,7 +52,8 @@ export function parseMatrix(text: string, name: string): Parsed<number[][]> {
     .replace(/^\[|\]$/g, "")
     .split(/[;\n]/)
     .filter((row) => row.trim() !== "");
-  if (rows.length === 0) return fail(`${name} is empty. Write its rows with semicolons between them, for example -1 0; 1 -2.`);
+  if (rows.length === 0)
+    return fail(`${name} is empty. Write its rows with semicolons between them, for example -1 0; 1 -2.`);
   const matrix: number[][] = [];
   for (const row of rows) {
     const parsed = row.trim().includes(" ") ? parseNumbers(row, name) : single(row, name);
@@ -57,7 +62,10 @@ export function parseMatrix(text: string, name: string): Parsed<number[][]> {
   }
   const width = matrix[0]!.length;
   const odd = matrix.findIndex((row) => row.length !== width);
-  if (odd >= 0) return fail(`Row ${odd + 1} of ${name} has ${matrix[odd]!.length} numbers, the first has ${width}. Give all rows the same length.`);
+  if (odd >= 0)
+    return fail(
+      `Row ${odd + 1} of ${name} has ${matrix[odd]!.length} numbers, the first has ${width}. Give all rows the same length.`,
+    );
   return { ok: true, value: matrix };
 }
 
@@ -71,7 +79,9 @@ const COMPLEX = /^([+-]?[\d.,]+(?:e[+-]?\d+)?)?(?:([+-]|±)?([\d.,]*(?:e[+-]?\d+
 /** Zeros or poles: "-1", "-1+2i", "-1±2i" (both of a pair). An empty text is an empty list. */
 export function parseRoots(text: string, name: string): Parsed<(number | [number, number])[]> {
   const roots: (number | [number, number])[] = [];
-  const tidy = plain(text).replaceAll("+-", "±").replace(/\s*([+±])\s*(?=[\d.,]*[ij])/gi, "$1");
+  const tidy = plain(text)
+    .replaceAll("+-", "±")
+    .replace(/\s*([+±])\s*(?=[\d.,]*[ij])/gi, "$1");
   for (const item of items(tidy)) {
     const match = COMPLEX.exec(item);
     const bad = fail(`In ${name}, "${item}" is not a number. Write for example -1, -1+2i, or -1±2i for a pair.`);

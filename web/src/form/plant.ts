@@ -27,12 +27,26 @@ const writeNumber = (value: unknown): string => (typeof value === "number" ? Str
 const writeList = (value: unknown): string => (Array.isArray(value) ? value.map(String).join(" ") : writeNumber(value));
 const writeRoots = (value: unknown): string =>
   Array.isArray(value)
-    ? value.map((root: unknown) => (Array.isArray(root) ? `${String(root[0])}${Number(root[1]) < 0 ? "-" : "+"}${Math.abs(Number(root[1]))}i` : String(root))).join(" ")
+    ? value
+        .map((root: unknown) =>
+          Array.isArray(root)
+            ? `${String(root[0])}${Number(root[1]) < 0 ? "-" : "+"}${Math.abs(Number(root[1]))}i`
+            : String(root),
+        )
+        .join(" ")
     : "";
 const writeMatrix = (value: unknown): string =>
-  Array.isArray(value) ? value.map((row: unknown) => (Array.isArray(row) ? row.map(String).join(" ") : String(row))).join("; ") : writeNumber(value);
+  Array.isArray(value)
+    ? value.map((row: unknown) => (Array.isArray(row) ? row.map(String).join(" ") : String(row))).join("; ")
+    : writeNumber(value);
 
-function numberField(name: string, hint: string, unit: PlantField["unit"], example: string, optional = false): PlantField {
+function numberField(
+  name: string,
+  hint: string,
+  unit: PlantField["unit"],
+  example: string,
+  optional = false,
+): PlantField {
   return { name, hint, unit, example, optional, read: (text) => parseNumber(text, name), write: writeNumber };
 }
 
@@ -67,30 +81,53 @@ const deadTime = numberField("L", "dead time: nothing happens before it", "time"
 const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
 
 export const PLANT_FORMS: PlantForm[] = [
-  { id: "fopdt", type: "fopdt", title: "First order with dead time", fields: [gain, numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"), deadTime] },
+  {
+    id: "fopdt",
+    type: "fopdt",
+    title: "First order with dead time",
+    fields: [gain, numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"), deadTime],
+  },
   {
     id: "sopdt",
     type: "sopdt",
     title: "Second order, two time constants",
-    fields: [gain, numberField("T1", "first time constant", "time", "10"), numberField("T2", "second time constant", "time", "5"), deadTime],
+    fields: [
+      gain,
+      numberField("T1", "first time constant", "time", "10"),
+      numberField("T2", "second time constant", "time", "5"),
+      deadTime,
+    ],
   },
   {
     id: "sopdt_zeta",
     type: "sopdt",
     title: "Second order, damped oscillation",
-    fields: [gain, numberField("T", "1/natural frequency", "time", "10"), numberField("zeta", "damping; below 1 it oscillates", "", "0.4"), deadTime],
+    fields: [
+      gain,
+      numberField("T", "1/natural frequency", "time", "10"),
+      numberField("zeta", "damping; below 1 it oscillates", "", "0.4"),
+      deadTime,
+    ],
   },
   {
     id: "ipdt",
     type: "ipdt",
     title: "Integrating with dead time",
-    fields: [numberField("K", "slope of y for one unit of u", "slope", "0.02"), deadTime, numberField("T", "additional lag; empty is none", "time", "", true)],
+    fields: [
+      numberField("K", "slope of y for one unit of u", "slope", "0.02"),
+      deadTime,
+      numberField("T", "additional lag; empty is none", "time", "", true),
+    ],
   },
   {
     id: "transfer_function",
     type: "transfer_function",
     title: "Transfer function",
-    fields: [listField("num", "numerator, falling powers of s", "1"), listField("den", "denominator, falling powers of s", "1 3 3 1"), optionalDeadTime],
+    fields: [
+      listField("num", "numerator, falling powers of s", "1"),
+      listField("den", "denominator, falling powers of s", "1 3 3 1"),
+      optionalDeadTime,
+    ],
   },
   {
     id: "zpk",
@@ -129,7 +166,8 @@ function writeD(value: unknown): string {
 
 /** The form that can show this plant, or null. */
 export function formOf(plant: Plant): PlantForm | null {
-  if (plant.type === "sopdt" && plant["zeta"] !== undefined) return PLANT_FORMS.find((form) => form.id === "sopdt_zeta")!;
+  if (plant.type === "sopdt" && plant["zeta"] !== undefined)
+    return PLANT_FORMS.find((form) => form.id === "sopdt_zeta")!;
   const form = PLANT_FORMS.find((candidate) => candidate.type === plant.type) ?? null;
   const known = new Set(["type", ...(form?.fields.map((field) => field.name) ?? [])]);
   return form && Object.keys(plant).every((key) => known.has(key)) ? form : null;

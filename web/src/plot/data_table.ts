@@ -13,8 +13,10 @@ export function dataTable(frame: Frame): HTMLElement {
       const traces = pane.traces;
       const longest = Math.max(0, ...traces.map((trace) => trace.x.length));
       const rows = Math.min(longest, MOST_ROWS);
-      const at = (row: number, length: number): number => (rows < 2 ? 0 : Math.round((row * (length - 1)) / (rows - 1)));
-      const text = (value: number | null | undefined): string => (typeof value === "number" ? tickText(Number(value.toPrecision(4))) : "–");
+      const at = (row: number, length: number): number =>
+        rows < 2 ? 0 : Math.round((row * (length - 1)) / (rows - 1));
+      const text = (value: number | null | undefined): string =>
+        typeof value === "number" ? tickText(Number(value.toPrecision(4))) : "–";
       const note = longest > rows ? ` (${rows} of ${longest} rows; the CSV export has all)` : "";
       return h(
         "table",

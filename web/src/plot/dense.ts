@@ -1,7 +1,12 @@
 // Long traces: what a screen can show of them.
 
 /** Index runs of consecutive samples that can be drawn, as [first, last]. */
-export function drawableRuns(x: readonly (number | null)[], y: readonly (number | null)[], positiveX: boolean, positiveY: boolean): [number, number][] {
+export function drawableRuns(
+  x: readonly (number | null)[],
+  y: readonly (number | null)[],
+  positiveX: boolean,
+  positiveY: boolean,
+): [number, number][] {
   const runs: [number, number][] = [];
   let start = -1;
   const length = Math.min(x.length, y.length);
@@ -9,7 +14,12 @@ export function drawableRuns(x: readonly (number | null)[], y: readonly (number 
     const a = index < length ? x[index] : null;
     const b = index < length ? y[index] : null;
     const good =
-      typeof a === "number" && typeof b === "number" && Number.isFinite(a) && Number.isFinite(b) && (!positiveX || a > 0) && (!positiveY || b > 0);
+      typeof a === "number" &&
+      typeof b === "number" &&
+      Number.isFinite(a) &&
+      Number.isFinite(b) &&
+      (!positiveX || a > 0) &&
+      (!positiveY || b > 0);
     if (good && start < 0) start = index;
     if (!good && start >= 0) {
       runs.push([start, index - 1]);
@@ -35,7 +45,8 @@ export function columnExtremes(columns: readonly number[], values: readonly numb
       if (values[end]! < values[least]!) least = end;
       if (values[end]! > values[greatest]!) greatest = end;
     }
-    for (const index of [...new Set([start, Math.min(least, greatest), Math.max(least, greatest), end])]) kept.push(index);
+    for (const index of [...new Set([start, Math.min(least, greatest), Math.max(least, greatest), end])])
+      kept.push(index);
     start = end + 1;
   }
   return kept;

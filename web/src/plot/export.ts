@@ -12,15 +12,21 @@ export type Palette = (token: string) => string;
 const FONTS = "system-ui, Segoe UI, DejaVu Sans, sans-serif";
 const HEADER = 44;
 
-const escapeText = (text: string): string => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+const escapeText = (text: string): string =>
+  text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 const escapeValue = (text: string): string => escapeText(text).replaceAll('"', "&quot;");
 
 /** Markup of a node, colours put in for their tokens. */
 export function toMarkup(tree: TreeNode, palette: Palette): string {
   const attributes = Object.entries(tree.attributes ?? {})
-    .map(([name, value]) => ` ${name}="${escapeValue(String(value).replace(/var\((--[\w-]+)\)/g, (_, token: string) => palette(token)))}"`)
+    .map(
+      ([name, value]) =>
+        ` ${name}="${escapeValue(String(value).replace(/var\((--[\w-]+)\)/g, (_, token: string) => palette(token)))}"`,
+    )
     .join("");
-  const children = (tree.children ?? []).map((child) => (typeof child === "string" ? escapeText(child) : toMarkup(child, palette))).join("");
+  const children = (tree.children ?? [])
+    .map((child) => (typeof child === "string" ? escapeText(child) : toMarkup(child, palette)))
+    .join("");
   return children === "" ? `<${tree.tag}${attributes}/>` : `<${tree.tag}${attributes}>${children}</${tree.tag}>`;
 }
 
@@ -43,7 +49,14 @@ export function frameToSvg(frame: Frame, view: View, width: number, height: numb
   const layout = layoutFrame(frame, width, height, view);
   const document = node(
     "svg",
-    { xmlns: "http://www.w3.org/2000/svg", width, height: height + HEADER, viewBox: `0 0 ${width} ${height + HEADER}`, "font-family": FONTS, role: "img" },
+    {
+      xmlns: "http://www.w3.org/2000/svg",
+      width,
+      height: height + HEADER,
+      viewBox: `0 0 ${width} ${height + HEADER}`,
+      "font-family": FONTS,
+      role: "img",
+    },
     node("title", {}, frame.title),
     node("desc", {}, frame.description),
     node("rect", { width, height: height + HEADER, fill: "var(--surface)" }),
@@ -60,7 +73,13 @@ export function frameToRows(frame: Frame): { header: string[]; rows: (string | n
   const header = ["trace", "axis", ...(parametric ? [frame.cursorLabel] : []), frame.x.label, "value"];
   const rows = frame.panes.flatMap((pane) =>
     pane.traces.flatMap((trace) =>
-      trace.x.map((x, index) => [trace.name, pane.y.label, ...(parametric ? [trace.parameter?.[index] ?? null] : []), x, trace.y[index] ?? null]),
+      trace.x.map((x, index) => [
+        trace.name,
+        pane.y.label,
+        ...(parametric ? [trace.parameter?.[index] ?? null] : []),
+        x,
+        trace.y[index] ?? null,
+      ]),
     ),
   );
   return { header, rows };
@@ -97,7 +116,10 @@ export async function svgToPng(svg: string, width: number, height: number): Prom
     canvas.height = 2 * height;
     canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
     return await new Promise((resolve, reject) => {
-      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The browser could not make a PNG of this plot."))), "image/png");
+      canvas.toBlob(
+        (blob) => (blob ? resolve(blob) : reject(new Error("The browser could not make a PNG of this plot."))),
+        "image/png",
+      );
     });
   } finally {
     URL.revokeObjectURL(address);
@@ -113,7 +135,20 @@ export function lightPalette(): Palette {
   document.body.append(probe);
   const colours = getComputedStyle(probe);
   const read = new Map<string, string>();
-  for (const token of ["surface", "text", "muted", "control", "grid", "bad", "setpoint", "limit", "series-1", "series-2", "series-3", "series-4"]) {
+  for (const token of [
+    "surface",
+    "text",
+    "muted",
+    "control",
+    "grid",
+    "bad",
+    "setpoint",
+    "limit",
+    "series-1",
+    "series-2",
+    "series-3",
+    "series-4",
+  ]) {
     read.set(`--${token}`, colours.getPropertyValue(`--${token}`).trim());
   }
   probe.remove();

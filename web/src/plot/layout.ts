@@ -38,7 +38,13 @@ export function layoutFrame(frame: Frame, width: number, height: number, view: V
   const innerHeight = Math.max(40, height - TOP - BOTTOM - GAP * (frame.panes.length - 1));
   const weights = frame.panes.map((pane) => pane.weight ?? 1);
   const total = weights.reduce((sum, weight) => sum + weight, 0);
-  const xRange = view.x ?? frame.x.range ?? extent(frame.panes.flatMap((pane) => pane.traces.map((trace) => trace.x)), frame.x.kind);
+  const xRange =
+    view.x ??
+    frame.x.range ??
+    extent(
+      frame.panes.flatMap((pane) => pane.traces.map((trace) => trace.x)),
+      frame.x.kind,
+    );
   let top = TOP;
   const boxes = frame.panes.map((pane, index): PaneBox => {
     const paneHeight = (innerHeight * weights[index]!) / total;
@@ -61,7 +67,9 @@ export function layoutFrame(frame: Frame, width: number, height: number, view: V
 }
 
 function dataRange(pane: Pane): Range {
-  const levels = (pane.marks ?? []).flatMap((mark) => (mark.kind === "level" && mark.role !== "zero" ? [mark.value] : []));
+  const levels = (pane.marks ?? []).flatMap((mark) =>
+    mark.kind === "level" && mark.role !== "zero" ? [mark.value] : [],
+  );
   return extent([...pane.traces.map((trace) => trace.y), levels], pane.y.kind, pane.y.kind === "linear" ? 0.06 : 0.03);
 }
 

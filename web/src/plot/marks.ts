@@ -35,13 +35,16 @@ const round = (value: number): number => Math.round(value * 10) / 10;
 export function tickText(value: number): string {
   if (value === 0) return "0";
   const size = Math.abs(value);
-  const text = size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
+  const text =
+    size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
   return text.replaceAll("-", MINUS);
 }
 
 /** Everything but the cursor. `clip` makes ids of clip paths unique in the document. */
 export function drawLayout(frame: Frame, layout: Layout, clip: string): TreeNode[] {
-  return layout.boxes.flatMap((box, index) => drawBox(frame, box, `${clip}-${index}`, index === layout.boxes.length - 1));
+  return layout.boxes.flatMap((box, index) =>
+    drawBox(frame, box, `${clip}-${index}`, index === layout.boxes.length - 1),
+  );
 }
 
 function drawBox(frame: Frame, box: PaneBox, clip: string, last: boolean): TreeNode[] {
@@ -75,7 +78,9 @@ function drawGrid(box: PaneBox): TreeNode[] {
     y.map((value) => `M${box.left} ${round(box.y.toPixel(value))}H${right}`).join("");
   const grid = node("path", { d: path || "M0 0", fill: "none", stroke: "var(--grid)" });
   const zero = box.y.kind === "linear" && box.y.range[0] < 0 && box.y.range[1] > 0;
-  return zero ? [grid, node("path", { d: `M${box.left} ${round(box.y.toPixel(0))}H${right}`, fill: "none", ...ROLES.zero })] : [grid];
+  return zero
+    ? [grid, node("path", { d: `M${box.left} ${round(box.y.toPixel(0))}H${right}`, fill: "none", ...ROLES.zero })]
+    : [grid];
 }
 
 function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
@@ -98,8 +103,21 @@ function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
 
 function drawAxisNames(frame: Frame, box: PaneBox, last: boolean): TreeNode[] {
   const middle = round(box.top + box.height / 2);
-  const names = [node("text", { x: 0, y: 0, transform: `translate(13 ${middle}) rotate(-90)`, "text-anchor": "middle" }, box.pane.y.label)];
-  if (last) names.push(node("text", { x: round(box.left + box.width / 2), y: round(box.top + box.height + 33), "text-anchor": "middle" }, frame.x.label));
+  const names = [
+    node(
+      "text",
+      { x: 0, y: 0, transform: `translate(13 ${middle}) rotate(-90)`, "text-anchor": "middle" },
+      box.pane.y.label,
+    ),
+  ];
+  if (last)
+    names.push(
+      node(
+        "text",
+        { x: round(box.left + box.width / 2), y: round(box.top + box.height + 33), "text-anchor": "middle" },
+        frame.x.label,
+      ),
+    );
   return names;
 }
 
@@ -116,24 +134,39 @@ export function tracePath(box: PaneBox, trace: Trace): string {
     }
     const dense = !trace.parameter && xs.length > 4 * box.width;
     const kept = dense ? columnExtremes(xs.map(Math.floor), ys) : xs.map((_, index) => index);
-    path += kept.map((index, position) => `${position === 0 ? "M" : "L"}${round(xs[index]!)} ${round(ys[index]!)}`).join("");
+    path += kept
+      .map((index, position) => `${position === 0 ? "M" : "L"}${round(xs[index]!)} ${round(ys[index]!)}`)
+      .join("");
   }
   return path;
 }
 
 function drawTrace(box: PaneBox, trace: Trace): TreeNode {
-  return node("path", { d: tracePath(box, trace) || "M0 0", fill: "none", "stroke-linejoin": "round", ...LINES[trace.look] });
+  return node("path", {
+    d: tracePath(box, trace) || "M0 0",
+    fill: "none",
+    "stroke-linejoin": "round",
+    ...LINES[trace.look],
+  });
 }
 
 function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
   switch (mark.kind) {
     case "level": {
       const y = round(box.y.toPixel(mark.value));
-      return [node("path", { d: `M${box.left} ${y}H${round(box.left + box.width)}`, fill: "none", ...ROLES[mark.role] })];
+      return [
+        node("path", { d: `M${box.left} ${y}H${round(box.left + box.width)}`, fill: "none", ...ROLES[mark.role] }),
+      ];
     }
     case "upright": {
       const x = round(box.x.toPixel(mark.value));
-      return [node("path", { d: `M${x} ${round(box.top)}V${round(box.top + box.height)}`, fill: "none", ...ROLES[mark.role] })];
+      return [
+        node("path", {
+          d: `M${x} ${round(box.top)}V${round(box.top + box.height)}`,
+          fill: "none",
+          ...ROLES[mark.role],
+        }),
+      ];
     }
     case "circle": {
       const radius = Math.abs(box.x.toPixel(mark.x + mark.radius) - box.x.toPixel(mark.x));
@@ -141,7 +174,14 @@ function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
       return [node("circle", { ...centre, fill: "var(--limit)", "fill-opacity": 0.07, ...ROLES.limit })];
     }
     case "point":
-      return [node("circle", { cx: round(box.x.toPixel(mark.x)), cy: round(box.y.toPixel(mark.y)), r: 3.5, fill: "var(--bad)" })];
+      return [
+        node("circle", {
+          cx: round(box.x.toPixel(mark.x)),
+          cy: round(box.y.toPixel(mark.y)),
+          r: 3.5,
+          fill: "var(--bad)",
+        }),
+      ];
   }
 }
 

@@ -14,7 +14,14 @@ const ordered = (scale: Scale, a: number, b: number): Range => {
 
 const tooNarrow = ([lo, hi]: Range): boolean => !(hi - lo > NARROWEST * Math.max(Math.abs(lo), Math.abs(hi)));
 
-export function zoomToRectangle(frame: Frame, layout: Layout, view: View, box: PaneBox, from: { x: number; y: number }, to: { x: number; y: number }): View {
+export function zoomToRectangle(
+  frame: Frame,
+  layout: Layout,
+  view: View,
+  box: PaneBox,
+  from: { x: number; y: number },
+  to: { x: number; y: number },
+): View {
   const inX = (pixel: number): number => Math.max(box.left, Math.min(box.left + box.width, pixel));
   const inY = (pixel: number): number => Math.max(box.top, Math.min(box.top + box.height, pixel));
   const index = layout.boxes.indexOf(box);

@@ -28,7 +28,9 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
         "tr",
         {},
         h("td", {}),
-        columns.map((column) => h("th", { scope: "col", title: column.entry.title ?? column.name }, column.swatch(), column.name)),
+        columns.map((column) =>
+          h("th", { scope: "col", title: column.entry.title ?? column.name }, column.swatch(), column.name),
+        ),
       ),
     ),
     groups.map((group) =>
@@ -42,7 +44,9 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
             {},
             h("th", { scope: "row", title: row.meaning }, row.label),
             columns.map((column) => {
-              const value = column.entry.error ? { text: "", why: `${column.name} has no answer here.` } : row.value(column.entry);
+              const value = column.entry.error
+                ? { text: "", why: `${column.name} has no answer here.` }
+                : row.value(column.entry);
               if (value.text !== "") return h("td", {}, value.text);
               return h("td", { title: value.why }, DASH, h("sup", {}, mark(value.why)));
             }),
@@ -55,6 +59,12 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
     "div",
     {},
     h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption }, table),
-    notes.length > 0 ? h("ol", { class: "footnotes" }, notes.map((note) => h("li", {}, note))) : null,
+    notes.length > 0
+      ? h(
+          "ol",
+          { class: "footnotes" },
+          notes.map((note) => h("li", {}, note)),
+        )
+      : null,
   );
 }

@@ -40,7 +40,11 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     "section",
     { class: "card", "aria-labelledby": "methods-title" },
     h("h2", { id: "methods-title" }, "How to tune"),
-    h("p", { class: "hint" }, "The first is a good choice: the best load rejection within the robustness you set. Choose several to compare them."),
+    h(
+      "p",
+      { class: "hint" },
+      "The first is a good choice: the best load rejection within the robustness you set. Choose several to compare them.",
+    ),
     list,
   );
 
@@ -50,7 +54,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   function makeRow(method: Method): Row {
     const chosen = h("input", { type: "checkbox", id: `method-${method.id}` });
     const row: Row = { method, chosen, fields: [], rest: {}, element: h("div"), options: h("div") };
-    const pointer = (path: string[]) => (): string | null => (chosen.checked ? `/tune/${position(row)}/${path.join("/")}` : null);
+    const pointer = (path: string[]) => (): string | null =>
+      chosen.checked ? `/tune/${position(row)}/${path.join("/")}` : null;
     row.fields = fieldsOf(method.options)
       .filter((spec) => spec.path[0] !== "method")
       .map((spec) => ({ spec, field: optionField(spec, pointer(spec.path), errors) }));
@@ -59,14 +64,48 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     row.options = h(
       "div",
       { class: "options", hidden: true },
-      main.length > 0 ? h("div", { class: "fields" }, main.map(({ field }) => field.element)) : null,
-      others.length > 0 ? h("details", {}, h("summary", {}, "More options"), h("div", { class: "fields" }, others.map(({ field }) => field.element))) : null,
-      h("p", { class: "hint" }, [method.needs && `Needs ${method.needs}.`, method.validity && `Valid: ${method.validity}.`, method.source].filter(Boolean).join(" ").replaceAll("..", ".")),
+      main.length > 0
+        ? h(
+            "div",
+            { class: "fields" },
+            main.map(({ field }) => field.element),
+          )
+        : null,
+      others.length > 0
+        ? h(
+            "details",
+            {},
+            h("summary", {}, "More options"),
+            h(
+              "div",
+              { class: "fields" },
+              others.map(({ field }) => field.element),
+            ),
+          )
+        : null,
+      h(
+        "p",
+        { class: "hint" },
+        [method.needs && `Needs ${method.needs}.`, method.validity && `Valid: ${method.validity}.`, method.source]
+          .filter(Boolean)
+          .join(" ")
+          .replaceAll("..", "."),
+      ),
     );
     chosen.addEventListener("change", () => {
       row.options.hidden = !chosen.checked;
     });
-    row.element = h("div", { class: "method" }, h("div", { class: "check" }, chosen, h("label", { for: chosen.id }, method.title, h("code", {}, ` ${method.id}`))), row.options);
+    row.element = h(
+      "div",
+      { class: "method" },
+      h(
+        "div",
+        { class: "check" },
+        chosen,
+        h("label", { for: chosen.id }, method.title, h("code", {}, ` ${method.id}`)),
+      ),
+      row.options,
+    );
     return row;
   }
 
@@ -76,7 +115,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     row.rest = {};
     if (!entry) return;
     const known = new Set(row.fields.map(({ spec }) => spec.path[0]!));
-    for (const [name, value] of Object.entries(entry)) if (name !== "method" && !known.has(name)) row.rest[name] = value;
+    for (const [name, value] of Object.entries(entry))
+      if (name !== "method" && !known.has(name)) row.rest[name] = value;
     for (const { spec, field } of row.fields) field.input.value = typedText(pick(entry, spec.path));
   }
 
@@ -86,7 +126,11 @@ export function methodsCard(errors: FormErrors): MethodsCard {
 
   function show(): void {
     const entries = typeof wanted === "string" ? rows.map((row) => ({ method: row.method.id })) : wanted;
-    for (const row of rows) fill(row, entries.find((entry) => entry.method === row.method.id));
+    for (const row of rows)
+      fill(
+        row,
+        entries.find((entry) => entry.method === row.method.id),
+      );
   }
 
   return {
@@ -99,7 +143,16 @@ export function methodsCard(errors: FormErrors): MethodsCard {
       const [first, ...others] = rows.map((row) => row.element);
       list.replaceChildren(
         ...(first ? [first] : []),
-        ...(others.length > 0 ? [h("details", { class: "rules" }, h("summary", {}, `Compare with ${others.length} other ${others.length === 1 ? "method" : "methods"}`), ...others)] : []),
+        ...(others.length > 0
+          ? [
+              h(
+                "details",
+                { class: "rules" },
+                h("summary", {}, `Compare with ${others.length} other ${others.length === 1 ? "method" : "methods"}`),
+                ...others,
+              ),
+            ]
+          : []),
       );
       show();
       writeUnits();
@@ -129,7 +182,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     load(tune) {
       wanted = tune ?? DEFAULT_TUNE;
       show();
-      if (typeof wanted === "string" || wanted.length > 1) list.querySelector("details.rules")?.setAttribute("open", "");
+      if (typeof wanted === "string" || wanted.length > 1)
+        list.querySelector("details.rules")?.setAttribute("open", "");
     },
   };
 }
@@ -138,7 +192,22 @@ function optionField(spec: FieldSpec, pointer: () => string | null, errors: Form
   const hint = [spec.hint, spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""].filter(Boolean).join(" ");
   const shared = { label: spec.label, hint, pointer };
   const standard = spec.defaultText ? `as usual (${spec.defaultText})` : "as usual";
-  if (spec.kind === "choice") return choiceField({ ...shared, choices: [["", standard], ...spec.choices.map((item) => [item, item] as const)] }, errors);
-  if (spec.kind === "boolean") return choiceField({ ...shared, choices: [["", standard], ["true", "yes"], ["false", "no"]] }, errors);
+  if (spec.kind === "choice")
+    return choiceField(
+      { ...shared, choices: [["", standard], ...spec.choices.map((item) => [item, item] as const)] },
+      errors,
+    );
+  if (spec.kind === "boolean")
+    return choiceField(
+      {
+        ...shared,
+        choices: [
+          ["", standard],
+          ["true", "yes"],
+          ["false", "no"],
+        ],
+      },
+      errors,
+    );
   return textField({ ...shared, placeholder: spec.defaultText || "optional" }, errors);
 }

@@ -45,7 +45,11 @@ export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCar
     "form",
     { class: "card", novalidate: true },
     h("h2", {}, "A model"),
-    h("p", { class: "hint" }, "You know how the process answers: its gain, lag and dead time, or its transfer function."),
+    h(
+      "p",
+      { class: "hint" },
+      "You know how the process answers: its gain, lag and dead time, or its transfer function.",
+    ),
     kind.element,
     parameters,
     formula,
@@ -53,7 +57,8 @@ export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCar
   );
 
   const typed = (name: string): string => fields.find((item) => item.name === name)?.field.input.value ?? "";
-  const texts = (): Record<string, string> => Object.fromEntries(fields.map((item) => [item.name, item.field.input.value]));
+  const texts = (): Record<string, string> =>
+    Object.fromEntries(fields.map((item) => [item.name, item.field.input.value]));
   const unitText = (unit: string): string => {
     const ratio = quotient(units.y, units.u);
     if (unit === "gain") return ratio;
@@ -64,7 +69,9 @@ export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCar
   function showFormula(): void {
     const reading = readPlant(form, typed);
     const tree = reading.errors.length === 0 ? plantFormula(reading.plant) : null;
-    formula.replaceChildren(tree ? mathElement(tree) : h("span", { class: "hint" }, "The formula appears when the numbers are complete."));
+    formula.replaceChildren(
+      tree ? mathElement(tree) : h("span", { class: "hint" }, "The formula appears when the numbers are complete."),
+    );
   }
 
   function choose(next: PlantForm, values: Record<string, string>): void {
@@ -90,7 +97,8 @@ export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCar
     showFormula();
   }
 
-  const examples = (of: PlantForm): Record<string, string> => Object.fromEntries(of.fields.map((field) => [field.name, field.example]));
+  const examples = (of: PlantForm): Record<string, string> =>
+    Object.fromEntries(of.fields.map((field) => [field.name, field.example]));
 
   kind.input.addEventListener("change", () => {
     const next = PLANT_FORMS.find((candidate) => candidate.id === kind.input.value) ?? PLANT_FORMS[0]!;

@@ -8,7 +8,9 @@ import { parameterUnit, plantTitle, plantWords } from "../words/plant.ts";
 
 export function modelResult(model: Model, units: UnitNames): HTMLElement {
   const formula = plantFormula(rounded(model.plant));
-  const parameters = Object.entries(model.plant).filter((pair): pair is [string, number] => typeof pair[1] === "number");
+  const parameters = Object.entries(model.plant).filter(
+    (pair): pair is [string, number] => typeof pair[1] === "number",
+  );
   const candidates = model.candidates ?? [];
   return h(
     "section",
@@ -19,7 +21,11 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
       "table",
       { class: "figures" },
       h("caption", { class: "visually-hidden" }, "Identified parameters"),
-      h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, "value"), h("th", { scope: "col" }, "± std. error"))),
+      h(
+        "thead",
+        {},
+        h("tr", {}, h("td", {}), h("th", { scope: "col" }, "value"), h("th", { scope: "col" }, "± std. error")),
+      ),
       h(
         "tbody",
         {},
@@ -44,11 +50,23 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
           h(
             "ul",
             { class: "plain" },
-            candidates.map((candidate) => h("li", {}, `${plantTitle(candidate.plant.type)}: fit ${formatNumber(candidate.fit_percent)} %, ${plantWords(candidate.plant, units)}`)),
+            candidates.map((candidate) =>
+              h(
+                "li",
+                {},
+                `${plantTitle(candidate.plant.type)}: fit ${formatNumber(candidate.fit_percent)} %, ${plantWords(candidate.plant, units)}`,
+              ),
+            ),
           ),
         )
       : null,
-    (model.warnings ?? []).length > 0 ? h("ul", { class: "notes" }, (model.warnings ?? []).map((warning) => h("li", {}, warning.detail))) : null,
+    (model.warnings ?? []).length > 0
+      ? h(
+          "ul",
+          { class: "notes" },
+          (model.warnings ?? []).map((warning) => h("li", {}, warning.detail)),
+        )
+      : null,
   );
 }
 

@@ -28,7 +28,13 @@ const LARGEST_BYTES = 8 * 1024 * 1024;
 
 export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
   const status = h("p", { class: "hint", role: "status" });
-  const file = h("input", { type: "file", class: "visually-hidden", accept: ".csv,.txt,.tsv,text/csv,text/plain", tabindex: -1, "aria-label": "CSV file" });
+  const file = h("input", {
+    type: "file",
+    class: "visually-hidden",
+    accept: ".csv,.txt,.tsv,text/csv,text/plain",
+    tabindex: -1,
+    "aria-label": "CSV file",
+  });
   const choose = h("button", { type: "button", onclick: () => file.click() }, "Choose file");
   const drop = h("div", { class: "drop" }, h("p", {}, "Drop a CSV file here, or"), choose, file);
   const csv = areaField(
@@ -43,7 +49,15 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     errors,
   );
   const column = (name: "t" | "u" | "y", meaning: string): ReturnType<typeof textField> =>
-    textField({ label: `Column ${name}`, hint: `${meaning}; heading or number`, placeholder: "auto", pointer: () => `/record/columns/${name}` }, errors);
+    textField(
+      {
+        label: `Column ${name}`,
+        hint: `${meaning}; heading or number`,
+        placeholder: "auto",
+        pointer: () => `/record/columns/${name}`,
+      },
+      errors,
+    );
   const columns = { t: column("t", "time"), u: column("u", "output"), y: column("y", "measurement") };
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
@@ -93,14 +107,23 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     element,
     read() {
       const record: RecordedTest = { csv: csv.input.value };
-      const named = Object.entries(columns).flatMap(([name, field]) => (field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : []));
+      const named = Object.entries(columns).flatMap(([name, field]) =>
+        field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : [],
+      );
       if (named.length > 0) record.columns = Object.fromEntries(named);
       if (kind.input.value !== "auto") record.kind = kind.input.value;
       const missing = csv.input.value.trim() === "";
       return {
         record,
         identify: { model: model.input.value },
-        errors: missing ? [{ pointer: "/record/csv", detail: "There is no record yet. Drop a CSV file, choose one, or paste its text." }] : [],
+        errors: missing
+          ? [
+              {
+                pointer: "/record/csv",
+                detail: "There is no record yet. Drop a CSV file, choose one, or paste its text.",
+              },
+            ]
+          : [],
       };
     },
     load(record, identify) {

@@ -20,7 +20,8 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   const gain = quotient(units.u, units.y);
   const per = gain ? `${gain}/${units.time}` : `1/${units.time}`;
   const times = gain ? `${gain} ${units.time}` : units.time;
-  const filter: Setting[] = typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
+  const filter: Setting[] =
+    typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
   if (form === "ideal") {
     return [
       { name: "Kp", unit: gain, value: controller.Kp },
@@ -32,7 +33,12 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   const equivalent = entry.equivalents?.[form];
   if (!equivalent || typeof equivalent.Kp !== "number") {
     const why = equivalent?.why_null ?? entry.equivalents?.why_null;
-    return why?.[form] ?? why?.["Kp"] ?? Object.values(why ?? {})[0] ?? `This controller has no ${form} form: its zeros are complex. Enter it in the ideal or parallel form.`;
+    return (
+      why?.[form] ??
+      why?.["Kp"] ??
+      Object.values(why ?? {})[0] ??
+      `This controller has no ${form} form: its zeros are complex. Enter it in the ideal or parallel form.`
+    );
   }
   if (form === "parallel") {
     return [
@@ -52,7 +58,10 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
 
 /** What Copy puts on the clipboard. */
 export function settingsText(form: SettingsForm, settings: Setting[]): string {
-  const lines = settings.map((setting) => `${setting.name} = ${setting.value === null ? "off" : plainSetting(setting.value)}${setting.unit && setting.value !== null ? ` ${setting.unit}` : ""}`);
+  const lines = settings.map(
+    (setting) =>
+      `${setting.name} = ${setting.value === null ? "off" : plainSetting(setting.value)}${setting.unit && setting.value !== null ? ` ${setting.unit}` : ""}`,
+  );
   return [`form: ${form}`, ...lines].join("\n");
 }
 
@@ -83,7 +92,13 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
     });
     return h("label", {}, input, h("span", {}, name));
   });
-  const element = h("section", { class: "card settings", "aria-labelledby": titleId }, title, h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios), body);
+  const element = h(
+    "section",
+    { class: "card settings", "aria-labelledby": titleId },
+    title,
+    h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios),
+    body,
+  );
 
   function write(): void {
     if (!shown) return;
@@ -96,10 +111,28 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
     const filter = shown.entry.controller?.filter;
     const weights = shown.entry.controller;
     body.replaceChildren(
-      h("table", { class: "figures" }, h("caption", { class: "visually-hidden" }, `Settings of ${shown.name} in ${form} form`), h("tbody", {}, settings.map((setting) =>
-        h("tr", {}, h("th", { scope: "row" }, withUnit(setting.name, setting.unit)), h("td", {}, setting.value === null ? "off" : formatSetting(setting.value))),
-      ))),
-      h("p", { class: "hint" }, `${FORMULAS[form]}; set-point weights b ${weights?.b ?? 1}, c ${weights?.c ?? 0}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`),
+      h(
+        "table",
+        { class: "figures" },
+        h("caption", { class: "visually-hidden" }, `Settings of ${shown.name} in ${form} form`),
+        h(
+          "tbody",
+          {},
+          settings.map((setting) =>
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, withUnit(setting.name, setting.unit)),
+              h("td", {}, setting.value === null ? "off" : formatSetting(setting.value)),
+            ),
+          ),
+        ),
+      ),
+      h(
+        "p",
+        { class: "hint" },
+        `${FORMULAS[form]}; set-point weights b ${weights?.b ?? 1}, c ${weights?.c ?? 0}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`,
+      ),
       h("div", { class: "actions" }, copy),
     );
   }

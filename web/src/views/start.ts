@@ -54,7 +54,11 @@ export function startView(store: Store, events: StartEvents): StartView {
     "main",
     { class: "start", id: "main" },
     heading,
-    h("p", { class: "lead" }, "Describe your process in one of three ways and press its button: you get controller settings, and the proof that the loop will hold with them."),
+    h(
+      "p",
+      { class: "lead" },
+      "Describe your process in one of three ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
+    ),
     recent,
     status,
     errors.summary,
@@ -63,7 +67,13 @@ export function startView(store: Store, events: StartEvents): StartView {
       { class: "cards" },
       record.element,
       model.element,
-      h("section", { class: "card", "aria-labelledby": "examples-title" }, h("h2", { id: "examples-title" }, "Nothing yet"), h("p", { class: "hint" }, "Try a ready-made example."), examples),
+      h(
+        "section",
+        { class: "card", "aria-labelledby": "examples-title" },
+        h("h2", { id: "examples-title" }, "Nothing yet"),
+        h("p", { class: "hint" }, "Try a ready-made example."),
+        examples,
+      ),
     ),
     h("div", { class: "cards two" }, methods.element, today.element),
   );
@@ -112,7 +122,10 @@ export function startView(store: Store, events: StartEvents): StartView {
     const reading = record.read();
     const { request, faults } = common();
     const identify = { ...base.identify, ...reading.identify };
-    await send({ ...request, record: { ...baseRecord(base), ...reading.record }, identify }, [...reading.errors, ...faults]);
+    await send({ ...request, record: { ...baseRecord(base), ...reading.record }, identify }, [
+      ...reading.errors,
+      ...faults,
+    ]);
   }
 
   function load(request: TuningRequest): void {
@@ -134,13 +147,22 @@ export function startView(store: Store, events: StartEvents): StartView {
     }
     const elements = workspace.examples.map((example) => exampleElement(example, () => void send(example.request, [])));
     const [first, others] = [elements.slice(0, EXAMPLES_SHOWN), elements.slice(EXAMPLES_SHOWN)];
-    examples.replaceChildren(...first, ...(others.length > 0 ? [h("details", {}, h("summary", {}, `${others.length} more`), h("div", { class: "examples" }, others))] : []));
+    examples.replaceChildren(
+      ...first,
+      ...(others.length > 0
+        ? [h("details", {}, h("summary", {}, `${others.length} more`), h("div", { class: "examples" }, others))]
+        : []),
+    );
     recent.hidden = workspace.recent.length === 0;
     recent.replaceChildren(
       "Recent: ",
       ...workspace.recent.flatMap((job, index) => [
         index > 0 ? " · " : "",
-        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, job.name || `job ${job.id.slice(0, 8)}`),
+        h(
+          "a",
+          { href: formatRoute({ screen: "design", job: job.id, entry: null }) },
+          job.name || `job ${job.id.slice(0, 8)}`,
+        ),
       ]),
     );
   }
@@ -149,7 +171,10 @@ export function startView(store: Store, events: StartEvents): StartView {
   showLists(store.get());
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.methods !== previous.methods) methods.setMethods(workspace.methods);
-    const changed = workspace.examples !== previous.examples || workspace.recent !== previous.recent || workspace.serviceTrouble !== previous.serviceTrouble;
+    const changed =
+      workspace.examples !== previous.examples ||
+      workspace.recent !== previous.recent ||
+      workspace.serviceTrouble !== previous.serviceTrouble;
     if (changed) showLists(workspace);
   });
   return { element, heading, dispose: leave, load, loadTyped: model.loadTyped };
@@ -171,7 +196,11 @@ function exampleElement(example: Example, tune: () => void): HTMLElement {
       "p",
       { class: "actions" },
       h("button", { type: "button", onclick: tune, "aria-label": `Tune: ${example.title}` }, "Tune"),
-      h("a", { href: formatRoute({ screen: "example", id: example.id }), "aria-label": `See in the form: ${example.title}` }, "See in the form"),
+      h(
+        "a",
+        { href: formatRoute({ screen: "example", id: example.id }), "aria-label": `See in the form: ${example.title}` },
+        "See in the form",
+      ),
     ),
   );
 }

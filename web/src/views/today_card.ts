@@ -29,8 +29,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   for (const field of [time, u, y]) field.input.addEventListener("change", onUnits);
 
   const form = choiceField({ label: "Form", choices: FORMS, pointer: () => "/baseline/form" }, errors);
-  const slots = (["first", "second", "third"] as const).map((_, index) => textField({ label: "", pointer: () => `/baseline/${names()[index]}` }, errors));
-  const filter = textField({ label: "Tf", hint: "filter of the derivative; empty is none", pointer: () => "/baseline/filter/Tf" }, errors);
+  const slots = (["first", "second", "third"] as const).map((_, index) =>
+    textField({ label: "", pointer: () => `/baseline/${names()[index]}` }, errors),
+  );
+  const filter = textField(
+    { label: "Tf", hint: "filter of the derivative; empty is none", pointer: () => "/baseline/filter/Tf" },
+    errors,
+  );
   // What a loaded request had and no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
 
@@ -85,7 +90,8 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       });
       if (filter.input.value.trim() !== "") {
         const parsed = parseNumber(filter.input.value, "Tf");
-        if (parsed.ok) baseline["filter"] = { type: "derivative", ...(rest["filter"] as object | undefined), Tf: parsed.value };
+        if (parsed.ok)
+          baseline["filter"] = { type: "derivative", ...(rest["filter"] as object | undefined), Tf: parsed.value };
         else faults.push({ pointer: "/baseline/filter/Tf", detail: parsed.sentence });
       }
       return { baseline, errors: faults };
@@ -103,7 +109,9 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
         slots[index]!.input.value = text(baseline?.[key]);
       });
       filter.input.value = text((baseline?.["filter"] as { Tf?: unknown } | undefined)?.Tf);
-      rest = Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && !names().includes(key)));
+      rest = Object.fromEntries(
+        Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && !names().includes(key)),
+      );
       onUnits();
     },
   };

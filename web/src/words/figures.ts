@@ -60,8 +60,17 @@ export function figureGroups(units: UnitNames): FigureGroup[] {
     meaning,
     value: (entry) => numeric(entry.controller, name, absent),
   });
-  const robustness = (label: string, name: string, meaning: string): FigureRow => ({ label, meaning, value: (entry) => numeric(entry.robustness, name, NOT_GIVEN) });
-  const performance = (kind: "setpoint" | "load" | "noise", label: string, name: string, meaning: string): FigureRow => ({
+  const robustness = (label: string, name: string, meaning: string): FigureRow => ({
+    label,
+    meaning,
+    value: (entry) => numeric(entry.robustness, name, NOT_GIVEN),
+  });
+  const performance = (
+    kind: "setpoint" | "load" | "noise",
+    label: string,
+    name: string,
+    meaning: string,
+  ): FigureRow => ({
     label,
     meaning,
     value: (entry) => numeric(entry.performance?.[kind], name, NOT_GIVEN),
@@ -109,10 +118,18 @@ export function figureGroups(units: UnitNames): FigureGroup[] {
       title: "Controller, the rest",
       main: false,
       rows: [
-        { label: "Filter", meaning: "where it acts", value: (entry) => ({ text: filterWords(entry.controller?.filter?.type), why: "" }) },
+        {
+          label: "Filter",
+          meaning: "where it acts",
+          value: (entry) => ({ text: filterWords(entry.controller?.filter?.type), why: "" }),
+        },
         controller("b", "b", "set-point weight of P", "1 by default"),
         controller("c", "c", "set-point weight of D", "0 by default"),
-        { label: "Action", meaning: "sign of the gain", value: (entry) => ({ text: entry.controller?.action ?? "", why: entry.controller?.action ? "" : NOT_GIVEN }) },
+        {
+          label: "Action",
+          meaning: "sign of the gain",
+          value: (entry) => ({ text: entry.controller?.action ?? "", why: entry.controller?.action ? "" : NOT_GIVEN }),
+        },
       ],
     },
     {
@@ -155,6 +172,7 @@ function filterTime(entry: Entry): FigureValue {
   const filter = entry.controller?.filter;
   if (typeof filter?.Tf === "number") return { text: formatNumber(filter.Tf), why: "" };
   const Td = entry.controller?.Td;
-  if (typeof filter?.N === "number" && typeof Td === "number" && filter.N > 0) return { text: formatNumber(Td / filter.N), why: "" };
+  if (typeof filter?.N === "number" && typeof Td === "number" && filter.N > 0)
+    return { text: formatNumber(Td / filter.N), why: "" };
   return missing("no filter");
 }

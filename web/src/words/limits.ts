@@ -7,17 +7,24 @@ export interface Limits {
   Mks: number | null;
 }
 
-const above = (value: unknown, floor: number): number | null => (typeof value === "number" && Number.isFinite(value) && value > floor ? value : null);
+const above = (value: unknown, floor: number): number | null =>
+  typeof value === "number" && Number.isFinite(value) && value > floor ? value : null;
 
 /** What the entry's method was asked to hold; `robust` holds 1.4 unless told otherwise. */
 export function limitsOf(entry: Entry | undefined): Limits {
   const options = entry?.options ?? {};
   const standard = entry?.method === "robust" ? 1.4 : null;
-  return { Ms: above(options["Ms"], 1) ?? standard, Mt: above(options["Mt"], 1) ?? standard, Mks: above(options["Mks"], 0) };
+  return {
+    Ms: above(options["Ms"], 1) ?? standard,
+    Mt: above(options["Mt"], 1) ?? standard,
+    Mks: above(options["Mks"], 0),
+  };
 }
 
 /** The limits of the first entry that has any. */
 export function commonLimits(entries: Entry[]): Limits {
-  const limited = entries.map(limitsOf).find((limits) => limits.Ms !== null || limits.Mt !== null || limits.Mks !== null);
+  const limited = entries
+    .map(limitsOf)
+    .find((limits) => limits.Ms !== null || limits.Mt !== null || limits.Mks !== null);
   return limited ?? { Ms: null, Mt: null, Mks: null };
 }

@@ -52,7 +52,9 @@ function pretty(unit: string): string {
 export function namedUnit(unit: string, units: UnitNames): string {
   const names: Record<string, string> = { time: units.time, u: units.u, y: units.y };
   const parts = unit.split(/([/ ])/);
-  return parts.some((part) => part in names && names[part] === "") ? "" : parts.map((part) => names[part] ?? part).join("");
+  return parts.some((part) => part in names && names[part] === "")
+    ? ""
+    : parts.map((part) => names[part] ?? part).join("");
 }
 
 /** "Ti (s)"; the bare name where there is no unit. */

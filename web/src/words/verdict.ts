@@ -27,7 +27,11 @@ const figure = (entry: Entry | undefined, kind: "setpoint" | "load", name: strin
 /** What to say of `entry`; `today` is the evaluation of the settings in use, if given. */
 export function verdictOf(entry: Entry, today: Entry | undefined, request: TuningRequest | undefined): Verdict {
   if (entry.error) {
-    return { level: "bad", head: "This method has no answer here.", sentences: [entry.error.detail ?? entry.error.title ?? "It gave no reason."] };
+    return {
+      level: "bad",
+      head: "This method has no answer here.",
+      sentences: [entry.error.detail ?? entry.error.title ?? "It gave no reason."],
+    };
   }
   const robustness = entry.robustness;
   if (!robustness || !robustness.stable) {
@@ -41,7 +45,12 @@ export function verdictOf(entry: Entry, today: Entry | undefined, request: Tunin
   const units = unitNames(request?.units);
   return {
     ...heading(entry),
-    sentences: [...limitSentences(entry, units.time), ...toleranceSentences(entry, units.time), ...costSentences(entry, today, units), ...deadTimeSentences(entry, request, units.time)],
+    sentences: [
+      ...limitSentences(entry, units.time),
+      ...toleranceSentences(entry, units.time),
+      ...costSentences(entry, today, units),
+      ...deadTimeSentences(entry, request, units.time),
+    ],
   };
 }
 
@@ -50,7 +59,8 @@ function heading(entry: Entry): Pick<Verdict, "level" | "head"> {
   if (Ms === null) return { level: "warn", head: "Stable, with an unknown margin." };
   if (Ms > TOO_SHARP_MS * (1 + 1e-6)) return { level: "bad", head: "Too sharp for a plant that changes." };
   if (Ms > LITTLE_MARGIN_MS * (1 + 1e-6)) return { level: "warn", head: "Fast, with little margin left." };
-  if (entry.method !== "baseline" && reached(entry).length > 0) return { level: "good", head: "Robust, limited by the margin you asked for." };
+  if (entry.method !== "baseline" && reached(entry).length > 0)
+    return { level: "good", head: "Robust, limited by the margin you asked for." };
   return { level: "good", head: entry.method === "baseline" ? "Today's settings are robust." : "Robust." };
 }
 
@@ -68,15 +78,26 @@ function limitSentences(entry: Entry, time: string): string[] {
   const robustness = entry.robustness!;
   const { Ms, Mt } = robustness;
   const active = reached(entry);
-  const at = (omega: number | null): string => (omega === null || omega === 0 ? "" : ` at ${formatNumber(omega)} rad/${time}`);
+  const at = (omega: number | null): string =>
+    omega === null || omega === 0 ? "" : ` at ${formatNumber(omega)} rad/${time}`;
   if (active.includes("Ms") && active.includes("Mt")) {
-    return [`Both limits stop it: Ms = ${formatNumber(Ms)}${at(robustness.omega_Ms)} and Mt = ${formatNumber(Mt)}${at(robustness.omega_Mt)}.`];
+    return [
+      `Both limits stop it: Ms = ${formatNumber(Ms)}${at(robustness.omega_Ms)} and Mt = ${formatNumber(Mt)}${at(robustness.omega_Mt)}.`,
+    ];
   }
-  const room = (name: string, value: number | null): string => (value === null ? "" : ` ${name} (${formatNumber(value)}) has room.`);
-  if (active.includes("Ms")) return [`The limit that stops it is Ms = ${formatNumber(Ms)}${at(robustness.omega_Ms)}.${room("Mt", Mt)}`];
-  if (active.includes("Mt")) return [`The limit that stops it is Mt = ${formatNumber(Mt)}${at(robustness.omega_Mt)}.${room("Ms", Ms)}`];
-  if (active.includes("Mks")) return [`The limit that stops it is the noise gain Mks = ${formatNumber(robustness.Mks)}.${room("Ms", Ms)}`];
-  return Ms === null ? [] : [`The sensitivity peak Ms is ${formatNumber(Ms)}${at(robustness.omega_Ms)}${Mt === null ? "" : `, Mt is ${formatNumber(Mt)}`}.`];
+  const room = (name: string, value: number | null): string =>
+    value === null ? "" : ` ${name} (${formatNumber(value)}) has room.`;
+  if (active.includes("Ms"))
+    return [`The limit that stops it is Ms = ${formatNumber(Ms)}${at(robustness.omega_Ms)}.${room("Mt", Mt)}`];
+  if (active.includes("Mt"))
+    return [`The limit that stops it is Mt = ${formatNumber(Mt)}${at(robustness.omega_Mt)}.${room("Ms", Ms)}`];
+  if (active.includes("Mks"))
+    return [`The limit that stops it is the noise gain Mks = ${formatNumber(robustness.Mks)}.${room("Ms", Ms)}`];
+  return Ms === null
+    ? []
+    : [
+        `The sensitivity peak Ms is ${formatNumber(Ms)}${at(robustness.omega_Ms)}${Mt === null ? "" : `, Mt is ${formatNumber(Mt)}`}.`,
+      ];
 }
 
 function toleranceSentences(entry: Entry, time: string): string[] {
@@ -87,7 +108,8 @@ function toleranceSentences(entry: Entry, time: string): string[] {
   const grows = typeof gain === "number" ? `grow ${formatNumber(gain, 2)}-fold` : "";
   const parts: string[] = [];
   if (falls || grows) parts.push(`the process gain may ${[falls, grows].filter(Boolean).join(" or ")}`);
-  if (typeof delay === "number") parts.push(`the dead time ${falls || !grows ? "may grow " : ""}by ${formatNumber(delay, 2)} ${time}`);
+  if (typeof delay === "number")
+    parts.push(`the dead time ${falls || !grows ? "may grow " : ""}by ${formatNumber(delay, 2)} ${time}`);
   if (parts.length === 0) return [];
   const sentence = `${parts.join(", or ")} before the loop oscillates.`;
   return [sentence[0]!.toUpperCase() + sentence.slice(1)];
@@ -99,11 +121,18 @@ function costSentences(entry: Entry, today: Entry | undefined, units: ReturnType
   const unit = product(units.y, units.time);
   const before = figure(today, "load", "IAE");
   const spoken = `${formatNumber(IAE)}${unit ? ` ${unit}` : ""}`;
-  if (entry.method === "baseline" || before === null || IAE <= 0) return [`A load disturbance costs ${spoken} of integrated error.`];
+  if (entry.method === "baseline" || before === null || IAE <= 0)
+    return [`A load disturbance costs ${spoken} of integrated error.`];
   const ratio = before / IAE;
   const change =
-    ratio >= WORTH_SAYING ? `: ${formatNumber(ratio, 2)} times less` : ratio <= 1 / WORTH_SAYING ? `: ${formatNumber(1 / ratio, 2)} times more` : ": about the same";
-  const sentences = [`A load disturbance costs ${spoken} instead of ${formatNumber(before)} with today's settings${change}.`];
+    ratio >= WORTH_SAYING
+      ? `: ${formatNumber(ratio, 2)} times less`
+      : ratio <= 1 / WORTH_SAYING
+        ? `: ${formatNumber(1 / ratio, 2)} times more`
+        : ": about the same";
+  const sentences = [
+    `A load disturbance costs ${spoken} instead of ${formatNumber(before)} with today's settings${change}.`,
+  ];
   const [TV, TVbefore] = [figure(entry, "setpoint", "TV"), figure(today, "setpoint", "TV")];
   if (TV !== null && TVbefore !== null && TVbefore > 0 && TV / TVbefore > 1.5) {
     sentences.push(

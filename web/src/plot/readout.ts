@@ -1,0 +1,152 @@
+// What a cursor shows: where it may stand, its line and dots, and the figures beside it.
+import { node } from "../dom.ts";
+import type { TreeNode } from "../dom.ts";
+import { extent } from "./axis.ts";
+import type { Range, Scale } from "./axis.ts";
+import { nearestIndex } from "./cursor.ts";
+import type { Frame, Trace } from "./frame.ts";
+import type { Layout, PaneBox } from "./layout.ts";
+import { lineOf, tickText } from "./marks.ts";
+
+/** The cursor's range: what is in view for plain plots, the whole parameter for curves in a plane. */
+export function cursorRange(frame: Frame, layout: Layout): Range {
+  const parameters = frame.panes.flatMap((pane) =>
+    pane.traces.flatMap((trace) => (trace.parameter ? [trace.parameter] : [])),
+  );
+  return parameters.length > 0 ? extent(parameters, frame.cursorKind) : layout.boxes[0]!.x.range;
+}
+
+/** Maps the cursor's range to 0..1. */
+export function cursorScale(frame: Frame, [lo, hi]: Range): Pick<Scale, "toPixel" | "toValue"> {
+  if (frame.cursorKind === "log") {
+    return {
+      toPixel: (value) => Math.log(value / lo) / Math.log(hi / lo),
+      toValue: (share) => lo * (hi / lo) ** share,
+    };
+  }
+  return { toPixel: (value) => (value - lo) / (hi - lo), toValue: (share) => lo + share * (hi - lo) };
+}
+
+/** The cursor's value for a point of the drawing; null where no curve is near. */
+export function valueAt(box: PaneBox, point: { x: number; y: number }): number | null {
+  const parametric = box.pane.traces.filter((trace) => trace.parameter);
+  if (parametric.length > 0) return nearestOnCurve(box, parametric, point);
+  return snap(box.pane.traces, box.x.toValue(point.x));
+}
+
+/** The sample of the first trace nearest to the value: a cursor never stands between samples. */
+function snap(traces: Trace[], value: number): number {
+  const x = traces[0]?.x ?? [];
+  const index = nearestIndex(x, value);
+  return index < 0 ? value : x[index]!;
+}
+
+function nearestOnCurve(box: PaneBox, traces: Trace[], point: { x: number; y: number }): number | null {
+  let best: number | null = null;
+  let distance = 60;
+  for (const trace of traces) {
+    for (let index = 0; index < trace.x.length; index += 1) {
+      const x = trace.x[index];
+      const y = trace.y[index];
+      if (typeof x !== "number" || typeof y !== "number") continue;
+      const away = Math.hypot(box.x.toPixel(x) - point.x, box.y.toPixel(y) - point.y);
+      if (away < distance) {
+        distance = away;
+        best = trace.parameter?.[index] ?? null;
+      }
+    }
+  }
+  return best;
+}
+
+const short = (value: number): string => tickText(Number(value.toPrecision(4)));
+
+/** "time 12 s", then "name value" of each trace at the cursor. */
+export function readings(frame: Frame, box: PaneBox, value: number): string[] {
+  const parts: string[] = [];
+  let at: number | null = null;
+  for (const trace of box.pane.traces) {
+    const list = trace.parameter ?? trace.x;
+    const index = nearestIndex(list, value);
+    const y = trace.y[index];
+    if (index < 0 || typeof y !== "number") continue;
+    at ??= list[index] ?? null;
+    const x = trace.x[index];
+    parts.push(
+      trace.parameter && typeof x === "number"
+        ? `${trace.name} ${short(x)} ${y < 0 ? "−" : "+"} ${short(Math.abs(y))}i`
+        : `${trace.name} ${short(y)}`,
+    );
+  }
+  const [, name = frame.cursorLabel, unit = ""] = /^(.*?)(?: \((.*)\))?$/.exec(frame.cursorLabel) ?? [];
+  return [`${name} ${short(at ?? value)}${unit ? ` ${unit}` : ""}`, ...parts];
+}
+
+export function cursorNodes(frame: Frame, box: PaneBox, value: number, figures: boolean): TreeNode[] {
+  const nodes: TreeNode[] = [];
+  const parametric = box.pane.traces.some((trace) => trace.parameter);
+  const x = box.x.toPixel(value);
+  if (!parametric) {
+    if (!(x >= box.left - 1 && x <= box.left + box.width + 1)) return [];
+    nodes.push(
+      node("path", {
+        d: `M${x} ${box.top}V${box.top + box.height}`,
+        stroke: "var(--text)",
+        "stroke-width": 1,
+        fill: "none",
+      }),
+    );
+  }
+  for (const trace of box.pane.traces) {
+    const index = nearestIndex(trace.parameter ?? trace.x, value);
+    const px = box.x.toPixel(trace.x[index] ?? NaN);
+    const py = box.y.toPixel(trace.y[index] ?? NaN);
+    const inside =
+      px >= box.left - 1 && px <= box.left + box.width + 1 && py >= box.top - 1 && py <= box.top + box.height + 1;
+    if (inside)
+      nodes.push(
+        node("circle", {
+          cx: px,
+          cy: py,
+          r: 3.5,
+          fill: "var(--surface)",
+          "stroke-width": 2,
+          stroke: lineOf(trace.look)["stroke"]!,
+        }),
+      );
+  }
+  if (figures) nodes.push(...readoutNodes(box, readings(frame, box, value), parametric ? box.left + box.width : x));
+  return nodes;
+}
+
+/** The figures in one line where they fit, else one under the other, on the side away from the cursor. */
+function readoutNodes(box: PaneBox, parts: string[], cursorX: number): TreeNode[] {
+  const width = (text: string): number => text.length * 6.6 + 10;
+  const oneLine = parts.join(" · ");
+  const lines = width(oneLine) < box.width - 4 || parts.length * 16 + 6 > box.height ? [oneLine] : parts;
+  const widest = Math.max(...lines.map(width));
+  const onRight = lines.length === 1 || cursorX < box.left + box.width / 2;
+  const anchor = onRight ? box.left + box.width - 4 : box.left + 4;
+  const rect = node("rect", {
+    x: onRight ? anchor - widest : anchor,
+    y: box.top + 3,
+    width: widest,
+    height: lines.length * 16 + 4,
+    fill: "var(--surface)",
+    "fill-opacity": 0.88,
+  });
+  const texts = lines.map((line, index) =>
+    node(
+      "text",
+      {
+        x: onRight ? anchor - 5 : anchor + 5,
+        y: box.top + 16 + 16 * index,
+        "text-anchor": onRight ? "end" : "start",
+        fill: "var(--text)",
+        "font-size": 12,
+      },
+      line,
+    ),
+  );
+  return [rect, ...texts];
+}

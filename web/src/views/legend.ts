@@ -1,0 +1,83 @@
+// The legend above the plots: which controllers are drawn, and whose settings and verdict are shown.
+import type { Entry } from "../api/types.ts";
+import { MOST_DRAWN } from "../charts/drawn.ts";
+import type { Drawn } from "../charts/drawn.ts";
+import { h, node, svgElement } from "../dom.ts";
+import type { Look } from "../plot/frame.ts";
+import { lineOf } from "../plot/marks.ts";
+import type { Store } from "../store.ts";
+
+export interface Legend {
+  element: HTMLElement;
+  show(entries: Entry[], names: string[], drawn: Drawn[], selected: number): void;
+}
+
+/** A short piece of a series' line. */
+export function swatch(look: Look): Element {
+  const line = node("path", { d: "M1 5H27", fill: "none", ...lineOf(look) });
+  return svgElement(
+    node("svg", { width: 28, height: 10, viewBox: "0 0 28 10", "aria-hidden": "true", focusable: "false" }, line),
+  );
+}
+
+export function createLegend(store: Store): Legend {
+  const element = h("fieldset", { class: "legend" });
+  const controls = (): HTMLElement[] => [...element.querySelectorAll<HTMLElement>("input, button")];
+
+  function drawBox(entry: Entry, index: number, name: string, indices: number[]): HTMLElement {
+    const shown = indices.includes(index);
+    const nothing = Boolean(entry.error) || !(entry.responses || entry.frequency);
+    const box = h("input", {
+      type: "checkbox",
+      checked: shown,
+      disabled: nothing || (!shown && indices.length >= MOST_DRAWN),
+      "aria-label": `Draw ${name}`,
+    });
+    box.addEventListener("change", () => {
+      const drawn = box.checked
+        ? [...indices, index].sort((a, b) => a - b)
+        : indices.filter((other) => other !== index);
+      store.set((workspace) => ({ ...workspace, drawn }));
+    });
+    return box;
+  }
+
+  function chooseButton(index: number, name: string, item: Drawn | undefined, selected: boolean): HTMLElement {
+    const attributes = {
+      type: "button",
+      class: "quiet",
+      "aria-pressed": String(selected),
+      title: "Show its settings and verdict",
+      onclick: () => store.set((workspace) => ({ ...workspace, selected: index })),
+    };
+    return h("button", attributes, item ? swatch(item.look) : null, name);
+  }
+
+  return {
+    element,
+    show(entries, names, drawn, selected) {
+      // The controls are made anew; whoever stood on one stands on it again.
+      const focused = controls().findIndex((control) => control === document.activeElement);
+      const indices = drawn.map((item) => item.index);
+      element.hidden = entries.length === 1;
+      element.replaceChildren(
+        h("legend", { class: "visually-hidden" }, "Which controllers to draw, and whose settings to show"),
+        ...entries.map((entry, index) =>
+          h(
+            "span",
+            { class: index === selected ? "legend-item selected" : "legend-item" },
+            drawBox(entry, index, names[index]!, indices),
+            chooseButton(
+              index,
+              names[index]!,
+              drawn.find((item) => item.index === index),
+              index === selected,
+            ),
+          ),
+        ),
+        entries.length > MOST_DRAWN ? h("span", { class: "hint" }, `At most ${MOST_DRAWN} are drawn.`) : "",
+      );
+      if (focused >= 0) controls()[focused]?.focus();
+    },
+  };
+}

@@ -6,6 +6,7 @@
 #include "engine/loop/delay_system.h"
 #include "engine/plant/linear_algebra.h"
 #include "engine/simulation/propagator.h"
+#include "engine/simulation/steady_state.h"
 
 namespace tunewright {
 namespace {
@@ -90,43 +91,6 @@ ResponseNode node_at(const System& system, double t, const std::vector<double>& 
     }
     node.error_integral = system.in.r * t - x[Index(s.n)];
     return node;
-}
-
-/// Where the loop comes to rest: 0 = F x + G v + H r, v = M x + N v + R r + d.
-struct SteadyState {
-    double y = 0, u = 0;
-    std::optional<double> error_integral;
-    bool exists = false;
-};
-
-SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in) {
-    const DelaySystem s = make_delay_system(plant, controller);
-    const int n = s.n + 1;
-    std::vector<double> A(Index(n * n), 0.0), rhs(Index(n), 0.0);
-    for (int i = 0; i < s.n; ++i) {
-        for (int j = 0; j < s.n; ++j) A[Index(i * n + j)] = s.F[Index(i * s.n + j)];
-        A[Index(i * n + s.n)] = s.G[Index(i)];
-        rhs[Index(i)] = -s.H[Index(i)] * in.r;
-        A[Index(s.n * n + i)] = s.M[Index(i)];
-    }
-    A[Index(n * n - 1)] = s.N - 1;
-    rhs[Index(s.n)] = -(s.R * in.r + in.d);
-    const auto x = solve(A, rhs, n);
-    SteadyState steady;
-    if (!x) return steady;
-    const double v = (*x)[Index(s.n)];
-    steady.exists = true;
-    steady.u = v - in.d;
-    steady.y = s.Z * v;
-    for (int i = 0; i < s.n; ++i) steady.y += s.Y[Index(i)] * (*x)[Index(i)];
-    if (s.integral_state >= 0) {
-        steady.y = in.r;
-        // The integral's state sums r - y_f; a measurement filter lags behind y by Tf.
-        const bool on_measurement = controller.filter.type == FilterType::measurement_first_order ||
-                                    controller.filter.type == FilterType::measurement_second_order;
-        steady.error_integral = (*x)[Index(s.integral_state)] - (on_measurement ? controller.filter.Tf * in.r : 0);
-    }
-    return steady;
 }
 
 /// w = u + d as it was: nodes in time order, cubic in between, 0 before t = 0.

@@ -28,6 +28,7 @@ export function recordFrame(model: Model, request: TuningRequest | undefined): F
     description: `The model reproduces ${formatNumber(model.fit_percent)} % of the record's movement.`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes,
+    ownLegend: true,
     link: "record",
     cursorLabel: withUnit("time", units.time),
     cursorKind: "linear",

@@ -35,7 +35,7 @@ export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: Tuning
     panes: [
       pane("S_abs", "|S|", limits.Ms, "limit", 2),
       pane("T_abs", "|T|", limits.Mt, "limit", 2),
-      pane("CS_abs", withUnit("|CS|", quotient(units.u, units.y)), limits.Mks, "limit", 2),
+      pane("CS_abs", withUnit("|CS|", quotient(units.u, units.y)), limits.Mks, "limit", 3),
     ],
     link: "omega",
     cursorLabel: `ω (rad/${units.time})`,

@@ -146,23 +146,13 @@ export const PLANT_FORMS: PlantForm[] = [
     title: "State space",
     fields: [
       matrixField("A", "rows with semicolons between them", "-1 0; 1 -2"),
-      matrixField("B", "one column", "1; 0"),
-      matrixField("C", "one row", "0 1"),
-      { ...numberField("D", "direct part; empty is 0", "", "", true), read: (text) => readD(text), write: writeD },
+      listField("B", "input column", "1 0"),
+      listField("C", "output row", "0 1"),
+      numberField("D", "direct part; empty is 0", "", "", true),
       optionalDeadTime,
     ],
   },
 ];
-
-function readD(text: string): Parsed<unknown> {
-  const parsed = parseNumber(text, "D");
-  return parsed.ok ? { ok: true, value: [[parsed.value]] } : parsed;
-}
-
-function writeD(value: unknown): string {
-  const first: unknown = Array.isArray(value) ? (value as unknown[]).flat()[0] : value;
-  return typeof first === "number" && first !== 0 ? String(first) : "";
-}
 
 /** The form that can show this plant, or null. */
 export function formOf(plant: Plant): PlantForm | null {

@@ -43,6 +43,8 @@ export interface Frame {
   panes: Pane[];
   /** A unit of x is as long as a unit of y. For one pane. */
   equal?: boolean;
+  /** Names its own traces; else they stand in a legend that several plots share. */
+  ownLegend?: boolean;
   /** Plots with the same link move their cursors together. */
   link: string;
   /** The cursor's variable with its unit, e.g. "time (s)". */

@@ -28,6 +28,7 @@ export const lineOf = (look: Look): Attributes => LINES[look];
 const FONT = { "font-size": 12 };
 const MINUS = "−";
 const FAR = 20000;
+const SMALL_CIRCLE_PX = 36;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
 
@@ -200,8 +201,12 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
       case "upright":
         return at(box.x.toPixel(mark.value) + 5, box.top + 14, "start");
       case "circle": {
-        const edge = box.y.toPixel(mark.y + (mark.labelAt === "above" ? mark.radius : -mark.radius));
-        return at(box.x.toPixel(mark.x), edge + (mark.labelAt === "above" ? -5 : 15), "middle");
+        // Inside, where the curves that respect the circle never are; a small circle has no room for it.
+        const radius = Math.abs(box.y.toPixel(mark.y + mark.radius) - box.y.toPixel(mark.y));
+        const inside = radius > SMALL_CIRCLE_PX;
+        const above = mark.labelAt === "above";
+        const edge = box.y.toPixel(mark.y) + (above ? -radius : radius);
+        return at(box.x.toPixel(mark.x), edge + (above === inside ? 15 : -5), "middle");
       }
       case "point":
         return at(box.x.toPixel(mark.x) + 6, box.y.toPixel(mark.y) - 6, "start");

@@ -9,6 +9,7 @@ import { layoutFrame, wholeView } from "./layout.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
 import { drawLayout } from "./marks.ts";
 import { cursorNodes, cursorRange, cursorScale, readings, valueAt } from "./readout.ts";
+import { paneLegend } from "./swatch.ts";
 import { zoomAbout, zoomToRectangle } from "./zoom.ts";
 
 export interface Plot {
@@ -88,7 +89,13 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   const element = h(
     "section",
     { class: "card plot", "aria-labelledby": title.id },
-    h("header", {}, title, h("div", { class: "tools" }, resetButton, tableButton, exportMenu)),
+    h(
+      "header",
+      {},
+      title,
+      frame.ownLegend ? paneLegend(frame) : null,
+      h("div", { class: "tools" }, resetButton, tableButton, exportMenu),
+    ),
     description,
     svg,
     h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),

@@ -13,6 +13,7 @@ import { plantFormula } from "../form/formula.ts";
 import type { Frame } from "../plot/frame.ts";
 import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
+import { swatch } from "../plot/swatch.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
@@ -21,7 +22,7 @@ import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { plantTitle, plantWords } from "../words/plant.ts";
 import { figuresTable } from "./figures_table.ts";
-import { createLegend, swatch } from "./legend.ts";
+import { createLegend } from "./legend.ts";
 import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
 import { progressCard } from "./progress_card.ts";
@@ -84,7 +85,7 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const plant = job.result?.model?.plant ?? request?.plant;
     heading.textContent = job.name || request?.name || "Design";
     plantLine.textContent = plant
-      ? `${plantTitle(plant.type)}: ${plantWords(plant, unitNames(request?.units))}`
+      ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
       : "from a recorded test";
     const tree = plant && !job.result?.model && hasFormulaOnly(plant) ? plantFormula(plant) : null;
     formula.replaceChildren(...(tree ? [mathElement(tree)] : []));

@@ -2,22 +2,13 @@
 import type { Entry } from "../api/types.ts";
 import { MOST_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
-import { h, node, svgElement } from "../dom.ts";
-import type { Look } from "../plot/frame.ts";
-import { lineOf } from "../plot/marks.ts";
+import { h } from "../dom.ts";
+import { swatch } from "../plot/swatch.ts";
 import type { Store } from "../store.ts";
 
 export interface Legend {
   element: HTMLElement;
   show(entries: Entry[], names: string[], drawn: Drawn[], selected: number): void;
-}
-
-/** A short piece of a series' line. */
-export function swatch(look: Look): Element {
-  const line = node("path", { d: "M1 5H27", fill: "none", ...lineOf(look) });
-  return svgElement(
-    node("svg", { width: 28, height: 10, viewBox: "0 0 28 10", "aria-hidden": "true", focusable: "false" }, line),
-  );
 }
 
 export function createLegend(store: Store): Legend {

@@ -14,15 +14,15 @@ export interface TodayCard {
 }
 
 const FORMS = [
-  ["ideal", "ideal: Kp, Ti, Td"],
-  ["parallel", "parallel: Kp, Ki, Kd"],
-  ["series", "series: Kp, Ti, Td"],
+  ["ideal", "ideal"],
+  ["parallel", "parallel"],
+  ["series", "series"],
 ] as const;
 
 export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const unit = (label: string, pointer: string, value: string, placeholder: string): ReturnType<typeof textField> =>
     textField({ label, value, placeholder, pointer: () => pointer }, errors);
-  const name = unit("Name of the loop", "/name", "", "TIC-101");
+  const name = unit("Loop name", "/name", "", "TIC-101");
   const time = unit("Time unit", "/units/time", "s", "s");
   const u = unit("Unit of u", "/units/u", "", "%");
   const y = unit("Unit of y", "/units/y", "", "degC");

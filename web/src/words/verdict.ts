@@ -105,7 +105,7 @@ function toleranceSentences(entry: Entry, time: string): string[] {
   const delay = entry.robustness!.tolerates?.extra_dead_time ?? entry.robustness!.delay_margin;
   const low = entry.robustness!.gain_margin_low;
   const falls = typeof low === "number" && low > 0 ? `fall to ${formatNumber(low, 2)} of itself` : "";
-  const grows = typeof gain === "number" ? `grow ${formatNumber(gain, 2)}-fold` : "";
+  const grows = typeof gain === "number" ? `grow ${gain > 100 ? "more than 100" : formatNumber(gain, 2)}-fold` : "";
   const parts: string[] = [];
   if (falls || grows) parts.push(`the process gain may ${[falls, grows].filter(Boolean).join(" or ")}`);
   if (typeof delay === "number")

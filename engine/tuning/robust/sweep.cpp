@@ -110,10 +110,11 @@ void Sweep::add_peaks(ConstraintKind kind, const std::vector<double>& level, con
     // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
     const double from = std::exp(2 * (threshold - 0.1));
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-        if (level[i] < from || level[i] < level[i - 1] || level[i] <= level[i + 1]) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool first = i == 0, last = i + 1 == n;
+        if (level[i] < from || (!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
         ActivePeak peak{.kind = kind, .omega = omega_[i], .value = 0.5 * std::log(level[i])};
-        if (i < resolved_) {
+        if (i < resolved_ && !first && !last) {
             // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
             // moves.
             double a = std::log(omega_[i - 1]), b = std::log(omega_[i]), c = std::log(omega_[i + 1]);

@@ -145,7 +145,9 @@ private:
         exchange.status = status;
         metrics_.count(exchange);
         log_exchange(exchange);
-        return http::problem_response(status, detail);
+        http::Response response = http::problem_response(status, detail);
+        http::add_common_headers(response);
+        return response;
     }
 
     Config config_;

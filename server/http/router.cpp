@@ -47,17 +47,6 @@ std::string allow_text(std::vector<std::string> methods) {
     return text;
 }
 
-/// Whoever reads answers in a browser gets them as data, never as something to run, frame or remember.
-void add_common_headers(Response& response) {
-    const auto has = [&](std::string_view name) {
-        return std::ranges::any_of(response.headers, [&](const auto& header) { return header.first == name; });
-    };
-    response.set("X-Content-Type-Options", "nosniff").set("Referrer-Policy", "no-referrer");
-    if (!has("Cache-Control")) response.set("Cache-Control", "no-store");
-    if (!has("Content-Security-Policy"))
-        response.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
-}
-
 /// Runs a handler; what it throws becomes a 500 that says nothing about our insides.
 void run_guarded(const AsyncHandler& handler, Call call, const Reply& reply) {
     const std::string target = call.request.method + " " + std::string(call.request.path());
@@ -70,6 +59,16 @@ void run_guarded(const AsyncHandler& handler, Call call, const Reply& reply) {
 }
 
 }  // namespace
+
+void add_common_headers(Response& response) {
+    const auto has = [&](std::string_view name) {
+        return std::ranges::any_of(response.headers, [&](const auto& header) { return header.first == name; });
+    };
+    response.set("X-Content-Type-Options", "nosniff").set("Referrer-Policy", "no-referrer");
+    if (!has("Cache-Control")) response.set("Cache-Control", "no-store");
+    if (!has("Content-Security-Policy"))
+        response.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+}
 
 void Router::quick(const std::string& method, const std::string& pattern, SyncHandler handler) {
     add(method, pattern, Lane::quick,

@@ -38,6 +38,10 @@ struct Exchange {
     std::chrono::microseconds duration{0};
 };
 
+/// What every answer of the service carries: whoever reads it in a browser gets it as data, never as something to run,
+/// to frame or to remember, unless the answer says so itself.
+void add_common_headers(Response& response);
+
 class Router {
 public:
     explicit Router(Executor& pool) : pool_(pool) {}

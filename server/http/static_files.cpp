@@ -54,6 +54,10 @@ std::string type_of(const std::string& path) {
 StaticFiles::StaticFiles(const std::string& folder) {
     std::error_code error;
     for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (it->path().filename().string().starts_with('.')) {
+            it.disable_recursion_pending();
+            continue;
+        }
         if (!it->is_regular_file(error) || it->file_size(error) > kLargestFile) continue;
         std::ifstream file(it->path(), std::ios::binary);
         std::string body{std::istreambuf_iterator<char>(file), {}};

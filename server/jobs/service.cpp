@@ -300,10 +300,10 @@ void JobService::run_job(JobRecord job) {
     if (ended->status == JobStatus::failed && ended->error.empty())
         ended->error = fault_error("The computation failed without saying why.");
     ended->finished_at = settings_.now();
-    end_job(std::move(ended), (monotonic_ms() - started) / 1e3);
+    end_job(ended, (monotonic_ms() - started) / 1e3);
 }
 
-void JobService::end_job(std::shared_ptr<JobRecord> job, double seconds) {
+void JobService::end_job(const std::shared_ptr<JobRecord>& job, double seconds) {
     JobEnd end{job->id, job->status, job->result, job->error, settings_.version, *job->finished_at};
     store_.finish(std::move(end), [this, job, seconds](const Outcome<bool>& outcome) {
         if (std::holds_alternative<StoreFault>(outcome)) {

@@ -106,7 +106,7 @@ private:
     std::optional<JobRecord> claim();
     void run_job(JobRecord job);
     api::JobOutcome compute(const JobRecord& job, Running& running);
-    void end_job(std::shared_ptr<JobRecord> job, double seconds);
+    void end_job(const std::shared_ptr<JobRecord>& job, double seconds);
     void put_back(const std::string& id);
     void forget_running(const std::string& id);
     void add_waiter(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);

@@ -21,8 +21,8 @@ Timer::Key Timer::after(std::chrono::duration<double> delay, std::function<void(
     const auto time = steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(delay);
     const std::lock_guard lock(mutex_);
     const Key key{time, next_++};
-    const bool first = actions_.emplace(key, std::move(action)).first == actions_.begin();
-    if (first) changed_.notify_one();
+    const auto place = actions_.emplace(key, std::move(action)).first;
+    if (place == actions_.begin()) changed_.notify_one();
     return key;
 }
 

@@ -1,0 +1,128 @@
+"""The binary as its user starts it."""
+
+import json
+import os
+import socket
+import subprocess
+import tempfile
+import unittest
+
+from service import BINARY, QUICK, Service
+
+
+def run(*arguments, text=None, environment=None):
+    return subprocess.run([BINARY, *arguments], input=text, capture_output=True, text=True, timeout=120,
+                          env={**os.environ, **(environment or {})})
+
+
+class CommandLineTest(unittest.TestCase):
+    def test_version_and_help(self):
+        self.assertRegex(run("--version").stdout, r"^tunewright \d+\.\d+\.\d+\n$")
+        for option in ("--listen", "--store", "--workers", "--queue-limit", "--web"):
+            self.assertIn(option, run("serve", "--help").stdout)
+
+    def test_tune_writes_the_result_and_ends_with_0(self):
+        done = run("tune", "-", text=json.dumps(QUICK))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(json.loads(done.stdout)["controllers"][0]["method"], "simc")
+
+    def test_tune_writes_a_problem_and_ends_with_1(self):
+        for text, status in (("{", 400), ('{"plant":{"type":"nope"}}', 422)):
+            done = run("tune", "-", text=text)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertEqual(json.loads(done.stderr)["status"], status)
+        done = run("tune", "/nothing/here.json")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("/nothing/here.json", json.loads(done.stderr)["detail"])
+
+    def test_tune_reads_a_file(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+            file.write(json.dumps(QUICK))
+            file.flush()
+            self.assertEqual(run("tune", file.name).returncode, 0)
+
+    def test_a_taken_port_is_told_and_ends_with_3(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            address = "127.0.0.1:%d" % taken.getsockname()[1]
+            with tempfile.TemporaryDirectory() as folder:
+                done = run("serve", "--listen", address, "--store", "sqlite:" + folder + "/jobs.db")
+            self.assertEqual(done.returncode, 3)
+            self.assertIn("the port is taken", done.stderr)
+            self.assertIn(address, done.stderr)
+
+    def test_a_second_service_cannot_share_the_port_or_the_store(self):
+        with Service() as service:
+            with tempfile.TemporaryDirectory() as folder:
+                done = run("serve", "--listen", "127.0.0.1:%d" % service.port, "--store", "sqlite:" + folder + "/jobs.db")
+            self.assertEqual(done.returncode, 3)
+            done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + service.store)
+            self.assertEqual(done.returncode, 4)
+            self.assertIn("another tunewright is using it", done.stderr)
+
+    def test_a_store_that_cannot_be_opened_is_told_and_ends_with_4(self):
+        for path in ("/proc/nothing/jobs.db", "/"):
+            done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + path)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertIn("Cannot open the store", done.stderr)
+
+    def test_a_file_that_is_no_database_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/jobs.db"
+            with open(path, "w") as file:
+                file.write("this is not a database\n" * 100)
+            done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + path)
+            self.assertEqual(done.returncode, 4)
+            self.assertIn("not a database", done.stderr)
+
+    def test_wrong_options_are_told(self):
+        for arguments in (("--listen", "nowhere"), ("--listen", "127.0.0.1:99999"), ("--store", "mysql:x"),
+                          ("--log-format", "xml")):
+            done = run("serve", *arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn(arguments[1], done.stderr)
+        self.assertNotEqual(run("serve", "--workers", "0").returncode, 0)
+        self.assertNotEqual(run().returncode, 0)
+
+    def test_options_come_from_the_environment_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run("serve", environment={"TUNEWRIGHT_LISTEN": "nowhere", "TUNEWRIGHT_STORE": "sqlite:" + folder})
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("nowhere", done.stderr)
+
+    def test_the_log_has_one_json_line_for_each_request_and_job(self):
+        with Service("--log-format", "json") as service:
+            service.post_job(dict(QUICK, name='a "quoted" name'), wait=30)
+            service.get('/nothing?"%0a')
+            service.stop()
+            lines = [json.loads(line) for line in service.read_log().splitlines()]
+        events = [line.get("event") for line in lines]
+        self.assertEqual(events.count("job"), 1)
+        self.assertEqual(events.count("request"), 2)
+        self.assertEqual([line["status"] for line in lines if line.get("event") == "request"], [200, 404])
+
+
+class PageFolderTest(unittest.TestCase):
+    def test_the_page_comes_from_the_named_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(folder + "/assets")
+            for name, text in (("index.html", "<!doctype html>hello"), ("assets/a-1.js", "1"), (".hidden", "secret")):
+                with open(folder + "/" + name, "w") as file:
+                    file.write(text)
+            with Service("--web", folder) as service:
+                self.assertEqual(service.get("/").body, b"<!doctype html>hello")
+                script = service.get("/assets/a-1.js")
+                self.assertEqual(script.media_type, "text/javascript")
+                self.assertIn("immutable", script.headers["Cache-Control"])
+                self.assertEqual(service.get("/.hidden").status, 404)
+
+    def test_without_a_page_the_root_says_how_to_build_it(self):
+        with Service("--web", "/nothing") as service:
+            answer = service.get("/")
+            self.assertEqual(answer.status, 200)
+            self.assertIn(b"script/server", answer.body)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,97 @@
+#include "server/http/head.h"
+
+#include <gmock/gmock.h>
+
+namespace tunewright::server::http {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::size_t kBody = 1000;
+
+std::string get(const std::string& fields) { return "GET /a HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n"; }
+
+void expect_refused(const std::string& text, int status) {
+    const Head head = read_head(text, kBody);
+    EXPECT_EQ(head.state, Head::State::refused) << text;
+    EXPECT_EQ(head.status, status) << text;
+    EXPECT_GT(head.detail.size(), 20U);
+}
+
+TEST(Head, IsIncompleteAtEveryPrefix) {
+    const std::string whole = get("Content-Length: 3\r\n");
+    for (std::size_t n = 0; n < whole.size(); n++)
+        EXPECT_EQ(read_head(whole.substr(0, n), kBody).state, Head::State::incomplete) << n;
+    EXPECT_EQ(read_head(whole, kBody).state, Head::State::complete);
+}
+
+TEST(Head, TellsWhereItEndsAndHowLongTheBodyIs) {
+    const std::string text = get("Content-Length: 42\r\n");
+    const Head head = read_head(text + "{\"a\": 1}", kBody);
+    EXPECT_EQ(head.size, text.size());
+    EXPECT_EQ(head.content_length, 42U);
+    EXPECT_TRUE(head.keep_alive);
+}
+
+TEST(Head, KeepsTheConnectionAsVersionAndClientSay) {
+    EXPECT_FALSE(read_head(get("Connection: close\r\n"), kBody).keep_alive);
+    EXPECT_FALSE(read_head(get("connection: foo, CLOSE\r\n"), kBody).keep_alive);
+    EXPECT_FALSE(read_head("GET / HTTP/1.0\r\n\r\n", kBody).keep_alive);
+    EXPECT_TRUE(read_head("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n", kBody).keep_alive);
+}
+
+TEST(Head, HidesFieldsThatTheParsingLibraryWouldActUpon) {
+    const Head head =
+        read_head(get("Range: bytes=0-,0-\r\nREMOTE_ADDR: 1.2.3.4\r\nExpect: 100-continue\r\nA: b\r\n"), kBody);
+    EXPECT_TRUE(head.expects_continue);
+    EXPECT_THAT(head.clean, Not(HasSubstr("Range")));
+    EXPECT_THAT(head.clean, Not(HasSubstr("REMOTE_ADDR")));
+    EXPECT_THAT(head.clean, HasSubstr("A: b\r\n"));
+}
+
+TEST(Head, RefusesWhatTwoParsersReadDifferently) {
+    expect_refused(get("Content-Length: 1\r\nContent-Length: 1\r\n"), 400);
+    for (const char* length : {"", "-1", "+1", "1 1", "0x1", "1e2", "99999999999999999999", "1,1"})
+        expect_refused(get(std::string("Content-Length: ") + length + "\r\n"), 400);
+    expect_refused(get("Transfer-Encoding: chunked\r\n"), 411);
+    expect_refused(get("Transfer-Encoding: identity\r\n"), 411);
+    expect_refused(get("Host: y\r\n"), 400);
+    expect_refused("GET / HTTP/1.1\r\n\r\n", 400);
+    expect_refused(get("A: b\r\n c\r\n"), 400);
+    expect_refused(get("A : b\r\n"), 400);
+    expect_refused(get(": b\r\n"), 400);
+    expect_refused(get("A b\r\n"), 400);
+    expect_refused(get(std::string("A: b") + '\0' + "\r\n"), 400);
+    expect_refused(get("A: b\rC: d\r\n"), 400);
+    expect_refused("GET / HTTP/1.1\nHost: x\r\n\r\n", 400);
+}
+
+TEST(Head, RefusesRequestLinesThatAreNone) {
+    for (const char* line : {"", " ", "GET", "GET /", "GET  HTTP/1.1", "GE T / HTTP/1.1", "GET a HTTP/1.1",
+                             "GET http://x/ HTTP/1.1", "G\x80T / HTTP/1.1", "GET /\xc3\xa4 HTTP/1.1", "GET / http/1.1"})
+        expect_refused(std::string(line) + "\r\nHost: x\r\n\r\n", 400);
+    expect_refused("GET / HTTP/2.0\r\nHost: x\r\n\r\n", 505);
+}
+
+TEST(Head, RefusesWhatIsTooLarge) {
+    expect_refused("GET /" + std::string(9000, 'a'), 414);
+    expect_refused("GET /" + std::string(9000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n", 414);
+    expect_refused(get("A: " + std::string(9000, 'b') + "\r\n"), 431);
+    std::string many;
+    for (int i = 0; i < 101; i++) many += "A: b\r\n";
+    expect_refused(get(many), 431);
+    std::string endless = "GET / HTTP/1.1\r\n";
+    while (endless.size() < kMaxHeadBytes) endless += "A: " + std::string(1000, 'b') + "\r\n";
+    expect_refused(endless, 431);
+    expect_refused(get("Content-Length: 1001\r\n"), 413);
+    EXPECT_EQ(read_head(get("Content-Length: 1000\r\n"), kBody).state, Head::State::complete);
+}
+
+TEST(Head, RefusesCompressedBodiesAndUnknownExpectations) {
+    expect_refused(get("Content-Encoding: gzip\r\n"), 415);
+    expect_refused(get("Expect: wonders\r\n"), 417);
+}
+
+}  // namespace
+}  // namespace tunewright::server::http

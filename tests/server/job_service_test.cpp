@@ -1,0 +1,275 @@
+#include "server/jobs/service.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <future>
+
+#include "server/store/sqlite/sqlite_store.h"
+
+namespace tunewright::server {
+namespace {
+
+using testing::HasSubstr;
+using Status = api::JobOutcome::Status;
+
+/// A gate that tests open: computations wait at it instead of taking time.
+class Gate {
+public:
+    void open() { promise_.set_value(); }
+    /// False where the stop comes first.
+    bool pass(const std::stop_token& stop) const {
+        while (future_.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready)
+            if (stop.stop_requested()) return false;
+        return true;
+    }
+
+private:
+    std::promise<void> promise_;
+    std::shared_future<void> future_ = promise_.get_future().share();
+};
+
+class JobServiceTest : public testing::Test {
+protected:
+    JobServiceTest() {
+        std::string name = (std::filesystem::temp_directory_path() / "tunewright-jobs-XXXXXX").string();
+        folder_ = ::mkdtemp(name.data());
+        store_ = open_sqlite_store((folder_ / "jobs.db").string());
+    }
+    ~JobServiceTest() override {
+        if (service_) service_->drain(std::chrono::seconds(0));
+        timer_.stop();
+        store_.reset();
+        service_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+
+    /// Jobs named by their request: "wait" stops at the gate, "throw" throws, "partial" keeps a design when stopped.
+    api::JobOutcome compute(std::string_view request, const RunControl& control) {
+        if (request == "throw") throw std::runtime_error("a fault of ours");
+        if (request == "fail") return {Status::failed, "", R"({"type":"no-feasible-controller"})"};
+        if (request == "wait" || request == "partial") {
+            if (control.progress) control.progress({0.5, "tune", "Halfway.", {}});
+            if (!gate_.pass(control.stop))
+                return {Status::cancelled, request == "partial" ? R"({"partial":true})" : "", ""};
+        }
+        return {Status::succeeded, "{\"of\":\"" + std::string(request) + "\"}", ""};
+    }
+
+    void start(std::size_t workers = 1, std::size_t queue_limit = 100) {
+        JobSettings settings;
+        settings.workers = workers;
+        settings.queue_limit = queue_limit;
+        settings.version = "1.2.3";
+        settings.run = [this](std::string_view request, const RunControl& control) {
+            return compute(request, control);
+        };
+        settings.now = [this] { return ++now_; };
+        service_ = std::make_unique<JobService>(*store_, timer_, settings);
+        service_->start();
+    }
+
+    Submission submit(const std::string& request, double timeout_s = 60) {
+        api::PreparedJob job;
+        job.timeout_s = timeout_s;
+        job.request_json = request;
+        std::promise<Submission> promise;
+        service_->submit(
+            job, "", std::chrono::seconds(0), [&](Submission made) { promise.set_value(std::move(made)); }, [] {});
+        return promise.get_future().get();
+    }
+
+    JobRecord ended(const std::string& id) {
+        std::promise<void> promise;
+        service_->wait(id, std::chrono::seconds(60), [&] { promise.set_value(); });
+        promise.get_future().get();
+        return service_->find(id).value().job;
+    }
+
+    void until_running(const std::string& id) {
+        while (service_->find(id).value().job.status == JobStatus::queued) std::this_thread::yield();
+    }
+
+    CancelEffect cancel(const std::string& id) {
+        std::promise<CancelEffect> promise;
+        service_->cancel(id, [&](Outcome<CancelEffect> effect) { promise.set_value(std::get<CancelEffect>(effect)); });
+        return promise.get_future().get();
+    }
+
+    Gate gate_;
+    std::filesystem::path folder_;
+    std::atomic<UnixMs> now_ = 1000;
+    Timer timer_;
+    std::unique_ptr<JobStore> store_;
+    std::unique_ptr<JobService> service_;
+};
+
+TEST_F(JobServiceTest, AJobIsComputedAndItsResultKept) {
+    start();
+    const Submission made = submit("a");
+    EXPECT_EQ(made.kind, Submission::Kind::created);
+    const JobRecord job = ended(made.job.id);
+    EXPECT_EQ(job.status, JobStatus::succeeded);
+    EXPECT_EQ(job.result, R"({"of":"a"})");
+    EXPECT_EQ(job.attempts, 1);
+    EXPECT_EQ(service_->queued(), 0U);
+}
+
+TEST_F(JobServiceTest, WhatTheComputationRefusesIsAFailedJobWithItsError) {
+    start();
+    const JobRecord job = ended(submit("fail").job.id);
+    EXPECT_EQ(job.status, JobStatus::failed);
+    EXPECT_EQ(job.error, R"({"type":"no-feasible-controller"})");
+}
+
+TEST_F(JobServiceTest, AFaultFailsItsJobAloneAndTellsNothingOfOurInsides) {
+    start();
+    const JobRecord job = ended(submit("throw").job.id);
+    EXPECT_EQ(job.status, JobStatus::failed);
+    EXPECT_THAT(job.error, HasSubstr("internal"));
+    EXPECT_THAT(job.error, testing::Not(HasSubstr("a fault of ours")));
+    EXPECT_EQ(ended(submit("a").job.id).status, JobStatus::succeeded);
+}
+
+TEST_F(JobServiceTest, ARunningJobShowsItsProgressAndAnEndedOneNone) {
+    start();
+    const std::string id = submit("wait").job.id;
+    until_running(id);
+    while (service_->find(id)->progress.value_or(Progress{}).fraction < 0.5) std::this_thread::yield();
+    EXPECT_EQ(service_->find(id)->progress->message, "Halfway.");
+    gate_.open();
+    ended(id);
+    EXPECT_FALSE(service_->find(id)->progress);
+}
+
+TEST_F(JobServiceTest, ATimeOutStopsTheComputationAndIsTheCauseOfTheFailure) {
+    start();
+    const JobRecord job = ended(submit("wait", 0.02).job.id);
+    EXPECT_EQ(job.status, JobStatus::failed);
+    EXPECT_THAT(job.error, HasSubstr("timeout"));
+    EXPECT_EQ(job.result, "");
+}
+
+TEST_F(JobServiceTest, ATimeOutKeepsTheDesignThatWasFound) {
+    start();
+    const JobRecord job = ended(submit("partial", 0.02).job.id);
+    EXPECT_EQ(job.status, JobStatus::failed);
+    EXPECT_THAT(job.error, HasSubstr("timeout"));
+    EXPECT_EQ(job.result, R"({"partial":true})");
+}
+
+TEST_F(JobServiceTest, CancellingStopsARunningJobAndKeepsTheDesignThatWasFound) {
+    start();
+    const std::string id = submit("partial").job.id;
+    until_running(id);
+    EXPECT_EQ(cancel(id), CancelEffect::requested);
+    const JobRecord job = ended(id);
+    EXPECT_EQ(job.status, JobStatus::cancelled);
+    EXPECT_EQ(job.result, R"({"partial":true})");
+    EXPECT_EQ(job.error, "");
+}
+
+TEST_F(JobServiceTest, CancellingAQueuedJobTellsWhoWaitsForIt) {
+    start();
+    const std::string running = submit("wait").job.id;
+    const std::string queued = submit("a").job.id;
+    until_running(running);
+    std::promise<void> told;
+    service_->wait(queued, std::chrono::seconds(60), [&] { told.set_value(); });
+    EXPECT_EQ(cancel(queued), CancelEffect::cancelled);
+    told.get_future().get();
+    EXPECT_EQ(service_->queued(), 0U);
+    gate_.open();
+    EXPECT_EQ(ended(running).status, JobStatus::succeeded);
+    EXPECT_EQ(service_->find(queued)->job.status, JobStatus::cancelled);
+}
+
+TEST_F(JobServiceTest, AFullQueueRefusesAndTakesAgainWhenThereIsRoom) {
+    start(1, 2);
+    const std::string running = submit("wait").job.id;
+    until_running(running);
+    submit("a");
+    const std::string last = submit("b").job.id;
+    EXPECT_EQ(submit("c").kind, Submission::Kind::queue_full);
+    gate_.open();
+    EXPECT_EQ(ended(last).status, JobStatus::succeeded);
+    EXPECT_EQ(submit("c").kind, Submission::Kind::created);
+}
+
+TEST_F(JobServiceTest, AWaitThatIsOverIsToldWhileTheJobRuns) {
+    start();
+    const std::string id = submit("wait").job.id;
+    std::promise<void> told;
+    service_->wait(id, std::chrono::milliseconds(5), [&] { told.set_value(); });
+    told.get_future().get();
+    EXPECT_FALSE(has_ended(service_->find(id)->job.status));
+}
+
+TEST_F(JobServiceTest, WaitingForAnEndedOrUnknownJobIsToldAtOnce) {
+    start();
+    const std::string id = submit("a").job.id;
+    ended(id);
+    for (const std::string& asked : {id, std::string("nothing")}) {
+        std::promise<void> told;
+        service_->wait(asked, std::chrono::hours(1), [&] { told.set_value(); });
+        told.get_future().get();
+    }
+}
+
+TEST_F(JobServiceTest, DrainingLetsARunningJobEndAndTakesNoMore) {
+    start();
+    const std::string id = submit("wait").job.id;
+    until_running(id);
+    auto drained = std::async(std::launch::async, [&] { return service_->drain(std::chrono::hours(1)); });
+    while (!service_->draining()) std::this_thread::yield();
+    EXPECT_EQ(submit("a").kind, Submission::Kind::draining);
+    gate_.open();
+    EXPECT_TRUE(drained.get());
+    EXPECT_EQ(store_->find(id)->status, JobStatus::succeeded);
+}
+
+TEST_F(JobServiceTest, DrainingWithoutGraceGivesRunningJobsBackToTheQueueAndTellsWhoWaits) {
+    start();
+    const std::string id = submit("partial").job.id;
+    until_running(id);
+    std::promise<void> told;
+    service_->wait(id, std::chrono::hours(1), [&] { told.set_value(); });
+    EXPECT_TRUE(service_->drain(std::chrono::seconds(0)));
+    told.get_future().get();
+    EXPECT_EQ(store_->find(id)->status, JobStatus::queued);
+    EXPECT_EQ(store_->find(id)->attempts, 1);
+}
+
+TEST_F(JobServiceTest, JobsLeftBehindByAnEarlierProcessAreTakenUp) {
+    start();
+    const std::string running = submit("wait").job.id;
+    until_running(running);
+    const std::string queued = submit("a").job.id;
+    service_->drain(std::chrono::seconds(0));
+    gate_.open();
+    start(2);
+    EXPECT_EQ(ended(running).attempts, 2);
+    EXPECT_EQ(ended(queued).attempts, 1);
+}
+
+TEST_F(JobServiceTest, ManyWorkersEndEachOfManyJobsOnce) {
+    start(4, 10'000);
+    std::vector<std::string> ids;
+    for (int i = 0; i < 300; i++) ids.push_back(submit("job" + std::to_string(i)).job.id);
+    for (std::size_t i = 0; i < ids.size(); i++) {
+        const JobRecord job = ended(ids[i]);
+        EXPECT_EQ(job.status, JobStatus::succeeded);
+        EXPECT_EQ(job.attempts, 1);
+        EXPECT_EQ(job.result, "{\"of\":\"job" + std::to_string(i) + "\"}");
+    }
+}
+
+TEST(JobId, IsLongRandomAndOfLettersAndDigits) {
+    const std::string a = new_job_id();
+    EXPECT_EQ(a.size(), 26U);
+    EXPECT_EQ(a.find_first_not_of("0123456789abcdefghjkmnpqrstvwxyz"), std::string::npos);
+    EXPECT_NE(a, new_job_id());
+}
+
+}  // namespace
+}  // namespace tunewright::server

@@ -1,0 +1,25 @@
+#!/usr/bin/python3
+"""Runs every *_test.py beside it and prints the counts that script/test adds up."""
+
+import pathlib
+import sys
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+
+def main():
+    names = sys.argv[1:]
+    suite = unittest.defaultTestLoader.discover(str(HERE), pattern="*_test.py")
+    if names:
+        suite = unittest.defaultTestLoader.loadTestsFromNames(names)
+    result = unittest.TextTestRunner(verbosity=2).run(suite)
+    bad = len(result.failures) + len(result.errors) + len(result.unexpectedSuccesses)
+    print("passed: %d" % (result.testsRun - bad - len(result.skipped)))
+    print("failed: %d" % bad)
+    return 1 if bad or result.testsRun == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -3,6 +3,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant.h"
+#include "engine/loop/loop.h"
 #include "engine/plant/linear_plant.h"
 
 namespace tunewright::api {
@@ -79,19 +80,19 @@ const Description<NoiseOptions>& noise_contract() {
     return description;
 }
 
-// What the computations' form of the plant refuses; the engine's path becomes the pointer.
-void check_plant(const std::optional<Plant>& plant, Reader& reader) {
-    if (!plant) return;
-    const auto linear = LinearPlant::make(*plant);
-    if (linear) return;
-    const std::string& where = linear.error().where;
-    const std::size_t slash = where.find('/');
+// What the computations' form of the plant refuses. Empty after a fault, which the reader then has.
+std::optional<LinearPlant> check_plant(const Plant& plant, Reader& reader) {
+    auto linear = LinearPlant::make(plant);
+    if (linear) return std::move(*linear);
     const Reader::At at(reader, "plant");
-    if (slash == std::string::npos) {
-        reader.fault(linear.error().message);
-    } else {
-        reader.fault_at(where.substr(slash + 1), linear.error().message);
-    }
+    reader.fault_below(linear.error().where, 1, linear.error().message);
+    return std::nullopt;
+}
+
+// Whether plant and controller form a loop; the reader stands at the controller.
+void check_loop(const LinearPlant& plant, const Controller& controller, Reader& reader) {
+    const auto loop = Loop::make(plant, gains(controller));
+    if (!loop) reader.fault_below(loop.error().where, 1, loop.error().message);
 }
 
 template <class Request>
@@ -118,7 +119,21 @@ void check_job(const Json&, JobRequest& request, Reader& reader) {
                         "uncertainty \"identified\" is not available yet; use \"none\" and lower Ms and Mt to be safe "
                         "against a wrong model.");
     }
-    check_plant(request.plant, reader);
+    if (!request.plant) return;
+    const auto plant = check_plant(*request.plant, reader);
+    if (!plant || !request.baseline) return;
+    const Reader::At at(reader, "baseline");
+    check_loop(*plant, *request.baseline, reader);
+}
+
+void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
+    const auto plant = check_plant(*request.plant, reader);
+    if (!plant) return;
+    const Reader::At list(reader, "controllers");
+    for (std::size_t i = 0; i < request.controllers.size(); ++i) {
+        const Reader::At at(reader, i);
+        check_loop(*plant, request.controllers[i], reader);
+    }
 }
 
 template <class Request>
@@ -217,7 +232,7 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
                    list_of(one_of(controller_contract()), 1, kMostControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
-            .check([](const Json&, EvaluateRequest& request, Reader& reader) { check_plant(request.plant, reader); })
+            .check(check_controllers)
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
         return d;

@@ -14,6 +14,15 @@ void Reader::fault_at(std::string_view name, std::string detail) {
     fault(std::move(detail));
 }
 
+void Reader::fault_below(std::string_view where, int skipped, std::string detail) {
+    const std::size_t slash = where.find('/');
+    const std::string_view first = where.substr(0, slash), rest = slash == where.npos ? "" : where.substr(slash + 1);
+    if (first.empty()) return fault(std::move(detail));
+    if (skipped > 0) return fault_below(rest, skipped - 1, std::move(detail));
+    const At at(*this, first);
+    fault_below(rest, 0, std::move(detail));
+}
+
 std::string Reader::pointer() const {
     std::string out;
     for (const Segment& segment : path_) {

@@ -30,6 +30,8 @@ public:
     void fault(std::string detail);
     /// A fault at the member `name` of that place.
     void fault_at(std::string_view name, std::string detail);
+    /// A fault that the engine found: `where` is its slash path, whose first `skipped` names are left out.
+    void fault_below(std::string_view where, int skipped, std::string detail);
 
     /// The JSON Pointer of the place; the last name of it, with indices: "num[2]"; "the request" at the top.
     std::string pointer() const;

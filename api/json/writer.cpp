@@ -1,6 +1,8 @@
 #include "api/json/writer.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -39,15 +41,16 @@ struct SixDigits {
     int exponent;
 };
 
+const PowersOfTen kPowerOfTen;
+
 SixDigits split(double magnitude) {
-    static const PowersOfTen power;
-    int binary = 0;
-    std::frexp(magnitude, &binary);
-    int exponent = static_cast<int>(std::floor((binary - 1) * 0.30102999566398120));
-    double scaled = magnitude * power(5 - exponent);
+    // The binary exponent gives the decimal one, or one less: (e * 78913) >> 18 is floor(e log10 2) for every double.
+    const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(magnitude) >> 52) - 1023;
+    int exponent = (binary * 78913) >> 18;
+    double scaled = magnitude * kPowerOfTen(5 - exponent);
     if (scaled >= 999999.5) {
         ++exponent;
-        scaled = magnitude * power(5 - exponent);
+        scaled = magnitude * kPowerOfTen(5 - exponent);
     }
     auto digits = static_cast<std::uint32_t>(scaled + 0.5);
     if (digits > 999999) {
@@ -153,9 +156,19 @@ void Writer::trace_number(double value) {
     raw({buffer, static_cast<std::size_t>(write_six(buffer, buffer + kBuffer, value) - buffer)});
 }
 
+// Traces are nearly all of an answer's bytes: they are written in place.
 void Writer::trace(std::span<const double> values) {
+    constexpr std::size_t kLongest = 16;  // of "-0.0000123456," and "-1.23456e-280,"
     begin_array();
-    for (const double value : values) trace_number(value);
+    const std::size_t start = out_.size();
+    out_.resize(start + kLongest * values.size() + 1);
+    char* const first = out_.data() + start;
+    char* at = first;
+    for (const double value : values) {
+        if (at != first) *at++ = ',';
+        at = std::isfinite(value) ? write_six(at, at + kLongest, value) : std::copy_n("null", 4, at);
+    }
+    out_.resize(start + static_cast<std::size_t>(at - first));
     end_array();
 }
 

@@ -1,0 +1,244 @@
+// Answers end to end: the engine's results as JSON, held against the document.
+#include <gmock/gmock.h>
+
+#include "api/contract/evaluation.h"
+#include "support.h"
+
+namespace tunewright::api {
+namespace {
+
+using testing::HasSubstr;
+
+Json run(const std::string& request) {
+    const auto prepared = prepare_job(request);
+    if (const auto* problem = std::get_if<Problem>(&prepared)) {
+        ADD_FAILURE() << to_json(*problem);
+        return {};
+    }
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
+    if (outcome.result_json.empty()) return {};
+    Json result = Json::parse(outcome.result_json);
+    EXPECT_EQ(result["request_hash"], std::get<PreparedJob>(prepared).request_hash);
+    return result;
+}
+
+Json example(const std::string& id) {
+    const Json document = Json::parse(examples_json());
+    for (const Json& one : document["examples"]) {
+        if (one["id"] == id) return one["request"];
+    }
+    ADD_FAILURE() << id;
+    return {};
+}
+
+// Any null figure inside an object with figures must be explained beside it.
+void expect_every_null_explained(const Json& value, const std::string& at) {
+    if (value.is_array()) {
+        for (std::size_t i = 0; i < value.size(); ++i)
+            expect_every_null_explained(value[i], at + "/" + std::to_string(i));
+    } else if (value.is_object()) {
+        for (const auto& [name, member] : value.items()) {
+            if (member.is_null() && name != "Ti") {
+                EXPECT_TRUE(value.contains("why_null") && value["why_null"].contains(name)) << at << "/" << name;
+            }
+            expect_every_null_explained(member, at + "/" + name);
+        }
+    }
+}
+
+void expect_valid(const Json& answer, const char* component) {
+    EXPECT_EQ(schema_faults(answer, component), std::vector<std::string>{});
+    expect_every_null_explained(answer, "");
+}
+
+TEST(Answers, ANullFigureIsWrittenWithItsReason) {
+    Robustness robustness;
+    robustness.stable = true;
+    robustness.Ms = 1.25;
+    robustness.gain_margin = std::numeric_limits<double>::infinity();
+    robustness.why_null["gain_margin"] = "No higher gain loses stability.";
+    robustness.why_null["Ms"] = "Never shown: Ms is not null.";
+    robustness.tolerates.gain_low = 0.5;
+    const Json written = Json::parse(encode(robustness_contract(), robustness));
+    EXPECT_EQ(written["Ms"], 1.25);
+    EXPECT_TRUE(written["gain_margin"].is_null());
+    EXPECT_EQ(written["why_null"]["gain_margin"], "No higher gain loses stability.");
+    EXPECT_FALSE(written["why_null"].contains("Ms"));
+    EXPECT_EQ(written["tolerates"]["gain"], (Json::array({0.5, nullptr})));
+    EXPECT_EQ(written["tolerates"]["why_null"]["gain"], "No higher gain loses stability.");
+    expect_valid(written, "Robustness");
+}
+
+TEST(Answers, TracesHaveSixDigitsAndFiguresAll) {
+    Evaluation evaluation;
+    Responses responses;
+    responses.setpoint.y = {1.0 / 3};
+    EXPECT_THAT(encode(responses_contract(), responses), HasSubstr("\"y\":[0.333333]"));
+    Robustness robustness;
+    robustness.Ms = 4.0 / 3;
+    EXPECT_THAT(encode(robustness_contract(), robustness), HasSubstr("\"Ms\":1.3333333333333333"));
+}
+
+TEST(Answers, TheProgressIsOneObject) {
+    Progress progress{0.25, "tune", "Half of the starts are done.", BestSoFar{}};
+    progress.best->controller.Kp = 2;
+    const Json written = Json::parse(progress_json(progress));
+    EXPECT_EQ(schema_faults(written, "Progress"), std::vector<std::string>{});
+    EXPECT_EQ(written["best"]["controller"]["Kp"], 2);
+    EXPECT_TRUE(Json::parse(progress_json({}))["best"].is_null());
+}
+
+TEST(Answers, EngineErrorsBecomeProblemsOfTheirKind) {
+    const Problem invalid = to_problem({ErrorKind::invalid_argument, "plant/den/0", "den has a fault."});
+    EXPECT_EQ(invalid.status, 422);
+    EXPECT_EQ(invalid.errors.at(0).pointer, "/plant/den/0");
+    EXPECT_EQ(to_problem({ErrorKind::not_identifiable, "", "x"}).type, "not-identifiable");
+    EXPECT_EQ(to_problem({ErrorKind::no_feasible_controller, "", "x"}).type, "no-feasible-controller");
+    EXPECT_EQ(to_problem({ErrorKind::unbounded_optimum, "", "x"}).type, "unbounded-optimum");
+    EXPECT_EQ(to_problem({ErrorKind::timeout, "", "x"}).type, "timeout");
+    EXPECT_EQ(to_problem({ErrorKind::cancelled, "", "x"}).status, 409);
+    EXPECT_TRUE(to_problem({ErrorKind::timeout, "", "x"}).errors.empty());
+}
+
+TEST(Answers, EvaluateKeepsTheOrderOfTheControllersAndFitsTheDocument) {
+    const Answer answer = evaluate_call(
+        R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "controllers": [{"Kp": 0.9, "Ti": 10}, {"form": "parallel", "Ki": 0.02}, {"form": "series", "Kp": 0.8, "Ti": 10, "Td": 1, "filter": {"type": "derivative", "N": 10}}], "evaluate": {"points": 50, "noise": {"std": 0.1, "sample_time": 0.1}}})",
+        {});
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const Json body = Json::parse(answer.body);
+    expect_valid(body, "EvaluateAnswer");
+    ASSERT_EQ(body["controllers"].size(), 3u);
+    EXPECT_EQ(body["controllers"][1]["controller"]["form"], "parallel");
+    EXPECT_EQ(body["controllers"][2]["controller"]["form"], "series");
+    const Json& first = body["controllers"][0];
+    EXPECT_EQ(first["responses"]["load"]["t"].size(), 50u);
+    EXPECT_EQ(first["responses"]["load"]["y"].size(), 50u);
+    EXPECT_EQ(first["frequency"]["omega"].size(), first["frequency"]["L"]["re"].size());
+    EXPECT_NEAR(first["equivalents"]["parallel"]["Ki"].get<double>(), 0.09, 1e-15);
+    EXPECT_FALSE(first.contains("method"));
+}
+
+TEST(Answers, AnUnstableLoopIsAnEntryWithReasonsForItsNulls) {
+    const Answer answer = evaluate_call(
+        R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "controllers": [{"Kp": 50, "Ti": 10}]})", {});
+    ASSERT_EQ(answer.status, 200);
+    const Json body = Json::parse(answer.body);
+    expect_valid(body, "EvaluateAnswer");
+    EXPECT_FALSE(body["controllers"][0]["robustness"]["stable"].get<bool>());
+    EXPECT_TRUE(body["controllers"][0]["performance"]["load"]["IAE"].is_null());
+    EXPECT_FALSE(body["controllers"][0]["warnings"].empty());
+}
+
+TEST(Answers, PointsZeroLeavesTheTracesOut) {
+    const Answer answer = evaluate_call(
+        R"({"plant": {"type": "ipdt", "K": 0.05, "L": 4}, "controllers": [{"Kp": 2, "Ti": 40}], "evaluate": {"points": 0}})",
+        {});
+    const Json body = Json::parse(answer.body);
+    expect_valid(body, "EvaluateAnswer");
+    EXPECT_FALSE(body["controllers"][0].contains("responses"));
+    EXPECT_FALSE(body["controllers"][0].contains("frequency"));
+}
+
+TEST(Answers, AComparisonWithABaselineIsRankedAndFitsTheDocument) {
+    const Json result = run(example("compare-methods").dump());
+    expect_valid(result, "TuningResult");
+    ASSERT_EQ(result["controllers"].size(), 6u);
+    EXPECT_EQ(result["controllers"][5]["method"], "baseline");
+    EXPECT_EQ(result["controllers"][0]["method"], "robust");
+    EXPECT_EQ(result["controllers"][0]["options"]["Ms"], 1.4);
+    EXPECT_EQ(result["ranking"].size(), 6u);
+    EXPECT_EQ(result["units"]["y"], "degC");
+    EXPECT_EQ(result["version"], TUNEWRIGHT_VERSION);
+    EXPECT_FALSE(result["partial"].get<bool>());
+    EXPECT_LE(result["controllers"][0]["robustness"]["Ms"].get<double>(), 1.4 * (1 + 2e-5));
+}
+
+TEST(Answers, ThePublishedExampleHasItsPublishedSettings) {
+    const Json result = run(example("paper-third-order").dump());
+    const Json& controller = result["controllers"][0]["controller"];
+    EXPECT_NEAR(controller["Kp"].get<double>(), 6.534, 0.005 * 6.534);
+    EXPECT_NEAR(controller["Ti"].get<double>(), 0.2207, 0.005 * 0.2207);
+    EXPECT_NEAR(controller["Td"].get<double>(), 0.1644, 0.005 * 0.1644);
+    EXPECT_EQ(controller["filter"]["Tf"], 1e-4);
+}
+
+TEST(Answers, EveryOtherExampleSucceedsAndFitsTheDocument) {
+    for (const char* id : {"paper-oscillatory", "integrating-level", "inverse-response", "unstable-first-order",
+                           "two-tanks-state-space", "oscillatory-mass"}) {
+        SCOPED_TRACE(id);
+        const Json result = run(example(id).dump());
+        if (result.is_null()) continue;
+        expect_valid(result, "TuningResult");
+        for (const Json& entry : result["controllers"]) {
+            EXPECT_FALSE(entry.contains("error")) << entry["error"].dump();
+            EXPECT_TRUE(entry["robustness"]["stable"].get<bool>());
+        }
+    }
+}
+
+TEST(Answers, TheRecordedHeaterStepIsIdentifiedAndTuned) {
+    const Json result = run(example("tclab-step").dump());
+    expect_valid(result, "TuningResult");
+    EXPECT_GE(result["model"]["fit_percent"].get<double>(), 97.2);
+    EXPECT_EQ(result["model"]["data_quality"]["samples"].get<int>() +
+                  result["model"]["data_quality"]["samples_dropped"].get<int>(),
+              801);
+    EXPECT_FALSE(result["model"]["candidates"].empty());
+    EXPECT_LE(result["controllers"][0]["robustness"]["Ms"].get<double>(), 1.4 * (1 + 2e-5));
+    EXPECT_LE(result["controllers"][0]["robustness"]["Mt"].get<double>(), 1.4 * (1 + 2e-5));
+}
+
+TEST(Answers, IdentifyCountsTheLinesThatTheCsvLacked) {
+    std::string csv = "t;u;y\n";
+    for (int i = 0; i <= 200; ++i) {
+        const double t = 0.25 * i, y = t > 5 ? 2 * (1 - std::exp(-(t - 5) / 4)) : 0;
+        csv += std::to_string(t) + ";" + (t >= 3 ? "1" : "0") + ";" + (i % 50 == 7 ? "" : std::to_string(y)) + "\n";
+    }
+    const Answer answer =
+        identify_call(Json{{"record", {{"csv", csv}}}, {"identify", {{"model", "fopdt"}}}}.dump(), {});
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const Json body = Json::parse(answer.body);
+    expect_valid(body, "IdentifyAnswer");
+    EXPECT_EQ(body["model"]["data_quality"]["samples_dropped"], 4);
+    EXPECT_NEAR(body["model"]["plant"]["K"].get<double>(), 2, 1e-3);
+    EXPECT_NEAR(body["model"]["plant"]["T"].get<double>(), 4, 1e-2);
+    EXPECT_NEAR(body["model"]["plant"]["L"].get<double>(), 2, 1e-2);
+}
+
+TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {
+    // SIMC has no tau_c for a plant without lag and dead time other than the one that is given.
+    const std::string plant = R"({"plant": {"type": "transfer_function", "num": [1], "den": [1, 1]}, "tune": [)";
+    const Json result = run(plant + R"({"method": "ziegler_nichols_step"}, {"method": "simc", "tau_c": 0.5}]})");
+    EXPECT_EQ(result["controllers"][0]["error"]["type"], "unsupported");
+    EXPECT_TRUE(result["controllers"][1].contains("controller")) << result["controllers"][1].dump();
+    EXPECT_EQ(result["ranking"], Json::array({1}));
+    expect_valid(result, "TuningResult");
+
+    const auto prepared = prepare_job(plant + R"({"method": "ziegler_nichols_step"}]})");
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    EXPECT_EQ(outcome.status, JobOutcome::Status::failed);
+    EXPECT_EQ(schema_faults(Json::parse(outcome.error_json), "Problem"), std::vector<std::string>{});
+}
+
+TEST(Answers, ASurfaceIsWrittenAsAMatrix) {
+    const Json result = run(request_with(
+        R"("tune": [{"method": "robust", "search": "grid", "surface": true}], "evaluate": {"points": 0})"));
+    expect_valid(result, "TuningResult");
+    const Json& surface = result["controllers"][0]["surface"];
+    ASSERT_TRUE(surface.is_object());
+    EXPECT_EQ(surface["cost"].size(), surface["Ti"].size());
+    EXPECT_EQ(surface["cost"][0].size(), surface["Td"].size());
+}
+
+TEST(Answers, AStoppedJobIsCancelled) {
+    const auto prepared = prepare_job(example("compare-methods").dump());
+    std::stop_source source;
+    source.request_stop();
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {source.get_token(), {}, {}});
+    EXPECT_EQ(outcome.status, JobOutcome::Status::cancelled);
+    EXPECT_TRUE(outcome.error_json.empty());
+}
+
+}  // namespace
+}  // namespace tunewright::api

@@ -1,0 +1,248 @@
+// Every kind of bad input gets its status, the place and a sentence that helps.
+#include <gmock/gmock.h>
+
+#include "support.h"
+
+namespace tunewright::api {
+namespace {
+
+using testing::HasSubstr;
+
+struct BadRequest {
+    const char* name;
+    std::string body;
+    int status;
+    const char* pointer;  // null: no list of faults
+    const char* sentence;
+};
+
+void PrintTo(const BadRequest& bad, std::ostream* out) { *out << bad.name; }
+
+std::string with_plant(const std::string& plant) { return R"({"plant": )" + plant + "}"; }
+std::string with_record(const std::string& record) { return R"({"record": )" + record + "}"; }
+
+std::string case_name(const testing::TestParamInfo<BadRequest>& bad) { return bad.param.name; }
+
+class Refuses : public testing::TestWithParam<BadRequest> {};
+
+TEST_P(Refuses, WithStatusPlaceAndCure) {
+    const BadRequest& bad = GetParam();
+    const auto answer = prepare_job(bad.body);
+    ASSERT_TRUE(std::holds_alternative<Problem>(answer)) << "accepted: " << bad.body.substr(0, 200);
+    const Problem& problem = std::get<Problem>(answer);
+    EXPECT_EQ(problem.status, bad.status) << problem.detail;
+    if (bad.pointer) {
+        EXPECT_THAT(detail_at(problem.errors, bad.pointer), HasSubstr(bad.sentence));
+    } else {
+        EXPECT_THAT(problem.detail, HasSubstr(bad.sentence));
+    }
+    EXPECT_EQ(schema_faults(Json::parse(to_json(problem)), "Problem"), std::vector<std::string>{});
+}
+
+const std::string kFopdt = R"({"type": "fopdt", "K": 1, "T": 1, "L": 1)";
+
+INSTANTIATE_TEST_SUITE_P(
+    Text, Refuses,
+    testing::Values(
+        BadRequest{"Empty", "", 400, nullptr, "The body is empty"},
+        BadRequest{"BrokenOff", "{\"plant\": {", 400, nullptr, "ends too early"},
+        BadRequest{"TrailingComma", "{\"plant\": 1,}", 400, nullptr, "no comma after the last"},
+        BadRequest{"SingleQuotes", "{'plant': 1}", 400, nullptr, "double quotes"},
+        BadRequest{"BareNaN", R"({"plant": {"type": "fopdt", "K": NaN}})", 400, nullptr, "JSON has no NaN"},
+        BadRequest{"BareInfinity", R"({"plant": {"K": -Infinity}})", 400, nullptr, "JSON has no NaN or Infinity"},
+        BadRequest{"SecondLineIsNamed", "{\n  \"plant\": oops}", 400, nullptr, "line 2, column 12"},
+        BadRequest{"NotUtf8", "{\"name\": \"\xff\"}", 400, nullptr, "not JSON"},
+        BadRequest{"NumberBeyondDouble", R"({"plant": {"type": "fopdt", "K": 1e999}})", 422, "/plant/K",
+                   "1e999 is too large"},
+        BadRequest{"MemberTwice", R"({"timeout_s": 1, "timeout_s": 2})", 422, "/timeout_s", "given twice"},
+        BadRequest{"TooDeep", std::string(40, '[') + std::string(40, ']'), 422, nullptr, "nested more than 32"},
+        BadRequest{"TooLarge", "[\"" + std::string(kMaxBodyBytes, 'x') + "\"]", 413, nullptr, "at most 8388608"},
+        BadRequest{"AnArray", "[1, 2]", 422, "", "the request is an array; it must be an object"},
+        BadRequest{"NothingInIt", "{}", 422, "", "plant or record is missing"}),
+    case_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    Plants, Refuses,
+    testing::Values(
+        BadRequest{"TextForNumber", with_plant(R"({"type": "fopdt", "K": "2", "T": 1, "L": 1})"), 422, "/plant/K",
+                   "K is \"2\", a text; it must be a number. Write 2 without quotes."},
+        BadRequest{"NaNAsText", with_plant(R"({"type": "fopdt", "K": "NaN", "T": 1, "L": 1})"), 422, "/plant/K",
+                   "NaN and Infinity are not accepted"},
+        BadRequest{"DecimalComma", with_plant(R"({"type": "fopdt", "K": "2,5", "T": 1, "L": 1})"), 422, "/plant/K",
+                   "decimal sign is the point"},
+        BadRequest{"NullForNumber", with_plant(R"({"type": "fopdt", "K": null, "T": 1, "L": 1})"), 422, "/plant/K",
+                   "K is null; it must be a number"},
+        BadRequest{"NegativeDeadTime", with_plant(R"({"type": "fopdt", "K": 1, "T": 1, "L": -1})"), 422, "/plant/L",
+                   "L is -1; it must be >= 0"},
+        BadRequest{"MissingDeadTime", with_plant(R"({"type": "fopdt", "K": 1, "T": 1})"), 422, "/plant/L",
+                   "L is missing"},
+        BadRequest{"NoGain", with_plant(R"({"type": "fopdt", "K": 0, "T": 1, "L": 1})"), 422, "/plant/K",
+                   "gain 0 cannot be controlled"},
+        BadRequest{"Huge", with_plant(R"({"type": "fopdt", "K": 1e300, "T": 1, "L": 1})"), 422, "/plant/K",
+                   "at most 1e30"},
+        BadRequest{"NoType", with_plant(R"({"K": 1})"), 422, "/plant/type", "it must be fopdt, sopdt"},
+        BadRequest{"UnknownType", with_plant(R"({"type": "foptd", "K": 1})"), 422, "/plant/type",
+                   "Did you mean fopdt?"},
+        BadRequest{"LaterType", with_plant(R"({"type": "nonlinear"})"), 422, "/plant/type",
+                   "not available yet; the types are fopdt"},
+        BadRequest{"LaterUncertainty", with_plant(kFopdt + R"(, "uncertainty": {"K": [0.8, 1.2]}})"), 422,
+                   "/plant/uncertainty", "not available yet"},
+        BadRequest{"OtherNameForDeadTime", with_plant(kFopdt + R"(, "delay": 1})"), 422, "/plant/delay",
+                   "did you mean L?"},
+        BadRequest{"PlantIsText", with_plant("\"1/(s+1)\""), 422, "/plant", "it must be an object"},
+        BadRequest{"EmptyDenominator", with_plant(R"({"type": "transfer_function", "num": [1], "den": []})"), 422,
+                   "/plant/den", "den has 0 numbers"},
+        BadRequest{"ZeroDenominator", with_plant(R"({"type": "transfer_function", "num": [1], "den": [0, 0]})"), 422,
+                   "/plant/den", "only zeros"},
+        BadRequest{"ZeroNumerator", with_plant(R"({"type": "transfer_function", "num": [0], "den": [1, 1]})"), 422,
+                   "/plant/num", "only zeros"},
+        BadRequest{"Improper", with_plant(R"({"type": "transfer_function", "num": [1, 0, 0], "den": [0, 1, 1]})"), 422,
+                   "/plant/num", "num has degree 2 and den degree 1"},
+        BadRequest{"CoefficientIsNoNumber", with_plant(R"({"type": "transfer_function", "num": [1], "den": [1, "x"]})"),
+                   422, "/plant/den/1", "den[1] is \"x\""},
+        BadRequest{"PoleWithoutConjugate", with_plant(R"({"type": "zpk", "K": 1, "poles": [-3, [-1, 2]]})"), 422,
+                   "/plant/poles/1", "Add [-1, -2]"},
+        BadRequest{"MoreZerosThanPoles", with_plant(R"({"type": "zpk", "K": 1, "zeros": [-1, -2], "poles": [-3]})"),
+                   422, "/plant/zeros", "no more zeros than poles"},
+        BadRequest{"MatrixNotSquare",
+                   with_plant(R"({"type": "state_space", "A": [[1, 2], [3]], "B": [1, 0], "C": [1, 0]})"), 422,
+                   "/plant/A/1", "A must be square"},
+        BadRequest{"InputOfOtherLength", with_plant(R"({"type": "state_space", "A": [[-1]], "B": [1, 0], "C": [1]})"),
+                   422, "/plant/B", "B has 2 numbers and A 1 rows"},
+        BadRequest{"OscillatoryWithoutDamping", with_plant(R"({"type": "sopdt", "K": 1, "T": 1, "L": 0})"), 422,
+                   "/plant/zeta", "zeta is missing"},
+        BadRequest{"HiddenUnstableMode",
+                   with_plant(R"({"type": "state_space", "A": [[1, 0], [0, -1]], "B": [0, 1], "C": [1, 1]})"), 422,
+                   "/plant/A", "cannot reach it"}),
+    case_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, Refuses,
+    testing::Values(
+        BadRequest{"PlantAndRecord", request_with(R"("record": {"dt": 1, "u": [0, 1], "y": [0, 1]})"), 422, "/record",
+                   "both given"},
+        BadRequest{"UnknownField", request_with(R"("x": 1)"), 422, "/x", "x is not a field here"},
+        BadRequest{"UnknownMethod", request_with(R"("tune": [{"method": "simcc"}])"), 422, "/tune/0/method",
+                   "Did you mean simc?"},
+        BadRequest{"NoMethodNamed", request_with(R"("tune": [{"Ms": 1.4}])"), 422, "/tune/0/method",
+                   "method is missing"},
+        BadRequest{"NoMethods", request_with(R"("tune": [])"), 422, "/tune", "it must have 1 to 50"},
+        BadRequest{"OneMethodOutsideAList", request_with(R"("tune": {"method": "simc"})"), 422, "/tune",
+                   "an array of methods"},
+        BadRequest{"LimitBelowOne", request_with(R"("tune": [{"method": "robust", "Ms": 0.9}])"), 422, "/tune/0/Ms",
+                   "Ms is 0.9; it must be > 1"},
+        BadRequest{"UnknownOption", request_with(R"("tune": [{"method": "robust", "MS": 1.4}])"), 422, "/tune/0/MS",
+                   "did you mean Ms?"},
+        BadRequest{"TwoFilters",
+                   request_with(R"("tune": [{"method": "robust", "filter": {"Tf": 1, "Tf_over_Td": 0.1}}])"), 422,
+                   "/tune/0/filter", "at most 1"},
+        BadRequest{"TenMillionPoints", request_with(R"("evaluate": {"points": 10000000})"), 422, "/evaluate/points",
+                   "0 (no traces) or a whole number from 2 to 20000"},
+        BadRequest{"OnePoint", request_with(R"("evaluate": {"points": 1})"), 422, "/evaluate/points", "points is 1;"},
+        BadRequest{"NoStep", request_with(R"("evaluate": {"load_step": 0})"), 422, "/evaluate/load_step",
+                   "different from 0"},
+        BadRequest{"HorizonInWords", request_with(R"("evaluate": {"horizon": "long"})"), 422, "/evaluate/horizon",
+                   "a number > 0 or \"auto\""},
+        BadRequest{"LimitsSwapped", request_with(R"("evaluate": {"actuator": {"min": 0, "max": 0}})"), 422,
+                   "/evaluate/actuator/max", "max must be > min"},
+        BadRequest{"UncertaintyLater", request_with(R"("uncertainty": "identified")"), 422, "/uncertainty",
+                   "not available yet"},
+        BadRequest{"NoTime", request_with(R"("timeout_s": 0)"), 422, "/timeout_s", "> 0"},
+        BadRequest{"IntegralTimeZero", request_with(R"("baseline": {"Kp": 1, "Ti": 0})"), 422, "/baseline/Ti",
+                   "\"Ti\": null"},
+        BadRequest{"KickOfTheSetPoint", request_with(R"("baseline": {"Kp": 1, "Td": 1, "c": 1})"), 422, "/baseline/c",
+                   "infinite kick"},
+        BadRequest{"FilterWithoutTime",
+                   request_with(R"("baseline": {"Kp": 1, "filter": {"type": "measurement_first_order"}})"), 422,
+                   "/baseline/filter/Tf", "Tf is missing"},
+        BadRequest{
+            "FilterNamedTwice",
+            request_with(R"("baseline": {"Kp": 1, "Td": 1, "filter": {"type": "derivative", "Tf": 1, "N": 10}})"), 422,
+            "/baseline/filter/N", "both given"},
+        BadRequest{"TimeWithoutFilter", request_with(R"("baseline": {"Kp": 1, "filter": {"Tf": 1}})"), 422,
+                   "/baseline/filter", "its type is none"},
+        BadRequest{"GainZero", request_with(R"("baseline": {"form": "series", "Kp": 0, "Ti": 1})"), 422, "/baseline/Kp",
+                   "form parallel"},
+        BadRequest{"AllGainsZero", request_with(R"("baseline": {"form": "parallel", "Kp": 0})"), 422, "/baseline/Kp",
+                   "all 0"},
+        BadRequest{"LaterForm", request_with(R"("baseline": {"form": "npid", "Kp": 1})"), 422, "/baseline/form",
+                   "not available yet"},
+        BadRequest{
+            "LoopThatCannotBeFormed",
+            R"({"plant": {"type": "transfer_function", "num": [1, 1], "den": [1, 2]}, "baseline": {"Kp": 1, "Ti": 1, "Td": 1}})",
+            422, "/baseline/filter", "Give the controller a filter"}),
+    case_name);
+
+INSTANTIATE_TEST_SUITE_P(
+    Records, Refuses,
+    testing::Values(
+        BadRequest{"OtherLengths", with_record(R"({"t": [0, 1, 2], "u": [0, 1], "y": [0, 1, 2]})"), 422, "/record/u",
+                   "u has 2 numbers and y 3"},
+        BadRequest{"NoTimes", with_record(R"({"u": [0, 1], "y": [0, 1]})"), 422, "/record/t",
+                   "give the times as an array, or the spacing as dt"},
+        BadRequest{"NoMeasurement", with_record(R"({"dt": 1, "u": [0, 1]})"), 422, "/record/y", "y is missing"},
+        BadRequest{"NullSample", with_record(R"({"dt": 1, "u": [0, 1], "y": [0, null]})"), 422, "/record/y/1",
+                   "y[1] is null"},
+        BadRequest{"TooManySamples",
+                   with_record(R"({"dt": 1, "u": [0, 1], "y": [0)" +
+                               [] {
+                                   std::string zeros;
+                                   for (int i = 0; i < 200'000; ++i) zeros += ",0";
+                                   return zeros;
+                               }() +
+                               "]}"),
+                   422, "/record/y", "200001 numbers; it must have 2 to 200000"},
+        BadRequest{"CsvAndArrays", with_record(R"({"csv": "t,u,y\n0,0,0", "y": [1, 2]})"), 422, "/record/y",
+                   "beside csv"},
+        BadRequest{"CsvWithoutLines", with_record(R"({"csv": "t,u,y\n"})"), 422, "/record/csv", "no line of numbers"},
+        BadRequest{"CsvHeadingUnknown", with_record(R"({"csv": "t,u,y\n0,0,0\n", "columns": {"y": "PV"}})"), 422,
+                   "/record/columns/y", "the headings are \"t\", \"u\" and \"y\""},
+        BadRequest{"CsvCellIsNoNumber", with_record(R"({"csv": "t,u,y\n0,0,0\n1,0,oops\n"})"), 422, "/record/csv",
+                   "Line 3, column \"y\": \"oops\" is not a number."},
+        BadRequest{"UnknownModel", R"({"record": {"dt": 1, "u": [0, 1], "y": [0, 1]}, "identify": {"model": "foptd"}})",
+                   422, "/identify/model", "Did you mean fopdt?"}),
+    case_name);
+
+TEST(BadRequests, EveryFaultIsReportedAtOnce) {
+    const auto answer = prepare_job(
+        R"({"plant": {"type": "fopdt", "K": "2", "T": [], "L": -1}, "timeout": 5, "tune": [{"method": "no"}], "evaluate": {"points": 1}})");
+    const auto& errors = std::get<Problem>(answer).errors;
+    std::vector<std::string> pointers;
+    for (const FieldError& error : errors) pointers.push_back(error.pointer);
+    EXPECT_THAT(pointers, testing::UnorderedElementsAre("/timeout", "/plant/K", "/plant/T", "/plant/L",
+                                                        "/tune/0/method", "/evaluate/points"));
+}
+
+TEST(BadRequests, PointersEscapeTheirNames) {
+    const auto answer = prepare_job(request_with(R"("a/b~c": 1)"));
+    EXPECT_EQ(std::get<Problem>(answer).errors.at(0).pointer, "/a~1b~0c");
+}
+
+TEST(BadRequests, EvaluateNamesTheControllerInTheList) {
+    const Answer answer = evaluate_call(
+        R"({"plant": {"type": "transfer_function", "num": [1, 1], "den": [1, 2]}, "controllers": [{"Kp": 1, "Ti": 1}, {"Kp": 1, "Ti": 1, "Td": 1}]})",
+        {});
+    EXPECT_EQ(answer.status, 422);
+    EXPECT_THAT(answer.body, HasSubstr("\"/controllers/1/filter\""));
+}
+
+TEST(BadRequests, IdentifyAnswersARecordOfThreePointsWithItsReason) {
+    const Answer answer = identify_call(R"({"record": {"dt": 1, "u": [0, 1, 1], "y": [0, 0, 1]}})", {});
+    EXPECT_EQ(answer.status, 422);
+    EXPECT_EQ(schema_faults(Json::parse(answer.body), "Problem"), std::vector<std::string>{});
+    EXPECT_GT(Json::parse(answer.body)["detail"].get<std::string>().size(), 30u);
+}
+
+TEST(BadRequests, AConstantRecordIsNotIdentifiable) {
+    std::string y, u;
+    for (int i = 0; i < 200; ++i) {
+        y += std::string(i ? "," : "") + "20";
+        u += std::string(i ? "," : "") + "50";
+    }
+    const Answer answer = identify_call(R"({"record": {"dt": 1, "u": [)" + u + R"(], "y": [)" + y + "]}}", {});
+    EXPECT_EQ(answer.status, 422);
+    EXPECT_EQ(Json::parse(answer.body)["type"], "not-identifiable");
+}
+
+}  // namespace
+}  // namespace tunewright::api

@@ -63,7 +63,7 @@ Turn turn_between(const Characteristic& g, const Characteristic::Value& left, co
 
 /// Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
 bool dead_time_cannot_encircle(const Characteristic::Value& value) {
-    return std::abs(value.g - value.open) < 0.9 * std::abs(value.open);
+    return std::abs(value.g - value.open) < 0.99 * std::abs(value.open);
 }
 
 Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right) {
@@ -75,6 +75,19 @@ Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, co
     return turn_between(g, left, right, kMaxHalvings);
 }
 
+/// Every turn of the dead time with |L| > 1 encircles -1 once, and the rational part can undo no more turns than it has
+/// states. Far beyond that the loop is unstable; the number of poles is then an estimate, and nothing need be followed
+/// turn by turn. Else 0.
+int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
+    const double L = loop.plant().dead_time();
+    for (std::size_t i = grid.omega.size(); L > 0 && i-- > 0;) {
+        if (!(std::abs(grid.point[i].L) > 1)) continue;
+        const double turns = grid.omega[i] * L / (2 * std::numbers::pi);
+        return turns > loop.denominator_degree() + 6 ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
+    }
+    return 0;
+}
+
 }  // namespace
 
 StabilityCount count_unstable_poles(const Loop& loop) {
@@ -82,6 +95,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
     if (L > 0 && std::abs(q) >= 1) return {.unstable_poles = -1};
 
     const LoopGrid grid = make_loop_grid(loop, 0.5, 8);
+    if (const int many = turns_outside_unit_circle(loop, grid); many > 0) return {.unstable_poles = many};
     const double scale = std::sqrt(grid.omega.front() * grid.omega.back());
     const Characteristic g(loop, scale);
     auto left = g.at(0);

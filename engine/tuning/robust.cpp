@@ -180,6 +180,17 @@ Error why_infeasible(Problem problem) {
                 ". The smallest common limit that works is Ms = Mt = " + shown(workable) + "; use that or more."};
 }
 
+/// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
+std::optional<Error> check_Mks(const Problem& problem) {
+    if (!problem.limits.Mks || problem.plant->integrators() != 0) return std::nullopt;
+    const double least = 1 / std::abs(problem.plant->low_frequency_gain());
+    if (*problem.limits.Mks > least) return std::nullopt;
+    return Error{ErrorKind::no_feasible_controller, "Mks",
+                 "Mks is " + shown(*problem.limits.Mks) +
+                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + shown(least) +
+                     " already at rest. Give a limit well above that."};
+}
+
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
 /// ones.
 Expected<Found> verified_search(const std::string& kind, Problem& problem, CostSurface* surface,
@@ -235,6 +246,7 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     const auto filter = filter_rule(tuning, options, pid);
     if (!filter) return filter.error();
     Problem problem = make_problem(tuning, options, *filter, pid);
+    if (auto error = check_Mks(problem)) return *error;
     if (has_no_finite_optimum(problem))
         return Error{ErrorKind::unbounded_optimum, "filter",
                      "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "

@@ -6,25 +6,23 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
 #include "engine/tuning/robust/scan.h"
-#include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
 namespace {
 
 constexpr double kUnstable = 20;  // ln of the larger peak, where the loop is unstable
 
-struct PeakSearch {
-    const Sweep* sweep;
-    const Problem* problem;
-};
-
+/// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
+/// may be left behind.
 double larger_peak(unsigned n, const double* x, double*, void* data) {
-    const auto& search = *static_cast<PeakSearch*>(data);
-    const Point point = {x[0], x[1], n > 2 ? x[2] : 0};
-    if (!is_stable(*search.problem, point)) return kUnstable;
-    const auto peaks = search.sweep->peaks(point, -1);
-    return peaks.empty() ? 0 : peaks.front().value;
+    const auto& problem = *static_cast<const Problem*>(data);
+    const auto loop = Loop::make(*problem.plant, to_parallel(controller_at(problem, {x[0], x[1], n > 2 ? x[2] : 0})));
+    if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
+    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+    return std::log(std::max(peaks.S.value, peaks.T.value));
 }
 
 /// A feasible point under ever wider limits.
@@ -44,18 +42,13 @@ std::optional<double> smallest_common_peak(const Problem& problem) {
     const double reference = reference_frequency(problem);
     const auto start = stabilising_point(problem, reference);
     if (!start) return std::nullopt;
-    Problem free = problem;
-    free.limits =
-        Limits{.Ms = 1, .Mt = 1, .Mks = std::nullopt, .m_circle = false};  // then a constraint's value is ln(peak)
-    const Sweep sweep(free, reference);
-    PeakSearch search{&sweep, &free};
     const auto n = static_cast<unsigned>(problem.dimension());
     double best = kUnstable;
     Point x = *start;
     for (int restart = 0; restart < 3; ++restart) {
         const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(nlopt_create(NLOPT_LN_SBPLX, n),
                                                                                nlopt_destroy);
-        nlopt_set_min_objective(optimiser.get(), larger_peak, &search);
+        nlopt_set_min_objective(optimiser.get(), larger_peak, const_cast<Problem*>(&problem));
         nlopt_set_ftol_abs(optimiser.get(), 1e-5);
         nlopt_set_maxeval(optimiser.get(), 400);
         nlopt_set_initial_step1(optimiser.get(), restart == 0 ? 0.4 : 0.1);

@@ -17,13 +17,12 @@ constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> frequencies(const Problem& problem, double reference, std::size_t& resolved) {
+std::vector<double> frequencies(const Problem& problem, double reference, double resolved_to) {
     const double L = problem.plant->dead_time();
     double high = reference * std::pow(10, kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
-    const double resolved_to = L > 0 ? kTurnsResolved * 2 * std::numbers::pi / L : kInfinity;
     std::vector<double> omega;
     for (double w = low; w < high;) {
         omega.push_back(w);
@@ -41,7 +40,6 @@ std::vector<double> frequencies(const Problem& problem, double reference, std::s
     for (const auto zero : problem.plant->zeros()) add_resonance(zero);
     std::sort(omega.begin(), omega.end());
     omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
-    resolved = static_cast<std::size_t>(std::lower_bound(omega.begin(), omega.end(), resolved_to) - omega.begin());
     return omega;
 }
 
@@ -59,12 +57,17 @@ double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits&
 }  // namespace
 
 Sweep::Sweep(const Problem& problem, double reference) : problem_(problem), reference_(reference) {
-    omega_ = frequencies(problem, reference, resolved_);
+    if (problem.plant->dead_time() > 0)
+        resolved_to_ = kTurnsResolved * 2 * std::numbers::pi / problem.plant->dead_time();
+    omega_ = frequencies(problem, reference, resolved_to_);
+    // On an undamped pole P is infinite; its neighbours tell the same.
+    std::erase_if(omega_, [&](double w) { return !std::isfinite(std::abs(problem.plant->at({0, w}))); });
     for (const double w : omega_) {
         const Complex P = problem.plant->at({0, w});
         P_re_.push_back(P.real());
         P_im_.push_back(P.imag());
     }
+    resolved_ = static_cast<std::size_t>(std::lower_bound(omega_.begin(), omega_.end(), resolved_to_) - omega_.begin());
     // The smallest circle around both: from -Mt/(Mt - 1) to -1 + 1/Ms on the real axis.
     const double left = -problem.limits.Mt / (problem.limits.Mt - 1), right = -1 + 1 / problem.limits.Ms;
     circle_centre_ = 0.5 * (left + right);
@@ -81,7 +84,14 @@ double Sweep::value(ConstraintKind kind, const Point& x, double omega) const {
     const Shape c = shape(x);
     const Complex s(0, omega);
     const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
-    return constraint_value(kind, problem_.plant->at(s) * C, C, problem_.limits, circle_centre_, circle_radius_);
+    return constraint_value(kind, worst_phase(problem_.plant->at(s) * C, omega), C, problem_.limits, circle_centre_,
+                            circle_radius_);
+}
+
+Complex Sweep::worst_phase(Complex L, double omega) const {
+    if (omega < resolved_to_) return L;
+    // Reached within a turn of the dead time; |L| >= 1 there is far beyond any limit.
+    return -std::min(std::abs(L), 1 - 1e-6);
 }
 
 std::array<double, 3> Sweep::gradient(ConstraintKind kind, const Point& x, double omega) const {
@@ -91,7 +101,7 @@ std::array<double, 3> Sweep::gradient(ConstraintKind kind, const Point& x, doubl
     // d ln C by ln Kp, ln Ti, ln Td.
     std::array<Complex, 3> dC = {1.0, -integral / sum, derivative / sum};
     if (problem_.filter.Tf_over_Td) dC[2] -= c.Tf * s * (1.0 + c.Tf * s) / filter;
-    const Complex L = problem_.plant->at(s) * sum / filter, S = 1.0 / (1.0 + L), T = L * S;
+    const Complex L = worst_phase(problem_.plant->at(s) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
     std::array<double, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
         switch (kind) {
@@ -110,10 +120,11 @@ void Sweep::add_peaks(ConstraintKind kind, const std::vector<double>& level, con
     // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
     const double from = std::exp(2 * (threshold - 0.1));
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-        if (level[i] < from || level[i] < level[i - 1] || level[i] <= level[i + 1]) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool first = i == 0, last = i + 1 == n;
+        if (level[i] < from || (!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
         ActivePeak peak{.kind = kind, .omega = omega_[i], .value = 0.5 * std::log(level[i])};
-        if (i < resolved_) {
+        if (i != resolved_ && !first && !last) {
             // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
             // moves.
             double a = std::log(omega_[i - 1]), b = std::log(omega_[i]), c = std::log(omega_[i + 1]);
@@ -275,17 +286,20 @@ double reference_frequency(const Problem& problem) {
     const double Tf = problem.filter.Tf.value_or(0);
     if (Tf > 0) note(1 / Tf);
     if (fastest == 0) return 1;
-    const auto phase_factor = [&](double w) {
+    // Right-half-plane poles are mirrored: what counts is where the lag of the loop's other parts has used up half a
+    // turn.
+    const auto lagging = [&](double w) {
         const Complex s(0, w);
-        return problem.sign * plant.rational(s) / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
+        Complex value = 1.0 / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
+        for (const auto zero : plant.zeros()) value *= (s - zero) / (-zero);
+        for (const auto pole : plant.poles()) value /= s - Complex(-std::abs(pole.real()), pole.imag());
+        return value;
     };
-    double w = slowest * 1e-2, before = std::arg(phase_factor(w));
-    if (before > 0.5)
-        before -= 2 * std::numbers::pi;  // an unstable or double-integrating plant starts at -180, not at +180
-    double unwrapped = before, total_before = before - w * L;
+    double w = slowest * 1e-2, before = std::arg(lagging(w)), unwrapped = -0.5 * std::numbers::pi * plant.integrators();
+    double total_before = unwrapped - w * L;
     const double ratio = std::pow(10, 1.0 / 60);
     for (; w < fastest * 1e2; w *= ratio) {
-        const double wrapped = std::arg(phase_factor(w));
+        const double wrapped = std::arg(lagging(w));
         unwrapped += std::remainder(wrapped - before, 2 * std::numbers::pi);
         before = wrapped;
         const double total = unwrapped - w * L;

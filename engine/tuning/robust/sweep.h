@@ -7,6 +7,7 @@
 
 #include <array>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "engine/tuning/robust/design.h"
@@ -55,18 +56,21 @@ private:
     void add_peaks(ConstraintKind kind, const std::vector<double>& level, const Point& x, double threshold,
                    std::vector<ActivePeak>& found) const;
     void add_limits(const Point& x, double threshold, std::vector<ActivePeak>& found) const;
+    std::complex<double> worst_phase(std::complex<double> L, double omega) const;
     std::array<double, 3> gradient(ConstraintKind kind, const Point& x, double omega) const;
 
     Problem problem_;
     double reference_;
     double circle_centre_ = 0, circle_radius_ = 0;
-    std::size_t resolved_ = 0;  // from here on the dead time turns faster than the grid: worst phase assumed
+    double resolved_to_ = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
+                                                                    // grid: worst phase assumed
+    std::size_t resolved_ = 0;                                      // index of the first such frequency
     std::vector<double> omega_, P_re_, P_im_;
     mutable std::vector<double> S_, T_, CS_, circle_;  // scratch: one sweep per thread of work
 };
 
-/// The first frequency where the phase of P (with the filter, if its Tf is fixed) falls through -180 degrees; else 1/L;
-/// else the filter's or the slowest lag's corner.
+/// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
+/// falls through -180 degrees; else 1/L; else the filter's or the slowest lag's corner.
 double reference_frequency(const Problem& problem);
 
 }  // namespace tunewright::robust

@@ -25,7 +25,7 @@ export function showVerdict(card: HTMLElement, job: Job, result: Result, names: 
 export function showFailure(card: HTMLElement, job: Job): void {
   const cancelled = job.status === "cancelled";
   const silent = cancelled ? "Nothing is kept of it; the request is." : "The service gave no reason.";
-  const faults = job.error?.errors ?? [];
+  const faults = (job.error?.errors ?? []).filter((fault) => fault.detail !== job.error?.detail);
   card.className = "verdict bad";
   card.replaceChildren(
     h("h2", {}, cancelled ? "Stopped before a controller was found." : "This could not be done."),

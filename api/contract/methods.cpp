@@ -5,6 +5,8 @@
 namespace tunewright::api {
 namespace {
 
+constexpr const char* kAll = "all";
+
 NumberRule rule_of(const OptionDescription& option) {
     return {.minimum = option.minimum, .exclusive_minimum = option.exclusive_minimum, .maximum = option.maximum};
 }
@@ -13,6 +15,14 @@ std::vector<std::string> names_of(const std::vector<OptionDescription>& options)
     std::vector<std::string> names;
     for (const OptionDescription& option : options) names.push_back(option.name);
     return names;
+}
+
+std::string unknown_option(const std::string& name, const std::string& owner, const std::vector<std::string>& names) {
+    const std::string meant = nearest(name, names);
+    return name + " is not an option of " + owner + "; " +
+           (!meant.empty()  ? "did you mean " + meant + "?"
+            : names.empty() ? "it has none."
+                            : "its options are " + listed(names, "and") + ".");
 }
 
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix,
@@ -71,12 +81,7 @@ void read_options(const Json& value, const std::vector<OptionDescription>& descr
             read_option(member, *option, prefix + name, target, reader);
             continue;
         }
-        const auto names = names_of(described);
-        const std::string meant = nearest(name, names);
-        reader.fault_at(name, name + " is not an option of " + owner + "; " +
-                                  (!meant.empty()  ? "did you mean " + meant + "?"
-                                   : names.empty() ? "it has none."
-                                                   : "its options are " + listed(names, "and") + "."));
+        reader.fault_at(name, unknown_option(name, owner, names_of(described)));
     }
 }
 
@@ -86,15 +91,41 @@ std::vector<std::string> method_ids() {
     return ids;
 }
 
+// Of "all", each method takes the options that it knows: one of them must, and the value must suit every one that does.
+void read_options_of_all(const Json& value, MethodOptions& target, Reader& reader) {
+    for (const auto& [name, member] : value.items()) {
+        if (name == "method") continue;
+        const Reader::At at(reader, name);
+        const std::size_t before = reader.count();
+        bool known = false;
+        std::vector<std::string> names;
+        for (const TuningMethod& method : method_registry()) {
+            for (const OptionDescription& option : method.options) {
+                names.push_back(option.name);
+                if (option.name != name || !reader.clean_since(before)) continue;
+                known = true;
+                read_option(member, option, name, target, reader);
+            }
+        }
+        std::sort(names.begin(), names.end());
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        if (!known) reader.fault(unknown_option(name, "any method", names));
+    }
+}
+
 void read_method(const Json& value, MethodRequest& target, Reader& reader) {
     if (!value.is_object())
         return reader.fault(wrong_kind(value, "an object such as {\"method\": \"robust\"}", reader));
+    auto ids = method_ids();
+    ids.push_back(kAll);
     const auto word = value.find("method");
-    if (word == value.end())
-        return reader.fault_at("method", "method is missing; it must be " + listed(method_ids()) + ".");
+    if (word == value.end()) return reader.fault_at("method", "method is missing; it must be " + listed(ids) + ".");
+    if (*word == kAll) {
+        target.method = kAll;
+        return read_options_of_all(value, target.options, reader);
+    }
     const TuningMethod* method = word->is_string() ? find_method(word->get<std::string>()) : nullptr;
     if (!method) {
-        const auto ids = method_ids();
         const std::string meant = word->is_string() ? nearest(word->get<std::string>(), ids) : "";
         return reader.fault_at("method", "method is " + shown(*word) + "; it must be " + listed(ids) + "." +
                                              (meant.empty() ? "" : " Did you mean " + meant + "?"));
@@ -128,6 +159,34 @@ Json option_schema(const OptionDescription& option) {
     return schema;
 }
 
+Json method_schema(const std::string& id, const std::string& title, const std::string& sentence, const Json& options) {
+    Json properties{{"method", {{"type", "string"}, {"const", id}}}};
+    for (const auto& [name, option] : options.items()) properties[name] = option;
+    return {{"type", "object"},         {"title", title},         {"description", sentence},
+            {"properties", properties}, {"required", {"method"}}, {"additionalProperties", false}};
+}
+
+Json methods_schema(SchemaBook& book) {
+    Json choices = Json::array(), of_all = Json::object();
+    const auto add = [&](const std::string& id, Json schema) {
+        book.components["Method_" + id] = std::move(schema);
+        choices.push_back({{"$ref", "#/components/schemas/Method_" + id}});
+    };
+    for (const TuningMethod& method : method_registry()) {
+        const Json options = options_schema(method.options)["properties"];
+        for (const auto& [name, option] : options.items()) {
+            if (!of_all.contains(name)) of_all[name] = option;
+            of_all[name].erase("default");
+        }
+        add(method.id, method_schema(method.id, method.title, method.formula + " Source: " + method.source, options));
+    }
+    add(kAll, method_schema(kAll, "Every method",
+                            "Every method that applies to the plant, with those options that it knows.", of_all));
+    book.components["Method"] = {
+        {"title", "Method"}, {"description", "A tuning method with its options."}, {"oneOf", std::move(choices)}};
+    return {{"$ref", "#/components/schemas/Method"}};
+}
+
 // "reduction/method": "auto" -> {"reduction": {"method": "auto"}}
 void put(Json& object, const std::string& path, const OptionValue& value) {
     const std::size_t slash = path.find('/');
@@ -153,35 +212,15 @@ Codec<MethodRequest> method_request() {
                 for (const auto& [path, value] : request.options.values()) put(object, path, value);
                 out.raw(object.dump());
             },
-            [](SchemaBook& book) {
-                Json choices = Json::array();
-                for (const TuningMethod& method : method_registry()) {
-                    const std::string name = "Method_" + method.id;
-                    Json schema = options_schema(method.options);
-                    Json properties{{"method", {{"type", "string"}, {"const", method.id}}}};
-                    for (const auto& [option, content] : schema["properties"].items()) properties[option] = content;
-                    book.components[name] = {{"type", "object"},
-                                             {"title", method.title},
-                                             {"description", method.formula + " Source: " + method.source},
-                                             {"properties", std::move(properties)},
-                                             {"required", {"method"}},
-                                             {"additionalProperties", false}};
-                    choices.push_back({{"$ref", "#/components/schemas/" + name}});
-                }
-                book.components["Method"] = {{"title", "Method"},
-                                             {"description", "A tuning method with its options."},
-                                             {"oneOf", std::move(choices)}};
-                return Json{{"$ref", "#/components/schemas/Method"}};
-            }};
+            methods_schema};
 }
 
 Codec<std::vector<MethodRequest>> tune_list() {
     constexpr std::size_t kMost = 50;
     auto codec = list_of(method_request(), 1, kMost);
     codec.read = [list = codec.read](const Json& value, std::vector<MethodRequest>& target, Reader& reader) {
-        if (value == "all") {
-            target.clear();
-            for (const std::string& id : method_ids()) target.push_back({id, {}});
+        if (value == kAll) {
+            target = {{kAll, {}}};
         } else if (value.is_array()) {
             list(value, target, reader);
         } else {
@@ -190,7 +229,7 @@ Codec<std::vector<MethodRequest>> tune_list() {
         }
     };
     codec.schema = [list = codec.schema](SchemaBook& book) {
-        return Json{{"oneOf", Json::array({list(book), Json{{"type", "string"}, {"const", "all"}}})}};
+        return Json{{"oneOf", Json::array({list(book), Json{{"type", "string"}, {"const", kAll}}})}};
     };
     return codec;
 }

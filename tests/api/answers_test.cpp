@@ -221,6 +221,12 @@ TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {
     EXPECT_EQ(schema_faults(Json::parse(outcome.error_json), "Problem"), std::vector<std::string>{});
 }
 
+TEST(Answers, AllAnswersWithOneEntryAMethodThatApplies) {
+    const Json result = run(request_with(R"("tune": "all", "evaluate": {"points": 0})"));
+    expect_valid(result, "TuningResult");
+    EXPECT_GE(result["controllers"].size(), 5u);
+}
+
 TEST(Answers, ASurfaceIsWrittenAsAMatrix) {
     const Json result = run(request_with(
         R"("tune": [{"method": "robust", "search": "grid", "surface": true}], "evaluate": {"points": 0})"));

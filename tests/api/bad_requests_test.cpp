@@ -1,6 +1,8 @@
 // Every kind of bad input gets its status, the place and a sentence that helps.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "support.h"
 
 namespace tunewright::api {
@@ -133,6 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "Ms is 0.9; it must be > 1"},
         BadRequest{"UnknownOption", request_with(R"("tune": [{"method": "robust", "MS": 1.4}])"), 422, "/tune/0/MS",
                    "did you mean Ms?"},
+        BadRequest{"OptionOfNoMethod", request_with(R"("tune": [{"method": "all", "tauc": 1, "zzz": 1}])"), 422,
+                   "/tune/0/tauc", "did you mean tau_c?"},
+        BadRequest{"OptionThatSuitsNoMethod", request_with(R"("tune": [{"method": "all", "Ms": 0.5}])"), 422,
+                   "/tune/0/Ms", "it must be > 1"},
         BadRequest{"TwoFilters",
                    request_with(R"("tune": [{"method": "robust", "filter": {"Tf": 1, "Tf_over_Td": 0.1}}])"), 422,
                    "/tune/0/filter", "at most 1"},
@@ -242,6 +248,43 @@ TEST(BadRequests, AConstantRecordIsNotIdentifiable) {
     const Answer answer = identify_call(R"({"record": {"dt": 1, "u": [)" + u + R"(], "y": [)" + y + "]}}", {});
     EXPECT_EQ(answer.status, 422);
     EXPECT_EQ(Json::parse(answer.body)["type"], "not-identifiable");
+}
+
+// Damaged requests of every kind: whatever comes, the answer is a valid problem or a job, never an exception. Seeded.
+TEST(BadRequests, DamagedTextsNeverDoMoreThanBeRefused) {
+    std::mt19937 random(1);
+    const auto pick = [&](std::size_t count) {
+        return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+    };
+    std::vector<std::string> whole;
+    const Json document = Json::parse(examples_json());
+    for (const Json& example : document["examples"]) {
+        if (!example["request"].contains("record")) whole.push_back(example["request"].dump());
+    }
+    whole.push_back(
+        R"({"record": {"csv": "Time [s];OP;\"PV, raw\"\n2024-01-01T00:00:00;1,5;2\n2024-01-01T00:00:01;;2\n", "columns": {"y": 3}}})");
+    const std::vector<std::string> pieces = {
+        "null", "-1", "1e400", "\"\"", "[]",     "{}", "0", ",",    "\"",   "}",
+        "]",    ":",  "\\",    "NaN",  "1e-320", "\n", ";", "true", "\xff", "9999999999999999999"};
+    int refused = 0;
+    for (int i = 0; i < 4000; ++i) {
+        std::string text = whole[pick(whole.size())];
+        for (std::size_t damage = 0; damage <= pick(3); ++damage) {
+            const std::size_t at = pick(text.size()), length = pick(8);
+            text.replace(at, std::min(length, text.size() - at), pick(4) == 0 ? "" : pieces[pick(pieces.size())]);
+            if (text.empty()) text = " ";
+        }
+        const auto answer = prepare_job(text);
+        if (const auto* problem = std::get_if<Problem>(&answer)) {
+            ++refused;
+            const Json written = Json::parse(to_json(*problem));
+            ASSERT_EQ(schema_faults(written, "Problem"), std::vector<std::string>{}) << text;
+            ASSERT_FALSE(problem->detail.empty()) << text;
+        } else {
+            ASSERT_TRUE(Json::accept(std::get<PreparedJob>(answer).request_json)) << text;
+        }
+    }
+    EXPECT_GT(refused, 2000);
 }
 
 }  // namespace

@@ -159,11 +159,17 @@ TEST(Requests, OptionsAreKeptByPath) {
     EXPECT_FALSE(options.has("Mt"));
 }
 
-TEST(Requests, AllStandsForEveryMethodOfTheRegistry) {
-    const auto decoded = decode<JobRequest>(job_contract(), request_with(R"("tune": "all")"));
-    ASSERT_EQ(decoded.value.tune.size(), method_registry().size());
-    for (std::size_t i = 0; i < method_registry().size(); ++i)
-        EXPECT_EQ(decoded.value.tune[i].method, method_registry()[i].id);
+TEST(Requests, AllIsAWordOrAMethodWithAnyMethodsOptions) {
+    const auto word = decode<JobRequest>(job_contract(), request_with(R"("tune": "all")"));
+    ASSERT_EQ(word.value.tune.size(), 1u);
+    EXPECT_EQ(word.value.tune[0].method, "all");
+    const auto object = decode<JobRequest>(
+        job_contract(), request_with(R"("tune": [{"method": "all", "Ms": 1.6, "tau_c": 2, "controller": "PI"}])"));
+    ASSERT_TRUE(object.faults.empty()) << detail_at(object.faults, "none");
+    EXPECT_EQ(object.value.tune.at(0).options.number("Ms"), 1.6);
+    EXPECT_EQ(object.value.tune.at(0).options.number("tau_c"), 2);
+    EXPECT_EQ(schema_faults(Json::parse(R"({"method": "all", "Ms": 1.6, "tau_c": 2})"), "Method"),
+              std::vector<std::string>{});
 }
 
 TEST(Requests, EvaluateOptionsGoToTheirPlaces) {

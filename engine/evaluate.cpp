@@ -5,18 +5,20 @@
 #include <numbers>
 #include <sstream>
 
+#include "engine/frequency_traces.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/performance_figures.h"
 #include "engine/simulation/indices.h"
+#include "engine/simulation/limited_response.h"
 #include "engine/simulation/linear_response.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kFinalTolerance = 1e-5;  // interpolation within a step, relative to the local deviation
-constexpr double kSettledForFigures = 1e-7;
-constexpr double kSettlingBand = 0.02;
+constexpr double kFinalTolerance = 1e-4;  // interpolation within a step, relative to the local deviation
+constexpr double kSettledForFigures = 1e-6;
 
 std::string shown(double value) {
     std::ostringstream out;
@@ -114,136 +116,6 @@ Robustness unstable_robustness(const StabilityCount& count) {
     return r;
 }
 
-template <class Figures>
-void all_null(Figures& figures, std::initializer_list<const char*> names, const std::string& reason) {
-    for (const char* name : names) figures.why_null[name] = reason;
-}
-
-constexpr auto kSetpointNames = {
-    "IAE", "ISE", "ITAE", "overshoot_percent", "rise_time", "rise_time_5_95", "settling_time", "TV", "first_move"};
-constexpr auto kLoadNames = {"IAE", "ISE", "ITAE", "peak", "recovery_time", "TV"};
-
-/// Where the error comes to rest decides whether its integrals exist.
-const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity) {
-    if (!to_infinity) return nullptr;
-    if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
-    const double scale = std::max(std::abs(target), std::abs(response.y_final));
-    if (std::abs(target - response.y_final) > 1e-9 * std::max(scale, 1e-300) &&
-        std::abs(target - response.y_final) > 1e-14)
-        return "The error does not go to 0 (no integral action), so its integral is infinite; give a horizon.";
-    return nullptr;
-}
-
-SetpointPerformance setpoint_figures(const LinearResponse& response, double step, bool to_infinity) {
-    SetpointPerformance p;
-    const auto& nodes = response.nodes;
-    if (const char* reason = why_no_integral(response, step, to_infinity)) {
-        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
-    } else {
-        const auto e = error_integrals(nodes, step, to_infinity ? response.error_integral_final : std::nullopt);
-        p.IAE = e.IAE;
-        p.ISE = e.ISE;
-        p.ITAE = e.ITAE;
-    }
-    const Extremes extremes = extremes_of_y(nodes);
-    p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
-    const auto rise = [&](double from, double to, std::optional<double>& field, const char* name) {
-        const auto a = first_reached(nodes, from * step), b = first_reached(nodes, to * step);
-        if (a && b)
-            field = *b - *a;
-        else
-            p.why_null[name] = "The response does not reach that level.";
-    };
-    rise(0.1, 0.9, p.rise_time, "rise_time");
-    rise(0.05, 0.95, p.rise_time_5_95, "rise_time_5_95");
-    if (const auto settled = last_outside(nodes, step, kSettlingBand * std::abs(step)))
-        p.settling_time = *settled;
-    else
-        p.why_null["settling_time"] = "The response does not stay within 2 % of the set point.";
-    p.TV = total_variation(nodes);
-    p.first_move = nodes.front().u;
-    return p;
-}
-
-LoadPerformance load_figures(const LinearResponse& response, bool to_infinity) {
-    LoadPerformance p;
-    const auto& nodes = response.nodes;
-    if (const char* reason = why_no_integral(response, 0, to_infinity)) {
-        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
-    } else {
-        const auto e = error_integrals(nodes, 0, to_infinity ? response.error_integral_final : std::nullopt);
-        p.IAE = e.IAE;
-        p.ISE = e.ISE;
-        p.ITAE = e.ITAE;
-    }
-    const Extremes extremes = extremes_of_y(nodes);
-    p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
-    if (const auto recovered = last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)))
-        p.recovery_time = *recovered;
-    else
-        p.why_null["recovery_time"] = "The response does not come back within 2 % of its peak.";
-    p.TV = total_variation(nodes);
-    return p;
-}
-
-/// Long enough for both responses to stay within 1 % of their largest deviation, and a little more; two significant
-/// digits.
-double covering_horizon(const LinearResponse& setpoint, const LinearResponse& load) {
-    double t = 0;
-    for (const LinearResponse* response : {&setpoint, &load}) {
-        double largest = 0;
-        for (const auto& node : response->nodes) largest = std::max(largest, std::abs(node.y - response->y_final));
-        t = std::max(
-            t, last_outside(response->nodes, response->y_final, 0.01 * largest).value_or(response->nodes.back().t));
-    }
-    if (t <= 0) t = setpoint.nodes.back().t;
-    const double wanted = 1.25 * t, unit = std::pow(10.0, std::floor(std::log10(wanted)) - 1);
-    return std::ceil(wanted / unit) * unit;
-}
-
-Trace trace_of(const LinearResponse& response, double horizon, int points) {
-    Trace trace;
-    for (int i = 0; i < points; ++i) {
-        const double t = horizon * i / (points - 1);
-        const auto [y, u] = values_at(response.nodes, t);
-        trace.t.push_back(t);
-        trace.y.push_back(y);
-        trace.u.push_back(u);
-    }
-    return trace;
-}
-
-/// Curves over the frequencies that matter, phase unwrapped on the fine grid before it is thinned out.
-FrequencyTraces frequency_traces(const LoopGrid& grid, int points) {
-    const auto n = grid.omega.size();
-    std::vector<double> phase(n);
-    double previous = std::arg(grid.point[0].L);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double wrapped = std::arg(grid.point[i].L);
-        phase[i] = previous + std::remainder(wrapped - previous, 2 * std::numbers::pi);
-        previous = phase[i];
-    }
-    // Decades without anything to see are cut: |S| still 1 % of one below, |T| and |C S| no more changing above.
-    std::size_t first = 0, last = n - 1;
-    while (first + 2 < n && std::abs(grid.point[first + 1].S) < 1e-3) ++first;
-    while (last > first + 2 && std::abs(grid.point[last - 1].T) < 1e-4) --last;
-    FrequencyTraces traces;
-    const std::size_t stride = std::max<std::size_t>(
-        1, (last - first + 1 + static_cast<std::size_t>(points) - 1) / static_cast<std::size_t>(points));
-    for (std::size_t i = first; i <= last; i += stride) {
-        const LoopPoint& p = grid.point[i];
-        if (!std::isfinite(std::abs(p.L))) continue;
-        traces.omega.push_back(grid.omega[i]);
-        traces.L_re.push_back(p.L.real());
-        traces.L_im.push_back(p.L.imag());
-        traces.L_phase_deg.push_back(phase[i] * 180 / std::numbers::pi);
-        traces.S_abs.push_back(std::abs(p.S));
-        traces.T_abs.push_back(std::abs(p.T));
-        traces.CS_abs.push_back(std::abs(p.CS));
-    }
-    return traces;
-}
-
 Equivalents equivalents_of(const Controller& controller) {
     Equivalents equivalents;
     equivalents.parallel = gains(controller);
@@ -263,12 +135,12 @@ Equivalents equivalents_of(const Controller& controller) {
 }
 
 Verification verify(const LinearPlant& plant, const Loop& loop, const Peaks& peaks, const LinearResponse& load,
-                    double load_step, double IAE) {
+                    double load_step, std::optional<double> IAE) {
     Verification v;
-    const LoopGrid other = make_loop_grid(loop, 0.1, 37);
+    const LoopGrid other = make_loop_grid(loop, 0.2, 17);
     v.ms_grid_difference = std::abs(find_peaks(loop, other).S.value / peaks.S.value - 1);
     if (const auto pole = rightmost_pole(loop)) v.stability_methods_agree = pole->real() < 0;
-    if (!load.error_integral_final || !load.settles) return v;
+    if (!IAE || !load.error_integral_final) return v;
     StepSchedule finer = load.schedule;
     finer.h0 /= 2;
     finer.level.clear();
@@ -276,28 +148,51 @@ Verification verify(const LinearPlant& plant, const Loop& loop, const Peaks& pea
     ResponseOptions repeat;
     repeat.repeat = &finer;
     const LinearResponse halved = simulate_linear(plant, loop.gains(), {0, load_step}, repeat);
-    if (IAE > 0)
+    if (*IAE > 0)
         v.iae_step_halving =
-            std::abs(integral_of_absolute_error(halved.nodes, 0, halved.error_integral_final) / IAE - 1);
+            std::abs(integral_of_absolute_error(halved.nodes, 0, halved.error_integral_final) / *IAE - 1);
     const double exact = *load.error_integral_final;
     if (exact != 0) v.ie_identity = std::abs(load.nodes.back().error_integral / exact - 1);
     return v;
 }
 
-/// Adds the time domain to a stable loop's evaluation.
-void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o,
-                     const Peaks& peaks) {
+LinearResponse respond(const LinearPlant& plant, const Loop& loop, const StepInputs& inputs, const EvaluateOptions& o) {
     ResponseOptions options;
     options.tolerance = kFinalTolerance;
     options.settled = kSettledForFigures;
     options.horizon = o.horizon;
-    const LinearResponse setpoint = simulate_linear(plant, loop.gains(), {o.setpoint_step, 0}, options);
-    const LinearResponse load = simulate_linear(plant, loop.gains(), {0, o.load_step}, options);
+    if (!o.actuator) return simulate_linear(plant, loop.gains(), inputs, options);
+    return simulate_limited(plant, loop.gains(), inputs, {o.actuator->min, o.actuator->max}, options);
+}
+
+/// What the limits did, where they did something.
+void warn_of_limits(Evaluation& evaluation, const LinearResponse& response, const ActuatorLimits& limits,
+                    const char* step) {
+    for (const auto& node : response.nodes) {
+        if (node.u < limits.max && node.u > limits.min) continue;
+        evaluation.warnings.push_back(
+            {"actuator-limited", std::string("The actuator reaches its limit after the ") + step +
+                                     " step; Ms, Mt and the margins hold for the unlimited loop."});
+        return;
+    }
+}
+
+/// Adds the time domain to a stable loop's evaluation.
+void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o,
+                     const Peaks& peaks) {
+    const LinearResponse setpoint = respond(plant, loop, {o.setpoint_step, 0}, o);
+    const LinearResponse load = respond(plant, loop, {0, o.load_step}, o);
     const bool to_infinity = !o.horizon.has_value();
     evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
     evaluation.performance.load = load_figures(load, to_infinity);
+    if (o.noise) evaluation.performance.noise = noise_figures(loop, *o.noise);
+    const bool checkable = to_infinity && !o.actuator;
     evaluation.verification =
-        verify(plant, loop, peaks, load, o.load_step, to_infinity ? evaluation.performance.load.IAE.value_or(0) : 0);
+        verify(plant, loop, peaks, load, o.load_step, checkable ? evaluation.performance.load.IAE : std::nullopt);
+    if (o.actuator) {
+        warn_of_limits(evaluation, setpoint, *o.actuator, "set-point");
+        warn_of_limits(evaluation, load, *o.actuator, "load");
+    }
     if (!setpoint.settles || !load.settles)
         evaluation.warnings.push_back(
             {"does-not-settle",
@@ -310,8 +205,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
 
 void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
     evaluation.robustness = unstable_robustness(count);
-    all_null(evaluation.performance.setpoint, kSetpointNames, "The closed loop is not stable.");
-    all_null(evaluation.performance.load, kLoadNames, "The closed loop is not stable.");
+    evaluation.performance = no_performance("The closed loop is not stable.");
     evaluation.warnings.push_back(
         {"unstable-loop", "This controller does not stabilise the plant" +
                               (count.unstable_poles > 0 ? " (" + std::to_string(count.unstable_poles) +
@@ -342,7 +236,7 @@ Expected<Evaluation> evaluate(const Plant& plant_description, const Controller& 
     } else {
         mark_unstable(evaluation, count);
     }
-    if (options.points >= 2) evaluation.frequency = frequency_traces(grid, options.points);
+    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
     return evaluation;
 }
 

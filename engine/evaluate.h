@@ -20,7 +20,7 @@ struct ActuatorLimits {
 
 struct NoiseOptions {
     double std = 0;          ///< standard deviation of the white measurement noise, >= 0
-    double sample_time = 0;  ///< > 0; 0: 1/100 of the shorter of the loop's own times
+    double sample_time = 0;  ///< > 0; 0: the loop's own (loop/noise.h)
 };
 
 struct EvaluateOptions {

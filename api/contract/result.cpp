@@ -137,6 +137,7 @@ const Description<FitTrace>& fit_contract() {
     static const auto description = [] {
         Description<FitTrace> d("Fit", "The model beside the record, six significant digits.");
         d.field("t", &FitTrace::t, trace(), "Time.", {.unit = "time"})
+            .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
             .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
             .field("y_model", &FitTrace::y_model, trace(), "Simulated.", {.unit = "y"});
         return d;

@@ -92,9 +92,13 @@ void report(const RunControl& control, double fraction, std::string message) {
 FitTrace trace_of(const CleanRecord& r, const Fit& fit) {
     FitTrace trace;
     const int n = r.samples(), points = std::min(n, kTracePoints);
+    int change = 0;
+    double v = 0;
     for (int k = 0; k < points; ++k) {
         const int i = points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1));
         trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
+        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = r.v_level[change];
+        trace.u.push_back(r.scale.u_rest + r.scale.u_scale * v);
         trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
         trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * fit.model[i]);
     }

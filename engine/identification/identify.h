@@ -32,7 +32,7 @@ struct Candidate {
 
 /// The chosen model beside the record: for the plot.
 struct FitTrace {
-    std::vector<double> t, y, y_model;
+    std::vector<double> t, u, y, y_model;
 };
 
 /// What was found in the record and what was done about it. Named figures, sentences beside them.
@@ -59,7 +59,7 @@ struct IdentifiedModel {
     std::vector<Warning> warnings;
 };
 
-/// /// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), comes nearest to y: least squares over gain,
+/// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), comes nearest to y: least squares over gain,
 /// time constants, continuous dead time and offset (output error: Ljung 1999, section 4.2). No resampling: the response to the piecewise
 /// constant u is exact at every time stamp.
 ///

@@ -83,7 +83,7 @@ Margins find_margins(const Loop& loop, const LoopGrid& grid) {
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        const bool resolved = right <= grid.resolved_to;
+        const bool resolved = loop.plant().dead_time() == 0 || right <= grid.resolved_to;
         if (!std::isfinite(std::abs(a)) || !std::isfinite(std::abs(b))) continue;
         if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
             const double omega = crossing(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b));

@@ -18,6 +18,6 @@ StabilityCount count_unstable_poles(const Loop& loop);
 /// The second, independent method: the rightmost closed-loop pole from a Chebyshev discretisation of the delay operator
 /// (Breda, Maset, Vermiglio 2005) with `nodes` points over the dead time. Poles with |s| L up to about nodes/2 are
 /// accurate. Error: numerical_failure for a loop without states or without finite realisation.
-Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes = 24);
+Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes = 16);
 
 }  // namespace tunewright

@@ -90,6 +90,12 @@ bool may_change_sign(const ResponseNode& a, const ResponseNode& b, double target
     return (first < 0) != (ea < 0) || (second < 0) != (ea < 0);
 }
 
+/// The same bound for a band around the target.
+bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, double band, double h) {
+    return std::abs(a.y - target) <= band && std::abs(b.y - target) <= band &&
+           std::abs(a.y + a.y_slope * h / 3 - target) <= band && std::abs(b.y - b.y_slope * h / 3 - target) <= band;
+}
+
 }  // namespace
 
 double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
@@ -218,6 +224,7 @@ std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, doubl
             if (std::abs(a.y - target) > band) return b.t;
             continue;
         }
+        if (stays_within(a, b, target, band, h)) continue;
         double last = -1;
         for (const double edge : {target + band, target - band}) {
             Cubic y = cubic_of_y(a, b);
@@ -232,14 +239,23 @@ std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, doubl
     return 0.0;
 }
 
-std::pair<double, double> values_at(const std::vector<ResponseNode>& nodes, double t) {
-    const auto after = std::upper_bound(nodes.begin(), nodes.end(), t,
-                                        [](double time, const ResponseNode& node) { return time < node.t; });
-    if (after == nodes.begin()) return {0, 0};
-    if (after == nodes.end()) return {nodes.back().y, nodes.back().u};
-    const ResponseNode &a = *(after - 1), &b = *after;
-    const double h = b.t - a.t, s = (t - a.t) / h;
-    return {cubic_of_y(a, b).at(s), Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s)};
+std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points) {
+    std::vector<std::pair<double, double>> values;
+    values.reserve(Index(points));
+    Index at = 0;
+    for (int i = 0; i < points; ++i) {
+        const double t = horizon * i / (points - 1);
+        while (at + 1 < nodes.size() && nodes[at + 1].t <= t) ++at;
+        const ResponseNode& a = nodes[at];
+        if (at + 1 == nodes.size()) {
+            values.emplace_back(a.y, a.u);
+            continue;
+        }
+        const ResponseNode& b = nodes[at + 1];
+        const double h = b.t - a.t, s = (t - a.t) / h;
+        values.emplace_back(cubic_of_y(a, b).at(s), Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s));
+    }
+    return values;
 }
 
 }  // namespace tunewright

@@ -37,7 +37,7 @@ std::optional<double> first_reached(const std::vector<ResponseNode>& nodes, doub
 /// Last time at which |y - target| > band; 0 if it never leaves the band, empty if it is outside at the end.
 std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, double target, double band);
 
-/// y and u at time t (after a jump at t); held after the last node.
-std::pair<double, double> values_at(const std::vector<ResponseNode>& nodes, double t);
+/// y and u at `points` equidistant times from 0 to `horizon` (after a jump at that time); held after the last node.
+std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points);
 
 }  // namespace tunewright

@@ -11,11 +11,7 @@ namespace tunewright {
 
 const std::vector<TuningMethod>& method_registry() {
     static const std::vector<TuningMethod> methods = {
-        robust_method(),
-        amigo_method(),
-        simc_method(),
-        lambda_method(),
-        ziegler_nichols_step_method(),
+        robust_method(), amigo_method(), simc_method(), lambda_method(), ziegler_nichols_step_method(),
     };
     return methods;
 }

@@ -1,13 +1,11 @@
 #include "engine/tuning/robust/feasibility.h"
 
-#include <nlopt.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/tuning/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
 
 namespace tunewright::robust {
@@ -17,9 +15,9 @@ constexpr double kUnstable = 20;  // ln of the larger peak, where the loop is un
 
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
-double larger_peak(unsigned n, const double* x, double*, void* data) {
-    const auto& problem = *static_cast<const Problem*>(data);
-    const auto loop = Loop::make(*problem.plant, to_parallel(controller_at(problem, {x[0], x[1], n > 2 ? x[2] : 0})));
+double larger_peak(const Problem& problem, const std::vector<double>& x) {
+    const auto loop =
+        Loop::make(*problem.plant, to_parallel(controller_at(problem, {x[0], x[1], x.size() > 2 ? x[2] : 0})));
     if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
     const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
     return std::log(std::max(peaks.S.value, peaks.T.value));
@@ -42,21 +40,15 @@ std::optional<double> smallest_common_peak(const Problem& problem) {
     const double reference = reference_frequency(problem);
     const auto start = stabilising_point(problem, reference);
     if (!start) return std::nullopt;
-    const auto n = static_cast<unsigned>(problem.dimension());
-    double best = kUnstable;
-    Point x = *start;
-    for (int restart = 0; restart < 3; ++restart) {
-        const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(nlopt_create(NLOPT_LN_SBPLX, n),
-                                                                               nlopt_destroy);
-        nlopt_set_min_objective(optimiser.get(), larger_peak, const_cast<Problem*>(&problem));
-        nlopt_set_ftol_abs(optimiser.get(), 1e-5);
-        nlopt_set_maxeval(optimiser.get(), 400);
-        nlopt_set_initial_step1(optimiser.get(), restart == 0 ? 0.4 : 0.1);
-        double value = 0;
-        if (nlopt_optimize(optimiser.get(), x.data(), &value) > 0) best = std::min(best, value);
-    }
-    if (best >= kUnstable) return std::nullopt;
-    return std::exp(best);
+    const auto n = static_cast<std::size_t>(problem.dimension());
+    const auto cost = [&](const std::vector<double>& x, bool&) { return larger_peak(problem, x); };
+    LocalMinimum best{{start->begin(), start->begin() + problem.dimension()}, kUnstable};
+    // Started anew with shorter steps: the larger of two peaks has kinks on which a search stalls.
+    for (const double step : {0.4, 0.1, 0.1})
+        best = find_local_minimum(LocalSearch::subplex, cost, best.x,
+                                  {.step = std::vector<double>(n, step), .tolerance = 1e-5});
+    if (best.value >= kUnstable) return std::nullopt;
+    return std::exp(best.value);
 }
 
 bool has_no_finite_optimum(const Problem& problem) {

@@ -1,11 +1,8 @@
 #include "engine/tuning/robust/plane_search.h"
 
-#include <nlopt.h>
-
 #include <cmath>
-#include <limits>
-#include <memory>
 
+#include "engine/tuning/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
 
 namespace tunewright::robust {
@@ -39,26 +36,18 @@ struct Search {
     const Problem* problem;
     const Report* report;
     std::optional<Found> best;
-    nlopt_opt handle = nullptr;
 
     double cost(double log_Ti, double log_Td) {
         const auto found = best_gain(*sweep, *problem, std::exp(log_Ti), std::exp(log_Td), kPlaneTolerance);
         if (!found) return kNoController;
         if (!best || found->log_cost < best->log_cost) {
             best = found;
-            if (*report && !(*report)(found->x, found->log_cost)) {
-                best->stopped = true;
-                if (handle != nullptr) nlopt_force_stop(handle);
-            }
+            best->stopped = *report && !(*report)(found->x, found->log_cost);
         }
         return found->log_cost;
     }
     bool stopped() const { return best && best->stopped; }
 };
-
-double objective(unsigned n, const double* x, double*, void* data) {
-    return static_cast<Search*>(data)->cost(x[0], n > 1 ? x[1] : 0);
-}
 
 }  // namespace
 
@@ -79,19 +68,16 @@ std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, doubl
 
 std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& problem, double Ti, double Td,
                                         const Report& report) {
-    const unsigned n = problem.pid ? 2 : 1;
     Search search{&sweep, &problem, &report, std::nullopt};
-    const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(nlopt_create(NLOPT_LN_NELDERMEAD, n),
-                                                                           nlopt_destroy);
-    search.handle = optimiser.get();
-    nlopt_set_min_objective(optimiser.get(), objective, &search);
-    nlopt_set_xtol_rel(optimiser.get(), 1e-7);
-    nlopt_set_ftol_abs(optimiser.get(), 1e-7);
-    nlopt_set_maxeval(optimiser.get(), 400);
-    const double step[2] = {std::log(0.4), std::log(0.4)};
-    nlopt_set_initial_step(optimiser.get(), step);
-    double x[2] = {std::log(Ti), std::log(std::max(Td, 1e-300))}, value = 0;
-    nlopt_optimize(optimiser.get(), x, &value);  // whatever its code says: `best` was feasible when it was seen
+    const auto cost = [&](const std::vector<double>& x, bool& stop) {
+        const double value = search.cost(x[0], x.size() > 1 ? x[1] : 0);
+        stop = search.stopped();
+        return value;
+    };
+    std::vector<double> start = {std::log(Ti)};
+    if (problem.pid) start.push_back(std::log(Td));
+    find_local_minimum(LocalSearch::nelder_mead, cost, start,
+                       {.step = std::vector<double>(start.size(), std::log(0.4))});
     return search.best;
 }
 

@@ -14,8 +14,8 @@ std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, doubl
 std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& problem, double Ti, double Td,
                                         const Report& report);
 
-/// Gridding around (Ti, Td), refined twice around the best cell. `surface`, if given, receives the cost over the first
-/// grid.
+/// Gridding around (Ti, Td), refined three times around the best cell. `surface`, if given, receives the cost over the
+/// first grid.
 std::optional<Found> grid_search(const Sweep& sweep, const Problem& problem, double Ti, double Td, CostSurface* surface,
                                  const Report& report);
 

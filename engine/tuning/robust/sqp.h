@@ -12,8 +12,8 @@ namespace tunewright::robust {
 
 struct SqpOptions {
     int max_iterations = 40;
-    double cost_tolerance = 2e-6;  ///< stops when the model promises less than this of ln(cost)
-    double simulation_tolerance = 1e-4;
+    double cost_tolerance = 1e-5;  ///< stops when the model promises less than this of ln(cost)
+    double simulation_tolerance = 3e-4;
     double trust_radius = 0.5;  ///< of a logarithm
 };
 

@@ -207,7 +207,7 @@ TEST(LimitedResponse, AgreesWithAPlainSimulationInTinySteps) {
         EXPECT_DOUBLE_EQ(response.nodes.back().t, c.horizon);
         EXPECT_NEAR(error_integrals(response.nodes, c.in.r, std::nullopt).IAE / plain.IAE, 1, 5e-4);
         for (int i = 0; i < 10; ++i)
-            EXPECT_NEAR(values_at(response.nodes, c.horizon * (i + 1) / 10).first, plain.y[static_cast<std::size_t>(i)],
+            EXPECT_NEAR(sampled(response.nodes, c.horizon * (i + 1) / 10, 2)[1].first, plain.y[static_cast<std::size_t>(i)],
                         1e-3)
                 << i;
         EXPECT_NEAR(extremes_of_y(response.nodes).max - c.in.r, plain.overshoot, 1e-3);
@@ -247,7 +247,7 @@ TEST(LimitedResponse, EqualsTheLinearResponseWhereTheLimitsAreNotReached) {
                     EXPECT_NEAR(limited.u_final, linear.u_final, 1e-12);
                     for (const auto& node : linear.nodes) {
                         if (node.t > limited.nodes.back().t) break;
-                        EXPECT_NEAR(values_at(limited.nodes, node.t).first, node.y, 1e-6) << node.t;
+                        EXPECT_NEAR(sampled(limited.nodes, node.t, 2)[1].first, node.y, 1e-6) << node.t;
                     }
                 }
             }
@@ -296,8 +296,8 @@ TEST(LimitedResponse, SaturatedIntegratorRampsExactly) {
     const auto plant = made(Ipdt{.K = 1, .L = 0});
     const auto response = simulate_limited(plant, {.Kp = 2}, {1, 0}, {-0.5, 0.5}, {});
     EXPECT_TRUE(response.settles);
-    EXPECT_NEAR(values_at(response.nodes, 1.5).first, 0.75, 1e-9);
-    EXPECT_NEAR(1 - values_at(response.nodes, 2).first, 0.25 * std::exp(-1), 1e-7);
+    EXPECT_NEAR(sampled(response.nodes, 1.5, 2)[1].first, 0.75, 1e-9);
+    EXPECT_NEAR(1 - sampled(response.nodes, 2, 2)[1].first, 0.25 * std::exp(-1), 1e-7);
     EXPECT_NEAR(error_integrals(response.nodes, 1, std::nullopt).IAE, 1.5 * (1 + 0.25) / 2 + 0.125, 2e-6);
 }
 

@@ -1,0 +1,56 @@
+// One evaluation as a slider asks for it: margins, both responses, traces of 400 points; and the steps it is made of.
+#include <benchmark/benchmark.h>
+
+#include "engine/evaluate.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/simulation/linear_response.h"
+
+namespace tunewright {
+namespace {
+
+const Plant kPlant = Fopdt{.K = 1.25, .T = 40, .L = 8};
+const Pid kPid{.Kp = 2.6, .Ti = 16, .Td = 3.4, .filter = {FilterType::measurement_second_order, 0.34}};
+
+void evaluate_fopdt(benchmark::State& state) {
+    EvaluateOptions options;
+    options.points = static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        const auto evaluation = evaluate(kPlant, kPid, options);
+        if (!evaluation || !evaluation->robustness.stable) state.SkipWithError("no evaluation");
+        benchmark::DoNotOptimize(evaluation);
+    }
+}
+BENCHMARK(evaluate_fopdt)->Arg(0)->Arg(400)->Unit(benchmark::kMicrosecond);
+
+void load_response(benchmark::State& state) {
+    const auto plant = LinearPlant::make(kPlant);
+    for (auto _ : state) benchmark::DoNotOptimize(simulate_linear(*plant, to_parallel(kPid), {0, 1}, {}));
+}
+BENCHMARK(load_response)->Unit(benchmark::kMicrosecond);
+
+void peaks(benchmark::State& state) {
+    const auto plant = LinearPlant::make(kPlant);
+    const auto loop = Loop::make(*plant, to_parallel(kPid));
+    for (auto _ : state) benchmark::DoNotOptimize(find_peaks(*loop, make_peak_grid(*loop)));
+}
+BENCHMARK(peaks)->Unit(benchmark::kMicrosecond);
+
+void stability_by_argument(benchmark::State& state) {
+    const auto plant = LinearPlant::make(kPlant);
+    const auto loop = Loop::make(*plant, to_parallel(kPid));
+    for (auto _ : state) benchmark::DoNotOptimize(count_unstable_poles(*loop));
+}
+BENCHMARK(stability_by_argument)->Unit(benchmark::kMicrosecond);
+
+void rightmost_pole_by_discretisation(benchmark::State& state) {
+    const auto plant = LinearPlant::make(kPlant);
+    const auto loop = Loop::make(*plant, to_parallel(kPid));
+    for (auto _ : state) benchmark::DoNotOptimize(rightmost_pole(*loop));
+}
+BENCHMARK(rightmost_pole_by_discretisation)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace tunewright
+
+BENCHMARK_MAIN();

@@ -1,0 +1,13 @@
+// The loop's curves over frequency, thinned out for drawing.
+#pragma once
+
+#include "engine/evaluate.h"
+#include "engine/loop/frequency_grid.h"
+
+namespace tunewright {
+
+/// At most about `points` frequencies of the decades that matter: the grid's own, with more where the Nyquist curve
+/// bends near the critical point, phase unwrapped on the fine grid.
+FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points);
+
+}  // namespace tunewright

@@ -141,35 +141,54 @@ std::optional<Found> search(const std::string& kind, const Sweep& sweep, const P
     return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
 }
 
-/// The weighted objective measures each part against its own optimum.
-std::optional<Error> set_reference_optima(Problem& problem, const Sweep& sweep, const Report& report) {
-    if (problem.objective != Objective::weighted) return std::nullopt;
+/// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
+bool has_reference_optima(Problem& problem, const Sweep& sweep) {
+    if (problem.objective != Objective::weighted) return true;
     for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
         Problem alone = problem;
         alone.objective = part;
-        const auto found = fast_search(sweep, alone, [&](const Point&, double) { return !report || report({}, 0); });
-        if (!found) return Error{ErrorKind::no_feasible_controller, "", ""};
+        const auto found = fast_search(sweep, alone, {});
+        if (!found) return false;
         (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
+    }
+    return true;
+}
+
+/// Where the scan saw nothing: the feasible set may be a small one around the least peak, or belong to the other sign
+/// of Kp.
+std::optional<Found> search_from_least_peak(Problem& problem, const Report& report) {
+    for (int attempt = 0; attempt < 2; ++attempt, problem.sign = -problem.sign) {
+        const auto least = least_common_peak(problem);
+        if (!least) continue;
+        const Sweep sweep(problem, reference_frequency(problem));
+        const auto start = feasible_near(sweep, least->x);
+        if (!start) return std::nullopt;
+        const SqpResult result = minimise(sweep, problem, *start, {}, report);
+        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false};
+        return std::nullopt;
     }
     return std::nullopt;
 }
 
-Error why_infeasible(Problem problem) {
-    std::optional<double> M = smallest_common_peak(problem);
-    if (!M) {
-        problem.sign = -problem.sign;
-        M = smallest_common_peak(problem);
+/// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
+/// is.
+std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
+    for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
+        problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
+        if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
     }
+    return std::nullopt;
+}
+
+Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& least) {
     const std::string name = problem.pid ? "PID" : "PI";
-    if (!M)
+    if (!least)
         return {ErrorKind::unstable_plant, "",
                 "No " + name + " controller was found that stabilises this plant" +
-                    (problem.pid ? std::string(". ") : std::string("; a PID might. ")) +
+                    (problem.pid ? ". " : "; a PID might. ") +
                     "Check the signs and the unit of the dead time, or shorten the dead time."};
-    // Rounded up by 1 %, so that asking for it works.
-    const double workable = std::ceil(*M * 1.01 * 1000) / 1000;
-    const bool only_Mks = problem.limits.Mks && workable <= std::min(problem.limits.Ms, problem.limits.Mt);
-    if (only_Mks)
+    const auto workable = workable_limit(problem, *least);
+    if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
         return {ErrorKind::no_feasible_controller, "Mks",
                 "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
                     " together with the other limits. Raise Mks or leave it out."};
@@ -177,7 +196,8 @@ Error why_infeasible(Problem problem) {
             "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
                 " and Mt <= " + shown(problem.limits.Mt) + " on this plant" +
                 (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
-                ". The smallest common limit that works is Ms = Mt = " + shown(workable) + "; use that or more."};
+                ". The smallest common limit that works is Ms = Mt = " + shown(workable.value_or(least->M * 1.01)) +
+                "; use that or more."};
 }
 
 /// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
@@ -199,18 +219,11 @@ Expected<Found> verified_search(const std::string& kind, Problem& problem, CostS
     ProgressReport progress(problem, control);
     const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
     const Sweep sweep(problem, reference);
-    if (set_reference_optima(problem, sweep, {})) return why_infeasible(problem);
-    auto found = search(kind, sweep, problem, surface, report);
-    if (!found && !problem.limits.Mks) {
-        problem.sign = -problem.sign;
-        const Sweep other(problem, reference_frequency(problem));
-        found = search(kind, other, problem, surface, report);
-        if (!found) problem.sign = -problem.sign;
-    }
-    if (!found)
-        return control.stop.stop_requested()
-                   ? Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."}
-                   : why_infeasible(problem);
+    auto found = has_reference_optima(problem, sweep) ? search(kind, sweep, problem, surface, report) : std::nullopt;
+    if (control.stop.stop_requested() && !found)
+        return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
+    if (!found) found = search_from_least_peak(problem, report);
+    if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
     double tighter = 0;
     for (int round = 0; round < 4; ++round) {
         const Excess excess = measured_excess(problem, found->x);

@@ -7,11 +7,13 @@
 #include "engine/loop/stability.h"
 #include "engine/tuning/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
+#include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
 namespace {
 
-constexpr double kUnstable = 20;  // ln of the larger peak, where the loop is unstable
+constexpr double kLongestTi = 200, kShortestTd = 1e-3;  // times the period over 2 pi at the reference frequency
+constexpr double kUnstable = 20;                        // ln of the larger peak, where the loop is unstable
 
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
@@ -36,19 +38,30 @@ std::optional<Point> stabilising_point(Problem problem, double reference) {
 
 }  // namespace
 
-std::optional<double> smallest_common_peak(const Problem& problem) {
+std::optional<LeastPeak> least_common_peak(const Problem& problem) {
     const double reference = reference_frequency(problem);
     const auto start = stabilising_point(problem, reference);
     if (!start) return std::nullopt;
     const auto n = static_cast<std::size_t>(problem.dimension());
-    const auto cost = [&](const std::vector<double>& x, bool&) { return larger_peak(problem, x); };
+    // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
+    // design would use.
+    const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestTd / reference);
+    const auto cost = [&](const std::vector<double>& x, bool&) {
+        const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
+        return larger_peak(problem, x) + 0.1 * beyond;
+    };
     LocalMinimum best{{start->begin(), start->begin() + problem.dimension()}, kUnstable};
     // Started anew with shorter steps: the larger of two peaks has kinks on which a search stalls.
     for (const double step : {0.4, 0.1, 0.1})
         best = find_local_minimum(LocalSearch::subplex, cost, best.x,
                                   {.step = std::vector<double>(n, step), .tolerance = 1e-5});
     if (best.value >= kUnstable) return std::nullopt;
-    return std::exp(best.value);
+    return LeastPeak{std::exp(best.value), {best.x[0], best.x[1], n > 2 ? best.x[2] : 0}};
+}
+
+std::optional<Point> feasible_near(const Sweep& sweep, const Point& x) {
+    auto moved = restore(sweep, x);
+    return moved && is_stable(sweep.problem(), *moved) ? moved : std::nullopt;
 }
 
 bool has_no_finite_optimum(const Problem& problem) {

@@ -3,13 +3,21 @@
 
 #include <optional>
 
-#include "engine/tuning/robust/design.h"
+#include "engine/tuning/robust/sweep.h"
 
 namespace tunewright::robust {
 
-/// The smallest M for which some controller keeps Ms and Mt <= M (both at once), to about 0.1 %; empty if none
-/// stabilises the plant.
-std::optional<double> smallest_common_peak(const Problem& problem);
+/// The controller whose larger peak of |S| and |T| is smallest.
+struct LeastPeak {
+    double M = 0;  ///< that peak, to about 0.1 %
+    Point x{};
+};
+
+/// Empty if no controller was found that stabilises the plant. Limits play no part, the filter rule does.
+std::optional<LeastPeak> least_common_peak(const Problem& problem);
+
+/// `x` moved within the problem's limits, if that succeeds with a stable loop.
+std::optional<Point> feasible_near(const Sweep& sweep, const Point& x);
 
 /// True where the gain can grow for ever within the limits: no dead time, no right-half-plane zero, and a design of the
 /// plant's high-frequency asymptote that scales with frequency exists (Tf tied to Td, or no filter).

@@ -1,0 +1,248 @@
+// Robust design: properties that hold for any plant, the honest ways of having no answer, and the small solvers it is
+// made of.
+#include "engine/tuning/robust.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/evaluate.h"
+#include "engine/tuning/local_minimum.h"
+#include "engine/tuning/robust/quadratic_program.h"
+#include "engine/tuning/robust/sweep.h"
+
+namespace tunewright {
+namespace {
+
+MethodOptions with(std::initializer_list<std::pair<const char*, OptionValue>> values) {
+    MethodOptions options;
+    for (const auto& [path, value] : values) options.set(path, value);
+    return options;
+}
+
+Expected<TunedController> design(const Plant& plant, const MethodOptions& options, const RunControl& control = {}) {
+    const auto linear = LinearPlant::make(plant);
+    EXPECT_TRUE(linear.has_value());
+    return robust_method().tune(TuningProblem{plant, *linear, std::nullopt}, options, control);
+}
+
+Evaluation evaluated(const Plant& plant, const Pid& pid) {
+    EvaluateOptions options;
+    options.points = 0;
+    auto evaluation = evaluate(plant, pid, options);
+    EXPECT_TRUE(evaluation.has_value());
+    return *evaluation;
+}
+
+TEST(Robust, TimeScalesTiAndTdAndLeavesKp) {
+    const auto base = design(Fopdt{.K = 2, .T = 3, .L = 1}, {});
+    ASSERT_TRUE(base.has_value());
+    for (const double a : {1e-5, 1e6}) {
+        const auto scaled = design(Fopdt{.K = 2, .T = 3 * a, .L = a}, {});
+        ASSERT_TRUE(scaled.has_value());
+        EXPECT_NEAR(scaled->controller.Kp / base->controller.Kp, 1, 1e-4);
+        EXPECT_NEAR(scaled->controller.Ti / base->controller.Ti / a, 1, 1e-4);
+        EXPECT_NEAR(scaled->controller.Td / base->controller.Td / a, 1, 1e-3);
+    }
+}
+
+TEST(Robust, GainDividesKpWithItsSign) {
+    const auto base = design(Sopdt{.K = 1, .T1 = 4, .T2 = 1, .L = 1}, {});
+    const auto scaled = design(Sopdt{.K = -50, .T1 = 4, .T2 = 1, .L = 1}, {});
+    ASSERT_TRUE(base.has_value() && scaled.has_value());
+    EXPECT_NEAR(scaled->controller.Kp * -50 / base->controller.Kp, 1, 1e-5);
+    EXPECT_NEAR(scaled->controller.Ti / base->controller.Ti, 1, 1e-4);
+}
+
+TEST(Robust, ARelaxedLimitNeverCostsMore) {
+    const Plant plant = Sopdt{.K = 1, .T1 = 10, .T2 = 3, .L = 2};
+    double last = INFINITY;
+    for (const double M : {1.1, 1.2, 1.4, 1.7, 2.0, 3.0}) {
+        const auto tuned = design(plant, with({{"Ms", M}, {"Mt", M}}));
+        ASSERT_TRUE(tuned.has_value()) << M;
+        const auto e = evaluated(plant, tuned->controller);
+        EXPECT_LE(std::max(*e.robustness.Ms, *e.robustness.Mt), M * (1 + 2e-5)) << M;
+        EXPECT_LT(*e.performance.load.IAE, last * (1 + 1e-3)) << M;
+        last = *e.performance.load.IAE;
+    }
+}
+
+TEST(Robust, EachObjectiveWinsAtItsOwnMeasure) {
+    const Plant plant = Fopdt{.K = 1, .T = 5, .L = 1};
+    const auto figures = [&](const char* objective) {
+        const auto tuned = design(plant, with({{"objective", std::string(objective)}}));
+        EXPECT_TRUE(tuned.has_value());
+        return evaluated(plant, tuned->controller);
+    };
+    const auto load = figures("load_iae"), ie = figures("load_ie"), setpoint = figures("setpoint_iae"),
+               both = figures("weighted");
+    const auto ratio = [](const Evaluation& e) {
+        const auto& c = std::get<Pid>(e.controller);
+        return c.Ti / c.Kp;
+    };
+    for (const auto* other : {&ie, &setpoint, &both})
+        EXPECT_LE(*load.performance.load.IAE, *other->performance.load.IAE * (1 + 1e-4));
+    for (const auto* other : {&load, &setpoint, &both}) EXPECT_LE(ratio(ie), ratio(*other) * (1 + 1e-4));
+    for (const auto* other : {&load, &ie, &both})
+        EXPECT_LE(*setpoint.performance.setpoint.IAE, *other->performance.setpoint.IAE * (1 + 1e-4));
+    const auto mean = [&](const Evaluation& e) {
+        return *e.performance.load.IAE / *load.performance.load.IAE +
+               *e.performance.setpoint.IAE / *setpoint.performance.setpoint.IAE;
+    };
+    EXPECT_LE(mean(both), std::min({mean(load), mean(ie), mean(setpoint)}) * (1 + 1e-3));
+}
+
+TEST(Robust, MksIsKept) {
+    const Plant plant = Fopdt{.K = 1, .T = 5, .L = 1};
+    const auto tuned = design(plant, with({{"Mks", 6.0}}));
+    ASSERT_TRUE(tuned.has_value()) << tuned.error().message;
+    const auto e = evaluated(plant, tuned->controller);
+    EXPECT_LE(*e.robustness.Mks, 6 * (1 + 2e-5));
+    EXPECT_LE(*e.robustness.Ms, 1.4 * (1 + 2e-5));
+}
+
+TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
+    // e^(-Ls)/(s - 1) needs M of about 1.22, 1.34, 1.57, 1.82 for L = 0.05, 0.1, 0.2, 0.3.
+    for (const auto& [L, least] : {std::pair{0.2, 1.57}, {0.3, 1.82}}) {
+        const Plant plant = Fopdt{.K = -1, .T = -1, .L = L};
+        const auto below = design(plant, with({{"Ms", least * 0.97}, {"Mt", least * 0.97}}));
+        ASSERT_FALSE(below.has_value()) << L;
+        EXPECT_EQ(below.error().kind, ErrorKind::no_feasible_controller);
+        const auto position = below.error().message.find("Ms = Mt = ");
+        ASSERT_NE(position, std::string::npos) << below.error().message;
+        const double named = std::stod(below.error().message.substr(position + 10));
+        EXPECT_NEAR(named, least * 1.01, 0.02 * least) << L;
+        EXPECT_TRUE(design(plant, with({{"Ms", named}, {"Mt", named}})).has_value())
+            << "the limit that the message names must work";
+    }
+}
+
+TEST(Robust, SaysWhenNothingStabilises) {
+    const auto refused = design(Fopdt{.K = -1, .T = -1, .L = 1.5}, {});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().kind, ErrorKind::unstable_plant);
+}
+
+TEST(Robust, SaysWhenTheOptimumHasNoEnd) {
+    const auto kind = [](const Plant& plant, const MethodOptions& options) {
+        const auto tuned = design(plant, options);
+        return tuned ? std::string("a design") : std::string(to_string(tuned.error().kind));
+    };
+    EXPECT_EQ(kind(Fopdt{.K = 1, .T = 1, .L = 0}, with({{"controller", std::string("PI")}})), "unbounded-optimum");
+    EXPECT_EQ(kind(Fopdt{.K = 1, .T = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.1}})), "unbounded-optimum");
+    EXPECT_EQ(kind(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.1}})), "unbounded-optimum");
+    EXPECT_EQ(kind(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.25}})), "a design");
+    EXPECT_EQ(kind(Ipdt{.K = 1, .L = 0}, {}), "unbounded-optimum");
+    EXPECT_EQ(kind(Ipdt{.K = 1, .L = 0}, with({{"filter/Tf", 0.1}})), "a design");
+    EXPECT_EQ(kind(Fopdt{.K = 1, .T = 1, .L = 0}, {}), "a design") << "the default filter is fixed there";
+}
+
+TEST(Robust, DefaultFilterFollowsTheContract) {
+    const auto filter = [](const Plant& plant) { return design(plant, {})->controller; };
+    const Pid delayed = filter(Fopdt{.K = 1, .T = 2, .L = 1});
+    EXPECT_NEAR(delayed.filter.Tf, 0.1 * delayed.Td, 1e-12);
+    EXPECT_NEAR(filter(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}).filter.Tf, 0.05 * 4, 1e-12);
+    const Plant plant = Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0.01};
+    const auto identified = robust_method().tune(TuningProblem{plant, *LinearPlant::make(plant), 0.05}, {}, {});
+    ASSERT_TRUE(identified.has_value());
+    EXPECT_NEAR(identified->controller.filter.Tf, 0.2, 1e-12) << "a dead time within its standard error counts as none";
+}
+
+TEST(Robust, StopsWithTheBestSoFar) {
+    std::stop_source source;
+    RunControl control;
+    control.stop = source.get_token();
+    int reports = 0;
+    double fraction = 0;
+    control.progress = [&](const Progress& progress) {
+        EXPECT_GE(progress.fraction, fraction);
+        fraction = progress.fraction;
+        EXPECT_TRUE(progress.best.has_value());
+        if (++reports == 2) source.request_stop();
+    };
+    const auto tuned =
+        design(Sopdt{.K = 1, .T1 = 10, .T2 = 3, .L = 2}, with({{"search", std::string("grid")}}), control);
+    ASSERT_TRUE(tuned.has_value());
+    EXPECT_TRUE(tuned->partial);
+    EXPECT_LE(*evaluated(Sopdt{.K = 1, .T1 = 10, .T2 = 3, .L = 2}, tuned->controller).robustness.Ms, 1.4 * (1 + 2e-5));
+}
+
+TEST(Robust, SurfaceHasItsLeastValueAtTheDesign) {
+    const Plant plant = Fopdt{.K = 1, .T = 4, .L = 1};
+    const auto tuned = design(plant, with({{"surface", true}, {"search", std::string("grid")}}));
+    ASSERT_TRUE(tuned.has_value() && tuned->surface.has_value());
+    const double IAE = *evaluated(plant, tuned->controller).performance.load.IAE;
+    int feasible = 0;
+    for (const auto& row : tuned->surface->cost) {
+        EXPECT_EQ(row.size(), tuned->surface->Td.size());
+        for (const auto& cost : row) {
+            feasible += cost.has_value();
+            EXPECT_GE(cost.value_or(IAE), IAE * (1 - 1e-3));
+        }
+    }
+    EXPECT_GT(feasible, 50);
+}
+
+TEST(QuadraticProgram, MeetsItsOptimalityConditions) {
+    using namespace robust;
+    const Matrix3 H = {{{2, 0.3, 0}, {0.3, 1, 0.2}, {0, 0.2, 3}}};
+    const Vector3 g = {-1, 2, -3};
+    const std::vector<LinearConstraint> constraints = {
+        {{1, 1, 1}, 0.5}, {{-1, 0, 0}, 0.1}, {{0, 0, 1}, 0.4}, {{0, -1, 0}, 2}};
+    const auto solution = solve_quadratic_program(3, H, g, constraints);
+    ASSERT_TRUE(solution.has_value());
+    for (std::size_t i = 0; i < 3; ++i) {
+        double gradient = g[i];
+        for (std::size_t j = 0; j < 3; ++j) gradient += H[i][j] * solution->p[j];
+        for (std::size_t k = 0; k < constraints.size(); ++k) gradient += solution->multipliers[k] * constraints[k].a[i];
+        EXPECT_NEAR(gradient, 0, 1e-10);
+    }
+    for (std::size_t k = 0; k < constraints.size(); ++k) {
+        double slack = constraints[k].b;
+        for (std::size_t i = 0; i < 3; ++i) slack -= constraints[k].a[i] * solution->p[i];
+        EXPECT_GE(slack, -1e-9);
+        EXPECT_NEAR(slack * solution->multipliers[k], 0, 1e-9);
+    }
+    EXPECT_FALSE(solve_quadratic_program(1, H, g, {{{1, 0, 0}, -1}, {{-1, 0, 0}, -1}}).has_value());
+}
+
+TEST(LocalMinimum, BothSearchesFindRosenbrocksValley) {
+    const auto f = [](const std::vector<double>& x, bool&) {
+        return 100 * std::pow(x[1] - x[0] * x[0], 2) + std::pow(1 - x[0], 2);
+    };
+    for (const auto search : {LocalSearch::nelder_mead, LocalSearch::subplex}) {
+        const auto minimum = find_local_minimum(search, f, {-1.2, 1},
+                                                {.step = {0.5, 0.5}, .tolerance = 1e-12, .most_evaluations = 4000});
+        EXPECT_NEAR(minimum.x[0], 1, 1e-3);
+        EXPECT_NEAR(minimum.x[1], 1, 1e-3);
+    }
+}
+
+TEST(Sweep, GradientsAgreeWithDifferences) {
+    using namespace robust;
+    const auto plant = LinearPlant::make(Sopdt{.K = 1, .T1 = 2, .T2 = 1, .L = 0.5});
+    for (const bool tied : {true, false})
+        for (const bool circle : {true, false}) {
+            Problem problem;
+            problem.plant = &*plant;
+            problem.limits = {.Ms = 1.3, .Mt = 1.2, .Mks = 3, .m_circle = circle};
+            problem.filter = tied ? FilterRule{std::nullopt, 0.2} : FilterRule{0.1, std::nullopt};
+            const Sweep sweep(problem, reference_frequency(problem));
+            const Point x = {std::log(2.0), std::log(2.5), std::log(0.6)};
+            const auto peaks = sweep.peaks(x, -2);
+            ASSERT_FALSE(peaks.empty());
+            for (const auto& peak : peaks)
+                for (std::size_t i = 0; i < 3; ++i) {
+                    if (!std::isfinite(peak.omega)) continue;
+                    Point up = x, down = x;
+                    up[i] += 1e-5;
+                    down[i] -= 1e-5;
+                    const double slope =
+                        (sweep.value(peak.kind, up, peak.omega) - sweep.value(peak.kind, down, peak.omega)) / 2e-5;
+                    EXPECT_NEAR(peak.gradient[i], slope, 1e-6 * (1 + std::abs(slope)));
+                }
+        }
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/loop/delay_system.h"
 #include "engine/plant/linear_algebra.h"
@@ -228,6 +229,9 @@ public:
             echoes_ = std::min(
                 kMaxEchoes,
                 static_cast<int>(std::log(1e-3 * options.tolerance) / std::log(std::min(q, 0.999))) + kRetardedEchoes);
+        // An unstable plant's own modes amplify what a step gets wrong: no step may be long for them.
+        for (const auto pole : plant.poles())
+            if (pole.real() > 0) longest_step_ = std::min(longest_step_, 0.25 / pole.real());
         response_.y_final = steady_.y;
         response_.u_final = steady_.u;
         response_.error_integral_final = steady_.error_integral;
@@ -324,6 +328,7 @@ private:
     bool may_double() const {
         if (level_ >= 60) return false;
         if (!system_.delayed) return true;
+        if (std::ldexp(propagator_.h0(), level_ + 1) > longest_step_) return false;
         if (level_ + 1 > level_of_L_ && (!echoes_are_over() || equal_steps_ < 4)) return false;
         return true;
     }
@@ -410,6 +415,7 @@ private:
     int restart_level_ = 0, top_level_ = 0;
     long offset_ = 0;   // of the segment, in units of h0
     double ticks_ = 0;  // since t = 0, in units of h0: exact
+    double longest_step_ = std::numeric_limits<double>::infinity();
     double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
 };
 

@@ -1,0 +1,227 @@
+// One evaluation against closed forms and against a plain simulation with tiny steps that shares no code with the
+// engine's.
+#include "engine/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace tunewright {
+namespace {
+
+Evaluation evaluated(const Plant& plant, const Controller& controller, EvaluateOptions options = {}) {
+    auto evaluation = evaluate(plant, controller, options);
+    EXPECT_TRUE(evaluation.has_value()) << (evaluation ? "" : evaluation.error().message);
+    return *evaluation;
+}
+
+constexpr double kPromised = 5e-4;  // relative, of every integral
+
+TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
+    // 1/(s + 1) with Kp = k, Ti = 1: y = 1 - e^(-kt), u = 1 + (k - 1) e^(-kt); after a load step y = (e^(-t) -
+    // e^(-kt))/(k - 1).
+    const double k = 4;
+    const auto e = evaluated(Fopdt{.K = 1, .T = 1, .L = 0}, Pid{.Kp = k, .Ti = 1});
+    const auto& s = e.performance.setpoint;
+    EXPECT_NEAR(*s.IAE / (1 / k), 1, 1e-4);
+    EXPECT_NEAR(*s.ISE / (1 / (2 * k)), 1, 1e-4);
+    EXPECT_NEAR(*s.ITAE / (1 / (k * k)), 1, 1e-4);
+    EXPECT_NEAR(*s.TV / (k + (k - 1)), 1, 1e-4);
+    EXPECT_NEAR(*s.first_move, k, 1e-12);
+    EXPECT_NEAR(*s.rise_time / (std::log(9) / k), 1, 1e-4);
+    EXPECT_NEAR(*s.rise_time_5_95 / (std::log(19) / k), 1, 1e-4);
+    EXPECT_NEAR(*s.settling_time / (std::log(50) / k), 1, 1e-4);
+    EXPECT_NEAR(*s.overshoot_percent, 0, 1e-9);
+    const auto& l = e.performance.load;
+    EXPECT_NEAR(*l.IAE / (1 / k), 1, 1e-4);
+    EXPECT_NEAR(*l.ITAE / ((1 - 1 / (k * k)) / (k - 1)), 1, 1e-4);
+    EXPECT_NEAR(*l.ISE / ((0.5 + 0.5 / k - 2 / (1 + k)) / ((k - 1) * (k - 1))), 1, 1e-4);
+    const double t_peak = std::log(k) / (k - 1);
+    EXPECT_NEAR(*l.peak, (std::exp(-t_peak) - std::exp(-k * t_peak)) / (k - 1), 1e-5);
+    EXPECT_NEAR(*e.robustness.Ms, 1, 1e-9);
+    EXPECT_NEAR(*e.robustness.phase_margin_deg, 90, 1e-6);
+}
+
+/// Heun's rule with the delayed input from a table, for a FOPDT plant and every filter type.
+struct PlainLoop {
+    double K, T, L;
+    Pid c;
+
+    struct Result {
+        double IAE = 0, ISE = 0, ITAE = 0, TV = 0, peak = 0;
+    };
+    struct State {
+        double y = 0, I = 0, f1 = 0, f2 = 0;
+    };
+
+    double output(const State& x, double r) const {
+        const double Tf = c.filter.Tf;
+        double measured = x.y, derivative = 0;
+        switch (c.filter.type) {
+            case FilterType::none: break;
+            case FilterType::derivative: derivative = ((c.c * r - x.y) - x.f1) / Tf; break;
+            case FilterType::measurement_first_order:
+                measured = x.f1;
+                derivative = -(x.y - x.f1) / Tf;
+                break;
+            case FilterType::measurement_second_order:
+                measured = x.f1;
+                derivative = -x.f2;
+                break;
+        }
+        return c.Kp * (c.b * r - measured + x.I / c.Ti + c.Td * derivative);
+    }
+
+    State slope(const State& x, double r, double v) const {
+        const double Tf = c.filter.Tf;
+        State d;
+        d.y = (K * v - x.y) / T;
+        double measured = x.y;
+        switch (c.filter.type) {
+            case FilterType::none: break;
+            case FilterType::derivative: d.f1 = ((c.c * r - x.y) - x.f1) / Tf; break;
+            case FilterType::measurement_first_order:
+                d.f1 = (x.y - x.f1) / Tf;
+                measured = x.f1;
+                break;
+            case FilterType::measurement_second_order:
+                d.f1 = x.f2;
+                d.f2 = (x.y - x.f1 - Tf * x.f2) * 2 / (Tf * Tf);
+                measured = x.f1;
+                break;
+        }
+        d.I = r - measured;
+        return d;
+    }
+
+    Result run(double r, double load, double t_end, int per_dead_time) const {
+        const double h = L / per_dead_time;
+        const auto delay = static_cast<std::size_t>(per_dead_time);
+        std::vector<double> w(1, 0.0);
+        State x;
+        Result result;
+        double u = output(x, r), e = r - x.y;
+        result.TV = std::abs(u);
+        w[0] = u + load;
+        const auto n = static_cast<std::size_t>(t_end / h);
+        for (std::size_t i = 0; i < n; ++i) {
+            const double v0 = i >= delay ? w[i - delay] : 0, v1 = i + 1 > delay ? w[i + 1 - delay] : 0;
+            const State a = slope(x, r, v0);
+            const State guess{x.y + h * a.y, x.I + h * a.I, x.f1 + h * a.f1, x.f2 + h * a.f2};
+            const State b = slope(guess, r, v1);
+            x = {x.y + h / 2 * (a.y + b.y), x.I + h / 2 * (a.I + b.I), x.f1 + h / 2 * (a.f1 + b.f1),
+                 x.f2 + h / 2 * (a.f2 + b.f2)};
+            const double next = r - x.y, t = (static_cast<double>(i) + 0.5) * h;
+            result.IAE += h / 2 * (std::abs(e) + std::abs(next));
+            result.ISE += h / 2 * (e * e + next * next);
+            result.ITAE += h / 2 * t * (std::abs(e) + std::abs(next));
+            e = next;
+            const double now = output(x, r);
+            result.TV += std::abs(now - u);
+            u = now;
+            w.push_back(u + load);
+            if (std::abs(x.y) > std::abs(result.peak)) result.peak = x.y;
+        }
+        return result;
+    }
+};
+
+TEST(Evaluate, EveryIndexAgreesWithAPlainSimulation) {
+    const PlainLoop loops[] = {
+        {2, 10, 3, {.Kp = 0.8, .Ti = 6, .Td = 1.2, .filter = {FilterType::measurement_second_order, 0.4}}},
+        {2, 10, 3, {.Kp = 0.9, .Ti = 6, .Td = 1.2, .b = 0.6, .filter = {FilterType::measurement_first_order, 0.4}}},
+        {2, 10, 3, {.Kp = 1.1, .Ti = 6, .Td = 0.8, .b = 1, .c = 0.5, .filter = {FilterType::derivative, 0.5}}},
+        {1, 2, 4, {.Kp = 0.3, .Ti = 3}},
+        {-1, -10, 1, {.Kp = 5, .Ti = 12, .Td = 0.3, .filter = {FilterType::measurement_second_order, 0.1}}},
+    };
+    for (const auto& loop : loops) {
+        const auto e = evaluated(Fopdt{.K = loop.K, .T = loop.T, .L = loop.L}, loop.c);
+        ASSERT_TRUE(e.robustness.stable);
+        const auto s = loop.run(1, 0, 400, 3000), l = loop.run(0, 1, 400, 3000);
+        EXPECT_NEAR(*e.performance.setpoint.IAE / s.IAE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.setpoint.ISE / s.ISE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.setpoint.ITAE / s.ITAE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.setpoint.TV / s.TV, 1, kPromised);
+        EXPECT_NEAR(*e.performance.load.IAE / l.IAE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.load.ISE / l.ISE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.load.ITAE / l.ITAE, 1, kPromised);
+        EXPECT_NEAR(*e.performance.load.TV / l.TV, 1, kPromised);
+        EXPECT_NEAR(*e.performance.load.peak / l.peak, 1, kPromised);
+        EXPECT_NEAR(*e.performance.setpoint.overshoot_percent, std::max(0.0, 100 * (s.peak - 1)), 0.1);
+    }
+}
+
+TEST(Evaluate, MarginsObeyTheBoundsOfMs) {
+    for (const double Kp : {0.3, 0.6, 0.9, 1.2}) {
+        const auto e = evaluated(Sopdt{.K = 2, .T1 = 10, .T2 = 2, .L = 3}, Pid{.Kp = Kp, .Ti = 10});
+        const double Ms = *e.robustness.Ms;
+        EXPECT_GE(*e.robustness.gain_margin, Ms / (Ms - 1) * (1 - 1e-9));
+        EXPECT_GE(*e.robustness.phase_margin_deg, 2 * std::asin(1 / (2 * Ms)) * 180 / std::numbers::pi * (1 - 1e-9));
+    }
+}
+
+TEST(Evaluate, NoGainMarginIsInventedWherePhaseNeverReachesMinus180) {
+    const auto e = evaluated(Sopdt{.K = 0.695, .T1 = 141, .T2 = 19.7, .L = 0},
+                             Pid{.Kp = 2, .Ti = 160, .Td = 17, .filter = {FilterType::derivative, 1.8}});
+    EXPECT_FALSE(e.robustness.gain_margin.has_value());
+    EXPECT_TRUE(e.robustness.why_null.contains("gain_margin"));
+}
+
+TEST(Evaluate, WithoutIntegralActionTheErrorStaysAndSaysSo) {
+    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 1});
+    EXPECT_FALSE(e.performance.load.IAE.has_value());
+    EXPECT_FALSE(e.performance.load.why_null.at("IAE").empty());
+    EXPECT_NEAR(e.responses->load.y.back(), 2.0 / 3, 5e-3);
+    EvaluateOptions finite;
+    finite.horizon = 50;
+    EXPECT_TRUE(evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 1}, finite).performance.load.IAE.has_value());
+}
+
+TEST(Evaluate, AnUnstableLoopIsAnEntryWithReasons) {
+    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 20, .Ti = 1});
+    EXPECT_FALSE(e.robustness.stable);
+    EXPECT_FALSE(e.robustness.Ms.has_value());
+    EXPECT_FALSE(e.performance.setpoint.IAE.has_value());
+    EXPECT_FALSE(e.responses.has_value());
+    ASSERT_FALSE(e.warnings.empty());
+    EXPECT_EQ(e.warnings.front().code, "unstable-loop");
+}
+
+TEST(Evaluate, TinyDeadTimesCostNoMoreThanOthersAndTendToNone) {
+    const Pid pid{.Kp = 3, .Ti = 1, .Td = 0.05, .filter = {FilterType::measurement_second_order, 0.02}};
+    const auto none = evaluated(Fopdt{.K = 1, .T = 1, .L = 0}, pid),
+               tiny = evaluated(Fopdt{.K = 1, .T = 1, .L = 1e-7}, pid);
+    EXPECT_NEAR(*tiny.performance.load.IAE / *none.performance.load.IAE, 1, 1e-4);
+    EXPECT_NEAR(*tiny.performance.setpoint.TV / *none.performance.setpoint.TV, 1, 1e-4);
+}
+
+TEST(Evaluate, LimitsAreKeptAndAnnounced) {
+    EvaluateOptions options;
+    options.actuator = ActuatorLimits{-0.2, 1.1};
+    const auto e = evaluated(Fopdt{.K = 1, .T = 10, .L = 1}, Pid{.Kp = 5, .Ti = 8}, options);
+    for (const double u : e.responses->setpoint.u) {
+        EXPECT_LE(u, 1.1 + 1e-9);
+        EXPECT_GE(u, -0.2 - 1e-9);
+    }
+    ASSERT_FALSE(e.warnings.empty());
+    EXPECT_EQ(e.warnings.front().code, "actuator-limited");
+    EXPECT_NEAR(e.responses->setpoint.y.back(), 1, 0.02);
+}
+
+TEST(Evaluate, OptionsOutOfRangeNameTheirField) {
+    EvaluateOptions options;
+    options.setpoint_step = 0;
+    auto refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, Pid{.Kp = 1}, options);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().where, "evaluate/setpoint_step");
+    options = {};
+    options.points = 1;
+    refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, Pid{.Kp = 1}, options);
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().where, "evaluate/points");
+}
+
+}  // namespace
+}  // namespace tunewright

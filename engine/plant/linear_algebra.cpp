@@ -176,9 +176,26 @@ std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
 }
 
 std::optional<std::vector<double>> solve(std::span<const double> matrix, std::span<const double> b, int n) {
-    const Eigen::FullPivLU<Matrix> lu(as_matrix(matrix, n));
+    // Units may lie many decades apart: rows and columns are brought to size one first, so that "singular" means
+    // singular.
+    Matrix A = as_matrix(matrix, n);
+    Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(b.data(), n), columns = Eigen::VectorXd::Ones(n);
+    for (int round = 0; round < 3; ++round)
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double row = A.row(i).cwiseAbs().maxCoeff();
+            if (row > 0) {
+                A.row(i) /= row;
+                right(i) /= row;
+            }
+            const double column = A.col(i).cwiseAbs().maxCoeff();
+            if (column > 0) {
+                A.col(i) /= column;
+                columns(i) /= column;
+            }
+        }
+    const Eigen::FullPivLU<Matrix> lu(A);
     if (!lu.isInvertible()) return std::nullopt;
-    const Eigen::VectorXd x = lu.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
+    const Eigen::VectorXd x = columns.cwiseProduct(Eigen::VectorXd(lu.solve(right)));
     return std::vector<double>(x.data(), x.data() + x.size());
 }
 

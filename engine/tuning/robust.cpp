@@ -192,6 +192,11 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
         return {ErrorKind::no_feasible_controller, "Mks",
                 "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
                     " together with the other limits. Raise Mks or leave it out."};
+    if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
+        return {ErrorKind::numerical_failure, "",
+                "Controllers within the limits exist, but none whose response could be computed. Check the units of "
+                "the time constants and the dead time: "
+                "they lie very far apart."};
     return {ErrorKind::no_feasible_controller, "",
             "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
                 " and Mt <= " + shown(problem.limits.Mt) + " on this plant" +

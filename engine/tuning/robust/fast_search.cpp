@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/scan.h"
 
 namespace tunewright::robust {
@@ -46,7 +47,12 @@ std::optional<Found> fast_search(const Sweep& sweep, const Problem& problem, con
         if (++compared > kMostCompared && std::isfinite(best.log_cost)) break;
         consider(best, problem, point.x);
     }
-    if (!std::isfinite(best.log_cost)) return std::nullopt;
+    if (!std::isfinite(best.log_cost)) {
+        // No response settles within the steps allowed (time scales too far apart): the least integrated error still is
+        // a design.
+        if (!feasible_near(sweep, integrated)) return std::nullopt;
+        return Found{integrated, integrated[1] - integrated[0], false};
+    }
     bool stopped = false;
     const Report watch = [&](const Point& x, double cost) {
         stopped = report && !report(x, cost);

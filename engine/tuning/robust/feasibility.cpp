@@ -67,8 +67,9 @@ std::optional<Point> feasible_near(const Sweep& sweep, const Point& x) {
 bool has_no_finite_optimum(const Problem& problem) {
     const LinearPlant& plant = *problem.plant;
     if (plant.dead_time() > 0 || plant.has_right_half_plane_zero() || problem.limits.Mks) return false;
-    if (problem.filter.Tf && *problem.filter.Tf > 0) return false;
     const int excess = plant.pole_excess();
+    // A fixed second-order filter adds one to a PID's pole excess, two to a PI's.
+    if (problem.filter.Tf && *problem.filter.Tf > 0) return problem.pid && excess == 0;
     if (excess == 0) return true;
     const bool tied = problem.pid && problem.filter.Tf_over_Td.has_value();
     if (excess > (problem.pid ? 2 : 1)) return false;

@@ -20,7 +20,8 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem);
 std::optional<Point> feasible_near(const Sweep& sweep, const Point& x);
 
 /// True where the gain can grow for ever within the limits: no dead time, no right-half-plane zero, and a design of the
-/// plant's high-frequency asymptote that scales with frequency exists (Tf tied to Td, or no filter).
+/// plant's high-frequency asymptote that scales with frequency exists (Tf tied to Td, no filter, or a filter that
+/// leaves a pole excess of one).
 bool has_no_finite_optimum(const Problem& problem);
 
 }  // namespace tunewright::robust

@@ -37,13 +37,24 @@ Evaluation evaluated(const Plant& plant, const Pid& pid) {
 TEST(Robust, TimeScalesTiAndTdAndLeavesKp) {
     const auto base = design(Fopdt{.K = 2, .T = 3, .L = 1}, {});
     ASSERT_TRUE(base.has_value());
-    for (const double a : {1e-5, 1e6}) {
+    for (const double a : {1e-9, 1e-5, 1e6, 1e12}) {
         const auto scaled = design(Fopdt{.K = 2, .T = 3 * a, .L = a}, {});
         ASSERT_TRUE(scaled.has_value());
-        EXPECT_NEAR(scaled->controller.Kp / base->controller.Kp, 1, 1e-4);
-        EXPECT_NEAR(scaled->controller.Ti / base->controller.Ti / a, 1, 1e-4);
+        EXPECT_NEAR(scaled->controller.Kp / base->controller.Kp, 1, 1e-3);
+        EXPECT_NEAR(scaled->controller.Ti / base->controller.Ti / a, 1, 1e-3);
         EXPECT_NEAR(scaled->controller.Td / base->controller.Td / a, 1, 1e-3);
     }
+}
+
+TEST(Robust, HugeGainsAndDistantTimeScalesChangeNothingElse) {
+    const auto base = design(Fopdt{.K = 1, .T = 1, .L = 1}, {}), loud = design(Fopdt{.K = 1e25, .T = 1, .L = 1}, {});
+    ASSERT_TRUE(base.has_value() && loud.has_value());
+    EXPECT_NEAR(loud->controller.Kp * 1e25 / base->controller.Kp, 1, 1e-4);
+    // T/L = 1e9 is an integrator to any controller.
+    const auto lag = design(Fopdt{.K = 1e9, .T = 1e9, .L = 1}, {}), integrator = design(Ipdt{.K = 1, .L = 1}, {});
+    ASSERT_TRUE(lag.has_value() && integrator.has_value());
+    EXPECT_NEAR(lag->controller.Kp / integrator->controller.Kp, 1, 1e-2);
+    EXPECT_NEAR(lag->controller.Ti / integrator->controller.Ti, 1, 3e-2);
 }
 
 TEST(Robust, GainDividesKpWithItsSign) {
@@ -132,6 +143,8 @@ TEST(Robust, SaysWhenTheOptimumHasNoEnd) {
     EXPECT_EQ(kind(Fopdt{.K = 1, .T = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.1}})), "unbounded-optimum");
     EXPECT_EQ(kind(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.1}})), "unbounded-optimum");
     EXPECT_EQ(kind(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}, with({{"filter/Tf_over_Td", 0.25}})), "a design");
+    EXPECT_EQ(kind(TransferFunction{{1, 2}, {1, 1}, 0}, {}), "unbounded-optimum")
+        << "pole excess 0 needs Mks, a filter does not help";
     EXPECT_EQ(kind(Ipdt{.K = 1, .L = 0}, {}), "unbounded-optimum");
     EXPECT_EQ(kind(Ipdt{.K = 1, .L = 0}, with({{"filter/Tf", 0.1}})), "a design");
     EXPECT_EQ(kind(Fopdt{.K = 1, .T = 1, .L = 0}, {}), "a design") << "the default filter is fixed there";

@@ -9,7 +9,8 @@
 
 namespace tunewright::api {
 
-/// {"method": "...", options...}; unknown methods and options are refused, ranges checked. "all" takes any method's options.
+/// {"method": "...", options...}; unknown methods and options are refused, ranges checked. "all" takes any method's
+/// options.
 Codec<MethodRequest> method_request();
 
 /// An array of those, or "all".

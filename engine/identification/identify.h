@@ -59,22 +59,27 @@ struct IdentifiedModel {
     std::vector<Warning> warnings;
 };
 
-/// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), comes nearest to y: least squares over gain,
-/// time constants, continuous dead time and offset (output error: Ljung 1999, section 4.2). No resampling: the response to the piecewise
-/// constant u is exact at every time stamp.
+/// The plant whose free run, driven by the recorded u from rest at u0 (or the first u), comes nearest to y: least
+/// squares over gain, time constants, continuous dead time and offset (output error: Ljung 1999, section 4.2). No
+/// resampling: the response to the piecewise constant u is exact at every time stamp.
 ///
-/// - Rows of equal time: the last u counts from that time on, each y is data. Rows with a time before the row above or without numbers
+/// - Rows of equal time: the last u counts from that time on, each y is data. Rows with a time before the row above or
+/// without numbers
 ///   are dropped; u of a row whose y is no number counts.
-/// - `u0`: u stepped from u0 to its first value at the first sample. Without it a start that is not at rest is recognised where the
+/// - `u0`: u stepped from u0 to its first value at the first sample. Without it a start that is not at rest is
+/// recognised where the
 ///   record shows it, and noted. `y0` is weighed as ten samples of y at rest.
-/// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are equal within
-///   noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which u changes more than twice.
-/// - Standard errors count correlated residuals as the few independent samples they are worth, and rounding of y as its least noise.
+/// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are
+/// equal within
+///   noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which u changes
+///   more than twice.
+/// - Standard errors count correlated residuals as the few independent samples they are worth, and rounding of y as its
+/// least noise.
 /// - `fit` has at most 2,000 points. Warning codes: diagnosis.h.
 ///
-/// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or y constant, no
-/// response, a step in the last samples); invalid_argument (columns of unequal length, times out of order); unsupported (`method`
-/// relay_fourier, two_point); cancelled.
+/// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or
+/// y constant, no response, a step in the last samples); invalid_argument (columns of unequal length, times out of
+/// order); unsupported (`method` relay_fourier, two_point); cancelled.
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control);
 

@@ -9,7 +9,8 @@ namespace tunewright {
 
 enum class RecordKind { automatic, step, relay, general };
 
-/// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order hold). Lengths are equal.
+/// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
+/// hold). Lengths are equal.
 struct Record {
     std::vector<double> t;  ///< time in the user's unit, any start
     std::vector<double> u;  ///< controller output (plant input)

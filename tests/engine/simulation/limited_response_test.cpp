@@ -207,8 +207,8 @@ TEST(LimitedResponse, AgreesWithAPlainSimulationInTinySteps) {
         EXPECT_DOUBLE_EQ(response.nodes.back().t, c.horizon);
         EXPECT_NEAR(error_integrals(response.nodes, c.in.r, std::nullopt).IAE / plain.IAE, 1, 5e-4);
         for (int i = 0; i < 10; ++i)
-            EXPECT_NEAR(sampled(response.nodes, c.horizon * (i + 1) / 10, 2)[1].first, plain.y[static_cast<std::size_t>(i)],
-                        1e-3)
+            EXPECT_NEAR(sampled(response.nodes, c.horizon * (i + 1) / 10, 2)[1].first,
+                        plain.y[static_cast<std::size_t>(i)], 1e-3)
                 << i;
         EXPECT_NEAR(extremes_of_y(response.nodes).max - c.in.r, plain.overshoot, 1e-3);
         // At least one limit was reached, none exceeded.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kNear = -0.25;     // constraints below it cannot become active within a step
 constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
+constexpr double kLeastTd = 0.01;   // times 1/reference: a shorter one is a PI with a filter that no grid follows
 constexpr double kFeasible = 1e-8;  // and accepted with this much slack
 
 Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -37,18 +38,22 @@ void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
                 y[std::size_t(i)] * y[std::size_t(j)] / scale - Hs[std::size_t(i)] * Hs[std::size_t(j)] / sHs;
 }
 
-std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, double radius, int n, std::size_t most) {
+/// The peaks' linear models, the trust region, and the least Td, for a step from x.
+std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const Point& x,
+                                         double radius, std::size_t most) {
     std::vector<LinearConstraint> constraints;
     for (const auto& peak : peaks) {
         if (constraints.size() == most) break;
         constraints.push_back({peak.gradient, -peak.value - kAimBelow});
     }
+    const int n = sweep.problem().dimension();
     for (int i = 0; i < n; ++i)
         for (const double side : {1.0, -1.0}) {
             Vector3 a{};
             a[std::size_t(i)] = side;
             constraints.push_back({a, radius});
         }
+    if (n == 3) constraints.push_back({{0, 0, -1}, std::max(0.0, x[2] - std::log(kLeastTd / sweep.reference()))});
     return constraints;
 }
 
@@ -78,7 +83,7 @@ std::optional<Point> restore(const Sweep& sweep, Point x) {
     for (int k = 0; k < 12; ++k) {
         const auto peaks = sweep.peaks(x, -0.1);
         if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return x;
-        const auto step = solve_quadratic_program(n, identity, {}, linearised(peaks, 0.5, n, 6));
+        const auto step = solve_quadratic_program(n, identity, {}, linearised(peaks, sweep, x, 0.5, 6));
         if (step) {
             x = moved(x, step->p);
         } else {
@@ -104,7 +109,7 @@ SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& star
     double radius = options.trust_radius;
     int small_steps = 0;
     for (; result.iterations < options.max_iterations; ++result.iterations) {
-        const auto constraints = linearised(peaks, radius, n, 8);
+        const auto constraints = linearised(peaks, sweep, result.x, radius, 8);
         const auto step = solve_quadratic_program(n, H, cost.gradient, constraints);
         if (!step) {
             radius *= 2;

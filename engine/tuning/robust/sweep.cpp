@@ -19,7 +19,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> frequencies(const Problem& problem, double reference, double resolved_to) {
     const double L = problem.plant->dead_time();
-    double high = reference * std::pow(10, kDecades);
+    // |C S| peaks near 1/Tf, which follows Td far up.
+    double high = reference * std::pow(10, problem.limits.Mks ? kDecades + 1.5 : kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;

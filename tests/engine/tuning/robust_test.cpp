@@ -112,6 +112,17 @@ TEST(Robust, MksIsKept) {
     EXPECT_LE(*e.robustness.Ms, 1.4 * (1 + 2e-5));
 }
 
+TEST(Robust, ATightMksIsMetAtTheCheapestOfItsValleys) {
+    // The published gridding sees the whole plane; the fast search must not end in a dearer valley.
+    const Plant plant = Fopdt{.K = 2, .T = 3, .L = 1};
+    const auto fast = design(plant, with({{"Mks", 2.0}})),
+               grid = design(plant, with({{"Mks", 2.0}, {"search", std::string("grid")}}));
+    ASSERT_TRUE(fast.has_value() && grid.has_value());
+    EXPECT_LE(*evaluated(plant, fast->controller).performance.load.IAE,
+              1.001 * *evaluated(plant, grid->controller).performance.load.IAE);
+    EXPECT_LE(*evaluated(plant, fast->controller).robustness.Mks, 2 * (1 + 2e-5));
+}
+
 TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
     // e^(-Ls)/(s - 1) needs M of about 1.22, 1.34, 1.57, 1.82 for L = 0.05, 0.1, 0.2, 0.3.
     for (const auto& [L, least] : {std::pair{0.2, 1.57}, {0.3, 1.82}}) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/tuning/amigo.h"
 #include "engine/tuning/robust/fast_search.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/plane_search.h"
@@ -129,15 +131,28 @@ private:
     int steps_ = 0;
 };
 
-std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, CostSurface* surface,
-                            const Report& report) {
+/// Where the plane searches begin, as (Ti, Td).
+using PlaneStart = std::optional<std::pair<double, double>>;
+
+/// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty where they do not apply.
+PlaneStart amigo_start(const TuningProblem& tuning, bool pid) {
+    MethodOptions options;
+    options.set("controller", std::string(pid ? "PID" : "PI"));
+    const auto tuned = amigo_method().tune(tuning, options, {});
+    if (!tuned) return std::nullopt;
+    return std::pair{tuned->controller.Ti, tuned->controller.Td};
+}
+
+std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
+                            CostSurface* surface, const Report& report) {
     if (kind == "fast" && surface == nullptr) return fast_search(sweep, problem, report);
-    // The plane searches start from the least integrated error of a coarse scan, as AMIGO's formulas would place them.
-    const auto points = scan(sweep);
-    if (points.empty()) return std::nullopt;
-    const double Ti = std::exp(points.front().x[1]), Td = problem.pid ? std::exp(points.front().x[2]) : 0;
-    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, Ti, Td, report);
-    auto gridded = grid_search(sweep, problem, Ti, Td, surface, report);
+    if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
+        const auto points = scan(sweep);
+        if (points.empty()) return std::nullopt;
+        start = {std::exp(points.front().x[1]), problem.pid ? std::exp(points.front().x[2]) : 0};
+    }
+    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, start->first, start->second, report);
+    auto gridded = grid_search(sweep, problem, start->first, start->second, surface, report);
     return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
 }
 
@@ -218,13 +233,14 @@ std::optional<Error> check_Mks(const Problem& problem) {
 
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
 /// ones.
-Expected<Found> verified_search(const std::string& kind, Problem& problem, CostSurface* surface,
-                                const RunControl& control) {
+Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
+                                CostSurface* surface, const RunControl& control) {
     const double reference = reference_frequency(problem);
     ProgressReport progress(problem, control);
     const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
     const Sweep sweep(problem, reference);
-    auto found = has_reference_optima(problem, sweep) ? search(kind, sweep, problem, surface, report) : std::nullopt;
+    auto found =
+        has_reference_optima(problem, sweep) ? search(kind, sweep, problem, start, surface, report) : std::nullopt;
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
     if (!found) found = search_from_least_peak(problem, report);
@@ -271,9 +287,11 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
                      "dead time to stop it. "
                      "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
     CostSurface surface;
+    const std::string kind = options.text("search").value_or("fast");
     const bool with_surface = options.boolean("surface").value_or(false);
     const auto found =
-        verified_search(options.text("search").value_or("fast"), problem, with_surface ? &surface : nullptr, control);
+        verified_search(kind, problem, kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, pid),
+                        with_surface ? &surface : nullptr, control);
     if (!found) return found.error();
     TunedController result;
     result.controller = controller_at(problem, found->x);

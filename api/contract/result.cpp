@@ -2,6 +2,7 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/evaluation.h"
+#include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant.h"
 
@@ -14,12 +15,6 @@ Codec<std::string> words() {
             [](SchemaBook&) {
                 return Json{{"type", "string"}};
             }};
-}
-
-template <class T>
-Codec<T> only_answered(Codec<T> codec) {
-    codec.read = {};
-    return codec;
 }
 
 // Reads a member of the entry's evaluation; left out where there is none.
@@ -127,7 +122,33 @@ const Description<Candidate>& candidate_contract() {
                    "100 (1 - |y - yhat|/|y - mean(y)|), free run.")
             .field("criterion", &Candidate::criterion, only_answered(number()),
                    "Information criterion; smaller is better.")
-            .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.");
+            .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
+            .field("y_model", &Candidate::y_model, trace(), "Simulated, at the times of the model's fit.",
+                   {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<ParameterCovariance>& covariance_contract() {
+    static const auto description = [] {
+        Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
+        d.field("names", &ParameterCovariance::names, list_of(words()), "Order of rows and columns.")
+            .field(
+                "matrix", {},
+                [](const ParameterCovariance& covariance, Writer& out) {
+                    out.begin_array();
+                    for (const auto& row : covariance.matrix) {
+                        out.begin_array();
+                        for (const double value : row) out.number(value);
+                        out.end_array();
+                    }
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+                },
+                "Symmetric.");
         return d;
     }();
     return description;
@@ -175,6 +196,17 @@ const Description<IdentifiedModel>& model_contract() {
             .field("fit_percent", &M::fit_percent, only_answered(number()),
                    "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
             .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
+            .field("covariance", &M::covariance,
+                   unless<ParameterCovariance>(answer(covariance_contract()),
+                                               [](const auto& covariance) { return covariance.names.empty(); }),
+                   "Of the parameters.")
+            .field("limit_cycle", &M::limit_cycle, maybe(answer(limit_cycle_contract())), "Of a relay test.")
+            .field("frequency_points", &M::frequency_points,
+                   unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),
+                                                       [](const auto& points) { return points.empty(); }),
+                   "Of the plant, from the record alone.")
+            .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
+                   "Of the model; left out where no gain makes it oscillate.")
             .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
             .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
             .field("fit", &M::fit, answer(fit_contract()), "The model beside the record.")

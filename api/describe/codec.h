@@ -84,6 +84,20 @@ Codec<std::optional<T>> maybe(Codec<T> inner) {
     return codec;
 }
 
+/// The same value where only answers carry it.
+template <class T>
+Codec<T> only_answered(Codec<T> codec) {
+    codec.read = {};
+    return codec;
+}
+
+/// The member is left out where `empty` holds.
+template <class T>
+Codec<T> unless(Codec<T> codec, std::function<bool(const T&)> empty) {
+    codec.skip = std::move(empty);
+    return codec;
+}
+
 /// Words of the contract for the values of an enumeration, the first written for each value.
 template <class E>
 Codec<E> choice(std::vector<std::pair<std::string, E>> words) {

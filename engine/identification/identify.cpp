@@ -127,7 +127,8 @@ IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const
         if (!fits[i].determined) continue;
         jacobian(record, fits[i]);
         FittedPlant fitted = fitted_plant(record, fits[i], grid);
-        model.candidates.push_back({fitted.plant, percents[i], criteria[i], fitted.standard_errors});
+        model.candidates.push_back(
+            {fitted.plant, percents[i], criteria[i], fitted.standard_errors, trace_of(record, fits[i]).y_model});
         if (i != choice.index) continue;
         Diagnosis diagnosis = diagnose(record, fits[i], fitted.values, fitted.standard_errors, model.data_quality);
         model.plant = fitted.plant;

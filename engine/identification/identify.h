@@ -10,6 +10,7 @@
 #include "engine/identification/record.h"
 #include "engine/plant/plant.h"
 #include "engine/progress.h"
+#include "engine/simulation/limit_cycle.h"
 #include "engine/warning.h"
 
 namespace tunewright {
@@ -28,6 +29,13 @@ struct Candidate {
     double fit_percent = 0;  ///< 100 (1 - ||y - yhat||/||y - mean(y)||), free run, offset estimated
     double criterion = 0;    ///< information criterion, smaller is better
     std::map<std::string, double> standard_errors;  ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b (sopdt_zero)
+    std::vector<double> y_model;                    ///< its free run at the times of IdentifiedModel::fit
+};
+
+/// Of the chosen plant's parameters; rows and columns in the order of `names`.
+struct ParameterCovariance {
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> matrix;
 };
 
 /// The chosen model beside the record: for the plot.
@@ -53,6 +61,10 @@ struct IdentifiedModel {
     double fit_percent = 0;
     std::vector<Candidate> candidates;
     std::map<std::string, double> standard_errors;
+    ParameterCovariance covariance;
+    std::optional<LimitCycle> limit_cycle;  ///< of a relay test
+    std::vector<FrequencyPoint> frequency_points;
+    std::optional<UltimatePoint> ultimate_point;  ///< of the plant; empty where no P gain makes it oscillate
     std::string choice_reason;  ///< why this structure, one sentence
     FitTrace fit;
     DataQuality data_quality;

@@ -16,7 +16,7 @@ std::string detail_at(const std::vector<FieldError>& faults, std::string_view po
 }
 
 std::string data_file(const std::string& name) {
-    std::ifstream file(std::string(TEST_DATA) + "/" + name);
+    std::ifstream file(test_data(name));
     EXPECT_TRUE(file.good()) << name;
     std::ostringstream text;
     text << file.rdbuf();

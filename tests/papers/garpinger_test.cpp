@@ -83,7 +83,7 @@ class ReferenceBatch : public ::testing::TestWithParam<BatchCase> {};
 
 TEST_P(ReferenceBatch, IaeWithinATenthOfAPercentAndLimitsKept) {
     const BatchCase& c = GetParam();
-    std::ifstream file(std::string(TEST_DATA) + "/robust/public.json");
+    std::ifstream file(test_data("robust/public.json"));
     const auto data = nlohmann::json::parse(file);
     int designs = 0;
     for (const auto& row : data["rows"]) {
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Garpinger, ReferenceBatch,
 
 /// The simulator alone, on the reference's own parameters: IAE and peaks.
 TEST(Garpinger, EvaluationAgreesWithTheReferenceOnItsOwnDesigns) {
-    std::ifstream file(std::string(TEST_DATA) + "/robust/public.json");
+    std::ifstream file(test_data("robust/public.json"));
     const auto data = nlohmann::json::parse(file);
     for (const auto& row : data["rows"])
         for (const char* name : {"pid_M1.4_td10", "pid_M1.4_fixedTf", "pi_M1.4"}) {

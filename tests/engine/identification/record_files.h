@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/identification/record.h"
+#include "tests/test_data.h"
 
 namespace tunewright::testing {
 
@@ -24,7 +25,7 @@ inline std::vector<std::string> cells_of(const std::string& line) {
 /// Columns by heading from tests/data/records/<file>; what is no number becomes NaN.
 inline Record read_record(const std::string& file, const std::string& t = "t", const std::string& u = "u",
                           const std::string& y = "y") {
-    std::ifstream stream(std::string(TEST_DATA) + "/records/" + file);
+    std::ifstream stream(test_data("records/" + file));
     std::string line;
     if (!std::getline(stream, line)) throw std::runtime_error("cannot read " + file);
     const std::vector<std::string> headings = cells_of(line);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/plant/plant.h"
+#include "tests/test_data.h"
 
 namespace tunewright::test {
 
@@ -37,7 +38,7 @@ inline Zpk plant_of(const nlohmann::json& row) {
 
 inline const nlohmann::json& reference_rows() {
     static const nlohmann::json rows = [] {
-        std::ifstream file(std::string(TEST_DATA) + "/robust/public.json");
+        std::ifstream file(test_data("robust/public.json"));
         return nlohmann::json::parse(file).at("rows");
     }();
     return rows;

@@ -4,6 +4,8 @@
 #include <set>
 #include <sstream>
 
+#include "tests/test_data.h"
+
 namespace tunewright::api {
 
 std::string detail_at(const std::vector<FieldError>& faults, std::string_view pointer) {

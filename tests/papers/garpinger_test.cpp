@@ -9,6 +9,7 @@
 
 #include "engine/evaluate.h"
 #include "engine/tuning/method.h"
+#include "tests/test_data.h"
 
 namespace tunewright {
 namespace {

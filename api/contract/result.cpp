@@ -173,7 +173,13 @@ const Description<DataQuality>& quality_contract() {
         const auto count = [] { return only_answered(integer(0, 1 << 30)); };
         const auto size = [] { return only_answered(number()); };
         const auto truth = [] { return only_answered(boolean()); };
-        d.field("samples", &Q::samples, count(), "Samples used.")
+        d.field("kind", &Q::kind,
+                only_answered(choice<RecordKind>({{"step", RecordKind::step},
+                                                  {"several_steps", RecordKind::several_steps},
+                                                  {"relay", RecordKind::relay},
+                                                  {"general", RecordKind::general}})),
+                "What the test was, as given or found.")
+            .field("samples", &Q::samples, count(), "Samples used.")
             .field("samples_dropped", &Q::samples_dropped, count(),
                    "Samples left out: blank cells, repeated or backward times.")
             .field("sample_time", &Q::sample_time, size(), "Median spacing.", {.unit = "time"})

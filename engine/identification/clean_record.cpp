@@ -183,6 +183,7 @@ Expected<CleanRecord> clean_record(const Record& record) {
         return Error{ErrorKind::invalid_argument, "record",
                      "The record's numbers span more than double precision holds; give it in other units."};
     }
+    clean.kind = record.kind;
     clean.u0_given = record.u0.has_value();
     if (record.y0) clean.y_rest = (*record.y0 - s.y_origin) / s.y_scale;
     return clean;

@@ -22,8 +22,9 @@ struct RecordScale {
 struct CleanRecord {
     std::vector<double> t, y;
     std::vector<double> v_time, v_level;
-    std::optional<double> y_rest;  ///< y0 where the user gave it
-    bool u0_given = false;         ///< then the level of rest is known, also for integrating plants
+    std::optional<double> y_rest;             ///< y0 where the user gave it
+    bool u0_given = false;                    ///< then the level of rest is known, also for integrating plants
+    RecordKind kind = RecordKind::automatic;  ///< as given
     RecordScale scale;
     int dropped = 0;  ///< rows left out
     int u_only = 0;   ///< rows whose y is no number: their u still counts

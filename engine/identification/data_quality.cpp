@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/record_kind.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
@@ -66,6 +67,7 @@ double quantisation_step(std::span<const double> y) {
 
 DataQuality describe_record(const CleanRecord& r) {
     DataQuality quality;
+    quality.kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
     quality.samples = r.samples();
     quality.steps = r.changes();
     quality.samples_dropped = r.dropped;

@@ -45,6 +45,7 @@ struct FitTrace {
 
 /// What was found in the record and what was done about it. Named figures, sentences beside them.
 struct DataQuality {
+    RecordKind kind = RecordKind::automatic;  ///< as given, or found; never automatic in an answer
     int samples = 0;
     double sample_time = 0;  ///< median spacing
     bool irregular = false;
@@ -65,7 +66,7 @@ struct IdentifiedModel {
     std::optional<LimitCycle> limit_cycle;  ///< of a relay test
     std::vector<FrequencyPoint> frequency_points;
     std::optional<UltimatePoint> ultimate_point;  ///< of the plant; empty where no P gain makes it oscillate
-    std::string choice_reason;  ///< why this structure, one sentence
+    std::string choice_reason;                    ///< why this structure, one sentence
     FitTrace fit;
     DataQuality data_quality;
     std::vector<Warning> warnings;

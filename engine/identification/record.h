@@ -7,7 +7,8 @@
 
 namespace tunewright {
 
-enum class RecordKind { automatic, step, relay, general };
+/// `several_steps` is an answer's word: fewer than 20 changes of u that are no relay's.
+enum class RecordKind { automatic, step, several_steps, relay, general };
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
 /// hold). Lengths are equal.

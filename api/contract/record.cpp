@@ -1,6 +1,9 @@
 #include "api/contract/record.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
@@ -44,6 +47,9 @@ const Description<ColumnChoices>& columns_contract() {
 }
 
 void check_record(const Json&, GivenRecord& record, Reader& reader) {
+    if (record.from && record.to && *record.to <= *record.from)
+        reader.fault_at("to", "to is " + tunewright::text(*record.to) + " and from " + tunewright::text(*record.from) +
+                                  "; the part that is used must end after it starts.");
     if (record.csv) {
         for (const auto& [name, given] :
              {std::pair{"t", record.t.has_value()}, {"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
@@ -77,6 +83,37 @@ std::vector<double> times(double dt, std::size_t count) {
     std::vector<double> out(count);
     for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<double>(i) * dt;
     return out;
+}
+
+// The samples of the chosen part; all of them where none is chosen.
+void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
+    if (!given.from && !given.to) return;
+    constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+    const double from = given.from.value_or(-kUnlimited), to = given.to.value_or(kUnlimited);
+    Record part;
+    part.kind = read.record.kind;
+    part.u0 = given.u0;
+    part.y0 = given.y0;
+    for (std::size_t i = 0; i < read.record.t.size(); ++i) {
+        const double t = read.record.t[i];
+        if (!(t >= from && t <= to)) continue;
+        part.t.push_back(t);
+        part.u.push_back(read.record.u[i]);
+        part.y.push_back(read.record.y[i]);
+    }
+    if (part.t.size() < 2) {
+        const auto [first, last] = std::minmax_element(read.record.t.begin(), read.record.t.end());
+        const std::string extent = read.record.t.empty() ? ""
+                                                         : " It runs from " + tunewright::text(*first) + " to " +
+                                                               tunewright::text(*last) + ".";
+        reader.fault_at(given.from ? "from" : "to", "fewer than 2 samples of the record lie in the part that is used." +
+                                                        extent + " Choose a wider part.");
+        return;
+    }
+    read.notes.push_back("Of " + std::to_string(read.record.t.size()) + " samples, the " +
+                         std::to_string(part.t.size()) + " from " + tunewright::text(part.t.front()) + " to " +
+                         tunewright::text(part.t.back()) + " were used, as asked.");
+    read.record = std::move(part);
 }
 
 }  // namespace
@@ -120,6 +157,9 @@ const Description<GivenRecord>& record_contract() {
                    "What the test was.")
             .field("u0", &GivenRecord::u0, maybe(number()), "Controller output before the first sample.", {.unit = "u"})
             .field("y0", &GivenRecord::y0, maybe(number()), "Measurement before the first sample.", {.unit = "y"})
+            .field("from", &GivenRecord::from, maybe(number()), "Only samples from this time on are used.",
+                   {.unit = "time"})
+            .field("to", &GivenRecord::to, maybe(number()), "Only samples up to this time are used.", {.unit = "time"})
             .check(check_record);
         return d;
     }();
@@ -159,6 +199,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         out.record.t = given.t ? std::move(*given.t) : times(*given.dt, given.y->size());
         out.record.u = std::move(*given.u);
         out.record.y = std::move(*given.y);
+        choose_part(given, out, reader);
         return out;
     }
     const CsvOptions options{given.columns.value_or(ColumnChoices{}), units.time_or_default(), units.time.has_value(),
@@ -181,6 +222,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.y = std::move(record.y);
     out.dropped = record.dropped;
     out.notes = std::move(record.notes);
+    choose_part(given, out, reader);
     return out;
 }
 

@@ -23,6 +23,7 @@ struct GivenRecord {
     std::optional<ColumnChoices> columns;
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;
+    std::optional<double> from, to;  ///< the part that counts
 };
 
 /// A record as the engine takes it, and what reading it has found.

@@ -206,6 +206,26 @@ TEST(Answers, IdentifyCountsTheLinesThatTheCsvLacked) {
     EXPECT_NEAR(body["model"]["plant"]["L"].get<double>(), 2, 1e-2);
 }
 
+TEST(Answers, IdentifyUsesOnlyThePartOfTheRecordThatIsAskedFor) {
+    // Outside the part another plant answers: its gain is 7, not 2.
+    std::string csv = "t,u,y\n";
+    for (int i = 0; i <= 400; ++i) {
+        const double t = 0.25 * i, K = t <= 60 ? 2 : 7;
+        csv += std::to_string(t) + "," + (t >= 3 ? "1" : "0") + "," +
+               std::to_string(t > 5 ? K * (1 - std::exp(-(t - 5) / 4)) : 0) + "\n";
+    }
+    const Answer answer = identify_call(
+        Json{{"record", {{"csv", csv}, {"from", 1}, {"to", 60}}}, {"identify", {{"model", "fopdt"}}}}.dump(), {});
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const Json model = Json::parse(answer.body)["model"];
+    EXPECT_EQ(model["data_quality"]["samples"], 237);
+    EXPECT_THAT(model["data_quality"]["notes"].dump(), HasSubstr("Of 401 samples, the 237 from 1 to 60 were used"));
+    EXPECT_EQ(model["fit"]["t"].front(), 1);
+    EXPECT_EQ(model["fit"]["t"].back(), 60);
+    EXPECT_NEAR(model["plant"]["K"].get<double>(), 2, 1e-3);
+    EXPECT_NEAR(model["plant"]["L"].get<double>(), 2, 1e-2);
+}
+
 TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {
     // SIMC has no tau_c for a plant without lag and dead time other than the one that is given.
     const std::string plant = R"({"plant": {"type": "transfer_function", "num": [1], "den": [1, 1]}, "tune": [)";

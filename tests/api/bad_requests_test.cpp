@@ -198,6 +198,11 @@ INSTANTIATE_TEST_SUITE_P(
                                }() +
                                "]}"),
                    422, "/record/y", "200001 numbers; it must have 2 to 200000"},
+        BadRequest{"PartThatEndsBeforeItStarts",
+                   with_record(R"({"dt": 1, "u": [0, 1, 1], "y": [0, 0, 1], "from": 2, "to": 1})"), 422, "/record/to",
+                   "to is 1 and from 2; the part that is used must end after it starts"},
+        BadRequest{"PartBesideTheRecord", with_record(R"({"dt": 1, "u": [0, 1, 1], "y": [0, 0, 1], "from": 7})"), 422,
+                   "/record/from", "It runs from 0 to 2. Choose a wider part."},
         BadRequest{"CsvAndArrays", with_record(R"({"csv": "t,u,y\n0,0,0", "y": [1, 2]})"), 422, "/record/y",
                    "beside csv"},
         BadRequest{"CsvWithoutLines", with_record(R"({"csv": "t,u,y\n"})"), 422, "/record/csv", "no line of numbers"},

@@ -149,6 +149,44 @@ export async function openPage(browser, { scheme = "light", width = 1440, height
   };
 }
 
+/**
+ * Runs a test body on a fresh page at an address below the service; the page must end without a fault. Chromium reports
+ * every 4xx answer on the console: those that the body means to provoke are named in `expected`.
+ */
+export async function withPage(service, browser, address, options, body, expected = []) {
+  const opened = await openPage(browser, options);
+  try {
+    await opened.page.goto(`${service.base}/${address}`);
+    await body(opened.page);
+    const faults = (await opened.faults()).filter((fault) => !expected.some((status) => fault.includes(status)));
+    if (faults.length > 0) throw new Error(`The page met faults:\n${faults.join("\n")}`);
+  } finally {
+    await opened.close();
+  }
+}
+
+/** Lets go of a text file over an element. */
+export async function dropFile(page, selector, name, text) {
+  const transfer = await page.evaluateHandle(
+    ([fileName, content]) => {
+      const data = new DataTransfer();
+      data.items.add(new File([content], fileName, { type: "text/csv" }));
+      return data;
+    },
+    [name, text],
+  );
+  await page.locator(selector).dispatchEvent("drop", { dataTransfer: transfer });
+}
+
+/** How many traces a plot shows; a path that is not a number fails. */
+export async function drawnTraces(page, title) {
+  const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
+  const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
+  const broken = paths.find((d) => /NaN|Infinity|undefined/.test(d));
+  if (broken) throw new Error(`${title}: ${broken.slice(0, 200)}`);
+  return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
+}
+
 /** What axe-core finds wrong with the page, one line each. */
 export async function accessibilityViolations(page) {
   const source = readFileSync(fromWeb.resolve("axe-core/axe.min.js"), "utf8");

@@ -1,12 +1,15 @@
 // Starts the page: header, routes, the job that is followed, and what happens when something unforeseen goes wrong.
-import { getExamples, getJob, getMethods, getRecentJobs, watchJob } from "./api/jobs.ts";
-import type { Job } from "./api/types.ts";
+import { getExamples, getJob, getMethods, getRecentJobs, postJob, watchJob } from "./api/jobs.ts";
+import type { FieldError, IdentifyRequest, Job } from "./api/types.ts";
 import { h } from "./dom.ts";
+import type { TuneSubject } from "./form/tune_subject.ts";
 import { formatRoute, parseRoute } from "./routes.ts";
 import type { Route } from "./routes.ts";
 import { createStore } from "./store.ts";
 import { applyTheme, themeButton } from "./theme.ts";
 import { designView } from "./views/design.ts";
+import { identifyView } from "./views/identify.ts";
+import { noRecordView } from "./views/no_record.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
 
@@ -16,6 +19,7 @@ const store = createStore({
   jobTrouble: "",
   selected: null,
   drawn: null,
+  test: null,
   methods: [],
   examples: [],
   recent: [],
@@ -26,7 +30,11 @@ const status = h("p", { class: "visually-hidden", role: "status" });
 const announce = (sentence: string): void => {
   status.textContent = sentence;
 };
-const links = { start: h("a", { href: "#/" }, "Start"), design: h("a", { href: "#/", hidden: true }, "Design") };
+const links = {
+  start: h("a", { href: "#/" }, "Start"),
+  identify: h("a", { href: "#/identify" }, "Identify"),
+  design: h("a", { href: "#/", hidden: true }, "Design"),
+};
 const skip = h("a", { class: "skip", href: "#main" }, "Skip to the content");
 const stage = h("div", { class: "stage" });
 
@@ -40,7 +48,7 @@ document.body.append(
     "header",
     { class: "top" },
     h("a", { class: "brand", href: "#/" }, "Tunewright"),
-    h("nav", { "aria-label": "Screens" }, links.start, links.design),
+    h("nav", { "aria-label": "Screens" }, Object.values(links)),
     h("div", { class: "tools" }, h("a", { href: "openapi.json" }, "API"), themeButton()),
   ),
   stage,
@@ -65,15 +73,66 @@ function mount(next: View, title: string, focus: boolean): void {
 /** The start screen is kept: what was typed is still there when one comes back. */
 function startScreen(): StartView {
   start ??= startView(store, {
-    onJob(job) {
-      store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null }));
-      location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
-    },
+    onJob: openJob,
+    onRecord: openRecord,
     onModel(form, values) {
       history.replaceState(null, "", formatRoute({ screen: "new", plant: form, values }));
     },
   });
   return start;
+}
+
+function openJob(job: Job): void {
+  store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null }));
+  location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
+}
+
+function openRecord(test: IdentifyRequest): void {
+  store.set((workspace) => ({ ...workspace, test }));
+  const address = formatRoute({ screen: "identify", job: null });
+  if (location.hash === address) go(false);
+  else location.hash = address;
+}
+
+/** What Identify found goes to the tuner with the methods and settings that stand on Start. */
+async function tuneSubject(subject: TuneSubject): Promise<FieldError[]> {
+  const { request, faults } = startScreen().compose(subject);
+  if (faults.length > 0) return faults;
+  openJob(await postJob(request));
+  return [];
+}
+
+function identifyScreen(test: IdentifyRequest): View {
+  return identifyView(test, announce, {
+    onChange(changed) {
+      store.set((workspace) => ({ ...workspace, test: changed }));
+      startScreen().loadRecord(changed.record, changed.identify);
+    },
+    onTune: tuneSubject,
+  });
+}
+
+/** A job's record, with the methods and settings of its request. */
+async function openJobRecord(id: string, focus: boolean): Promise<void> {
+  try {
+    const known = store.get().job;
+    const job = known?.id === id && known.request ? known : await getJob(id);
+    const { name, units, record, identify } = job.request ?? {};
+    const route = store.get().route;
+    if (route.screen !== "identify" || route.job !== id) return;
+    if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
+    startScreen().load(job.request);
+    const test: IdentifyRequest = {
+      ...(name ? { name } : {}),
+      ...(units ? { units } : {}),
+      record,
+      ...(identify ? { identify } : {}),
+    };
+    store.set((workspace) => ({ ...workspace, test }));
+    mount(identifyScreen(test), "Identify · Tunewright", focus);
+  } catch (error) {
+    mount(noRecordView(error instanceof Error ? error.message : String(error)), "Identify · Tunewright", focus);
+  }
 }
 
 function follow(id: string): void {
@@ -124,16 +183,19 @@ async function loadForm(route: Route): Promise<void> {
   }
 }
 
+function markCurrent(route: Route): void {
+  for (const [screen, link] of Object.entries(links)) {
+    const shown = route.screen === screen || (screen === "start" && !(route.screen in links));
+    if (shown) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+}
+
 function go(first: boolean): void {
   const route = parseRoute(location.hash);
   const before = store.get();
   store.set((workspace) => ({ ...workspace, route }));
-  links.start.toggleAttribute("data-current", route.screen !== "design");
-  links.design.toggleAttribute("data-current", route.screen === "design");
-  for (const link of Object.values(links)) {
-    if (link.hasAttribute("data-current")) link.setAttribute("aria-current", "page");
-    else link.removeAttribute("aria-current");
-  }
+  markCurrent(route);
   if (route.screen === "design") {
     const same = before.job?.id === route.job;
     store.set((workspace) => ({
@@ -151,6 +213,12 @@ function go(first: boolean): void {
   }
   stopWatching?.();
   stopWatching = null;
+  if (route.screen === "identify") {
+    if (route.job !== null) return void openJobRecord(route.job, !first);
+    const test = before.test;
+    mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
+    return;
+  }
   mount(startScreen(), "Tunewright", !first);
   void loadForm(route);
   void refreshRecent();

@@ -5,6 +5,9 @@ export type Route =
   | { screen: "new"; plant: string; values: Record<string, string> }
   | { screen: "example"; id: string }
   | { screen: "edit"; job: string }
+  /** A recorded test: of that job, or the one at hand. */
+  | { screen: "identify"; job: string | null }
+  | { screen: "relay"; plant: string; values: Record<string, string> }
   | { screen: "design"; job: string; entry: number | null };
 
 /** The route of a location hash; anything unknown is the start. */
@@ -14,7 +17,10 @@ export function parseRoute(hash: string): Route {
   const values = Object.fromEntries(new URLSearchParams(query));
   if (parts[0] === "new" && parts[1]) return { screen: "new", plant: parts[1], values };
   if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
+  if (parts[0] === "identify") return { screen: "identify", job: null };
+  if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && parts[1]) {
+    if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
     const entry = /^\d+$/.test(values["entry"] ?? "") ? Number(values["entry"]) : null;
     return { screen: "design", job: parts[1], entry };
@@ -27,10 +33,14 @@ export function formatRoute(route: Route): string {
   switch (route.screen) {
     case "start":
       return "#/";
-    case "new": {
+    case "new":
+    case "relay": {
       const query = new URLSearchParams(Object.entries(route.values).filter(([, value]) => value !== "")).toString();
-      return `#/new/${encodeURIComponent(route.plant)}${query ? `?${query}` : ""}`;
+      const plant = route.plant === "" ? "" : `/${encodeURIComponent(route.plant)}`;
+      return `#/${route.screen}${plant}${query ? `?${query}` : ""}`;
     }
+    case "identify":
+      return route.job === null ? "#/identify" : `#/jobs/${encodeURIComponent(route.job)}/identify`;
     case "example":
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":

@@ -1,5 +1,5 @@
 // The page's state: one immutable workspace. Every change is a function from one workspace to the next; subscribers run once per frame.
-import type { Example, Job, Method } from "./api/types.ts";
+import type { Example, IdentifyRequest, Job, Method } from "./api/types.ts";
 import type { Route } from "./routes.ts";
 
 export interface Workspace {
@@ -11,6 +11,8 @@ export interface Workspace {
   selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;
+  /** The recorded test that is being looked at. */
+  test: IdentifyRequest | null;
   methods: Method[];
   examples: Example[];
   recent: Job[];

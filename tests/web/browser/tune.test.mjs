@@ -2,7 +2,14 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test, { after, before } from "node:test";
-import { accessibilityViolations, launchBrowser, openPage, startService } from "../harness.mjs";
+import {
+  accessibilityViolations,
+  drawnTraces,
+  launchBrowser,
+  openPage,
+  startService,
+  withPage as open,
+} from "../harness.mjs";
 
 let service;
 let browser;
@@ -17,17 +24,7 @@ after(async () => {
   await service?.stop();
 });
 
-/** Runs a test body on a fresh page at an address below the service; the page must end without a fault. */
-async function withPage(address, options, body) {
-  const opened = await openPage(browser, options);
-  try {
-    await opened.page.goto(`${service.base}/${address}`);
-    await body(opened.page);
-    assert.deepEqual(await opened.faults(), []);
-  } finally {
-    await opened.close();
-  }
-}
+const withPage = (address, options, body) => open(service, browser, address, options, body);
 
 /** The answer of the API for the job that the page's address names. */
 async function jobOf(page) {
@@ -45,17 +42,6 @@ async function figure(page, group, label, column = 0) {
     .filter({ has: page.locator("tr.group", { hasText: new RegExp(`^${group}$`) }) });
   const row = body.locator("tr").filter({ has: page.locator("th[scope=row]", { hasText: label }) });
   return (await row.first().locator("td").nth(column).innerText()).replace("−", "-");
-}
-
-/** Every drawn path of a plot must be finite and, for the traces, longer than a single point. */
-async function drawnTraces(page, title) {
-  const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
-  const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
-  assert.ok(
-    paths.every((d) => !/NaN|Infinity|undefined/.test(d)),
-    title,
-  );
-  return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
 }
 
 const asShown = (value) => Number(Number(value).toPrecision(3));
@@ -121,39 +107,6 @@ test("settings change their form and are copied with all their digits", async ()
     const copied = await page.evaluate(() => navigator.clipboard.readText());
     const Ki = Number(/^Ki = (\S+)/m.exec(copied)[1]);
     assert.ok(Math.abs(Ki / entry.equivalents.parallel.Ki - 1) < 1e-4, copied);
-  });
-});
-
-test("a dropped record is identified, tuned and drawn with its model", async () => {
-  // A first-order step response with known parameters: K 2, T 30, L 5 from rest at y = 20.
-  const rows = Array.from({ length: 400 }, (_, t) => {
-    const y = 20 + (t > 25 ? 10 * (1 - Math.exp(-(t - 25) / 30)) : 0);
-    return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
-  });
-  await withPage("", {}, async (page) => {
-    const transfer = await page.evaluateHandle(
-      (text) => {
-        const data = new DataTransfer();
-        data.items.add(new File([text], "step.csv", { type: "text/csv" }));
-        return data;
-      },
-      ["t,u,y", ...rows].join("\n"),
-    );
-    await page.locator(".drop").dispatchEvent("drop", { dataTransfer: transfer });
-    await page.getByText("step.csv: 401 lines.").waitFor();
-    await page.getByRole("button", { name: "Tune from this test" }).click();
-    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const job = await jobOf(page);
-    const { model } = job.result;
-    assert.ok(model.fit_percent > 99, `fit ${model.fit_percent}`);
-    assert.ok(Math.abs(model.plant.K / 2 - 1) < 0.01, `K ${model.plant.K}`);
-    const card = page.locator("section").filter({ has: page.getByRole("heading", { name: "Model from the record" }) });
-    assert.equal(
-      Number(await card.locator("tr", { hasText: "Fit" }).locator("td").first().innerText()),
-      asShown(model.fit_percent),
-    );
-    assert.equal(await drawnTraces(page, "Recorded test and model"), 2 + (model.fit.u ? 1 : 0));
-    assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
   });
 });
 

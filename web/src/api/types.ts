@@ -23,6 +23,17 @@ export interface RecordedTest {
   kind?: string;
   u0?: number;
   y0?: number;
+  /** The part that counts, in its own times. */
+  from?: number;
+  to?: number;
+}
+
+/** What POST /v1/identify takes. */
+export interface IdentifyRequest {
+  name?: string;
+  units?: Units;
+  record: RecordedTest;
+  identify?: Record<string, unknown>;
 }
 
 export interface Baseline {
@@ -148,15 +159,54 @@ export interface Entry {
   partial?: boolean;
 }
 
+export interface Candidate {
+  plant: Plant;
+  fit_percent: number | null;
+  criterion?: number | null;
+  standard_errors?: Record<string, number | null>;
+  /** Its free run at the times of the model's fit. */
+  y_model?: (number | null)[];
+}
+
+export interface UltimatePoint {
+  Ku: number | null;
+  Pu: number | null;
+}
+
+/** The steady oscillation of a relay test. */
+export interface LimitCycle {
+  Pu: number;
+  Au: number;
+  /** In rad, (-2 pi, 0]. */
+  phi_u: number;
+  periods: number;
+  shift?: { sigma: number; A: number; phi: number };
+  fit_rms?: number | null;
+  describing_function?: UltimatePoint;
+}
+
+export interface FrequencyPoint {
+  omega: number;
+  re: number;
+  im: number;
+  std: number | null;
+}
+
+/** How much of an identified region a controller stabilises. */
+export interface Region {
+  stable_fraction?: number | null;
+  worst_Ms?: number | null;
+  why_null?: WhyNull;
+}
+
 export interface Model {
   plant: Plant;
   fit_percent: number | null;
-  candidates?: {
-    plant: Plant;
-    fit_percent: number | null;
-    criterion?: number | null;
-    standard_errors?: Record<string, number | null>;
-  }[];
+  candidates?: Candidate[];
+  choice_reason?: string;
+  limit_cycle?: LimitCycle;
+  frequency_points?: FrequencyPoint[];
+  ultimate_point?: UltimatePoint | null;
   fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
   standard_errors?: Record<string, number | null>;
   data_quality?: Record<string, unknown>;

@@ -16,6 +16,7 @@ export interface Trace {
 export type Mark =
   | { kind: "level"; value: number; label?: string; role: "setpoint" | "limit" | "zero" }
   | { kind: "upright"; value: number; label?: string; role: "setpoint" | "limit" | "zero" }
+  | { kind: "band"; from: number; to: number; label?: string }
   | { kind: "circle"; x: number; y: number; radius: number; label: string; labelAt: "above" | "below" }
   | { kind: "point"; x: number; y: number; label: string };
 

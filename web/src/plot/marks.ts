@@ -169,6 +169,21 @@ function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
         }),
       ];
     }
+    case "band": {
+      const [from, to] = [box.x.toPixel(mark.from), box.x.toPixel(mark.to)];
+      const edge = (x: number): string => `M${round(x)} ${round(box.top)}V${round(box.top + box.height)}`;
+      return [
+        node("rect", {
+          x: round(Math.min(from, to)),
+          y: round(box.top),
+          width: round(Math.abs(to - from)),
+          height: round(box.height),
+          fill: "var(--accent)",
+          "fill-opacity": 0.07,
+        }),
+        node("path", { d: edge(from) + edge(to), fill: "none", stroke: "var(--accent)", "stroke-width": 1.5 }),
+      ];
+    }
     case "circle": {
       const radius = Math.abs(box.x.toPixel(mark.x + mark.radius) - box.x.toPixel(mark.x));
       const centre = { cx: round(box.x.toPixel(mark.x)), cy: round(box.y.toPixel(mark.y)), r: round(radius) };
@@ -198,6 +213,8 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
         const line = box.y.toPixel(mark.value);
         return at(right - 5, line - box.top > 15 ? line - 4 : line + 14, "end");
       }
+      case "band":
+        return at(box.x.toPixel(mark.from) + 5, box.top + 14, "start");
       case "upright":
         return at(box.x.toPixel(mark.value) + 5, box.top + 14, "start");
       case "circle": {

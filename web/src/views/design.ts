@@ -39,13 +39,14 @@ export function designView(store: Store, announce: (sentence: string) => void, o
   const plantLine = h("p", { class: "hint" });
   const formula = h("div", { class: "formula small" });
   const editLink = h("a", { href: "#/" }, "Change the request");
+  const recordLink = h("a", { href: "#/" }, "Look at the record");
   const titleCard = h(
     "section",
     { class: "card title" },
     heading,
     plantLine,
     formula,
-    h("p", { class: "actions" }, editLink),
+    h("p", { class: "actions" }, editLink, recordLink),
   );
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
@@ -91,6 +92,8 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     formula.replaceChildren(...(tree ? [mathElement(tree)] : []));
     formula.hidden = tree === null;
     editLink.href = formatRoute({ screen: "edit", job: job.id });
+    recordLink.href = formatRoute({ screen: "identify", job: job.id });
+    recordLink.hidden = !request?.record;
   }
 
   function showFigures(result: Result, drawn: Drawn[], names: string[], units: UnitNames): void {

@@ -1,32 +1,27 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
 import type { FieldError, RecordedTest } from "../api/types.ts";
 import { h } from "../dom.ts";
-import { areaField, choiceField, textField } from "../form/controls.ts";
+import { areaField } from "../form/controls.ts";
 import type { FormErrors } from "../form/errors.ts";
+import { csvOf, recordFields } from "../form/record_fields.ts";
+import type { Identify } from "../form/record_fields.ts";
 
 export interface RecordCard {
   element: HTMLFormElement;
-  read(): { record: RecordedTest; identify: Record<string, unknown>; errors: FieldError[] };
-  load(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
+  read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
+  load(record: RecordedTest, identify: Identify | undefined): void;
 }
-
-const KINDS = [
-  ["auto", "automatic"],
-  ["step", "step test"],
-  ["relay", "relay test"],
-  ["general", "any other movement"],
-] as const;
-
-const MODELS = [
-  ["auto", "automatic"],
-  ["fopdt", "first order with dead time"],
-  ["sopdt", "second order with dead time"],
-  ["ipdt", "integrating with dead time"],
-] as const;
 
 const LARGEST_BYTES = 8 * 1024 * 1024;
 
-export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
+export interface RecordCardEvents {
+  /** Look at the record first: also what a file that arrives does. */
+  onIdentify(): void;
+  /** Straight to the controller. */
+  onTune(): void;
+}
+
+export function recordCard(errors: FormErrors, events: RecordCardEvents): RecordCard {
   const status = h("p", { class: "hint", role: "status" });
   const file = h("input", {
     type: "file",
@@ -48,30 +43,26 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     },
     errors,
   );
-  const column = (name: "t" | "u" | "y", meaning: string): ReturnType<typeof textField> =>
-    textField(
-      {
-        label: `Column ${name}`,
-        hint: `${meaning}; heading or number`,
-        placeholder: "auto",
-        pointer: () => `/record/columns/${name}`,
-      },
-      errors,
-    );
-  const columns = { t: column("t", "time"), u: column("u", "output"), y: column("y", "measurement") };
-  const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
-  const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
+  const fields = recordFields(errors, false);
   const element = h(
     "form",
     { class: "card", novalidate: true },
     h("h2", {}, "A recorded test"),
-    h("p", { class: "hint" }, "You moved the controller's output by hand and logged the measurement."),
+    h(
+      "p",
+      { class: "hint" },
+      "A step, a relay test, or any movement of the controller's output with the measurement that followed.",
+    ),
     drop,
     status,
     csv.element,
-    h("div", { class: "fields three" }, columns.t.element, columns.u.element, columns.y.element),
-    h("div", { class: "fields" }, kind.element, model.element),
-    h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Tune from this test")),
+    h("details", {}, h("summary", {}, "Columns, kind of test, model"), h("div", { class: "stack" }, fields.elements)),
+    h(
+      "div",
+      { class: "actions" },
+      h("button", { type: "submit", class: "primary" }, "Identify this test"),
+      h("button", { type: "button", onclick: () => events.onTune() }, "Tune at once"),
+    ),
   );
 
   async function take(chosen: File | undefined): Promise<void> {
@@ -84,6 +75,7 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
     csv.input.dispatchEvent(new Event("input"));
     const rows = csv.input.value.split("\n").filter((line) => line.trim() !== "").length;
     status.textContent = `${chosen.name}: ${rows} lines.`;
+    events.onIdentify();
   }
 
   file.addEventListener("change", () => void take(file.files?.[0]));
@@ -100,22 +92,17 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
   });
   element.addEventListener("submit", (event) => {
     event.preventDefault();
-    onTune();
+    events.onIdentify();
   });
 
   return {
     element,
     read() {
-      const record: RecordedTest = { csv: csv.input.value };
-      const named = Object.entries(columns).flatMap(([name, field]) =>
-        field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : [],
-      );
-      if (named.length > 0) record.columns = Object.fromEntries(named);
-      if (kind.input.value !== "auto") record.kind = kind.input.value;
+      const read = fields.read();
       const missing = csv.input.value.trim() === "";
       return {
-        record,
-        identify: { model: model.input.value },
+        record: { ...read.record, csv: csv.input.value },
+        identify: read.identify,
         errors: missing
           ? [
               {
@@ -123,25 +110,13 @@ export function recordCard(errors: FormErrors, onTune: () => void): RecordCard {
                 detail: "There is no record yet. Drop a CSV file, choose one, or paste its text.",
               },
             ]
-          : [],
+          : read.errors,
       };
     },
     load(record, identify) {
-      csv.input.value = record.csv ?? csvOf(record);
-      for (const name of ["t", "u", "y"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
-      kind.input.value = record.kind ?? "auto";
-      const wanted = identify?.["model"];
-      model.input.value = typeof wanted === "string" && MODELS.some(([id]) => id === wanted) ? wanted : "auto";
+      csv.input.value = csvOf(record);
+      fields.load(record, identify);
       status.textContent = "";
     },
   };
-}
-
-/** A column is named by its heading, or by its number from 1. */
-const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? Number(text) : text);
-
-/** A record given as numbers, as the text that the field shows. */
-function csvOf(record: RecordedTest): string {
-  const { t, u = [], y = [], dt = 1 } = record;
-  return ["t,u,y", ...y.map((value, index) => `${t?.[index] ?? index * dt},${u[index] ?? ""},${value}`)].join("\n");
 }

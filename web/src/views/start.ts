@@ -1,9 +1,10 @@
 // Start: a record, a model, or an example; everything below is optional.
 import { ApiError } from "../api/client.ts";
 import { postJob } from "../api/jobs.ts";
-import type { Example, FieldError, Job, TuningRequest } from "../api/types.ts";
+import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import type { TuneSubject } from "../form/tune_subject.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
@@ -23,11 +24,16 @@ export interface StartEvents {
   onJob(job: Job): void;
   /** The model as typed, for the address. */
   onModel(form: string, values: Record<string, string>): void;
+  /** A record to look at. */
+  onRecord(request: IdentifyRequest): void;
 }
 
 export interface StartView extends View {
   load(request: TuningRequest): void;
   loadTyped(form: string, values: Record<string, string>): void;
+  loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
+  /** A tuning request about this, with the methods, units and settings that stand in the form. */
+  compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] };
 }
 
 /** So many examples stand open; the others are folded. */
@@ -41,7 +47,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
   const model = modelCard(errors, { onTune: () => void tuneModel(), onChange: events.onModel });
-  const record = recordCard(errors, () => void tuneRecord());
+  const record = recordCard(errors, { onIdentify: identifyRecord, onTune: () => void tuneRecord() });
   const methods = methodsCard(errors);
   const today = todayCard(errors, () => {
     const units = unitNames(today.readUnits());
@@ -112,20 +118,30 @@ export function startView(store: Store, events: StartEvents): StartView {
     return { request, faults: [...chosen.errors, ...baseline.errors] };
   }
 
+  function compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] } {
+    const { request, faults } = common();
+    return { request: { ...request, ...subject }, faults };
+  }
+
   async function tuneModel(): Promise<void> {
     const reading = model.read();
-    const { request, faults } = common();
-    await send({ ...request, plant: reading.plant }, [...reading.errors, ...faults]);
+    const { request, faults } = compose({ plant: reading.plant });
+    await send(request, [...reading.errors, ...faults]);
   }
 
   async function tuneRecord(): Promise<void> {
     const reading = record.read();
-    const { request, faults } = common();
-    const identify = { ...base.identify, ...reading.identify };
-    await send({ ...request, record: { ...baseRecord(base), ...reading.record }, identify }, [
-      ...reading.errors,
-      ...faults,
-    ]);
+    const { request, faults } = compose({ record: reading.record, identify: reading.identify });
+    await send(request, [...reading.errors, ...faults]);
+  }
+
+  function identifyRecord(): void {
+    const reading = record.read();
+    errors.clear();
+    if (reading.errors.length > 0) return errors.show(reading.errors);
+    const { record: test, identify } = reading;
+    const name = today.readName();
+    events.onRecord({ ...(name ? { name } : {}), units: today.readUnits(), record: test, identify });
   }
 
   function load(request: TuningRequest): void {
@@ -177,13 +193,15 @@ export function startView(store: Store, events: StartEvents): StartView {
       workspace.serviceTrouble !== previous.serviceTrouble;
     if (changed) showLists(workspace);
   });
-  return { element, heading, dispose: leave, load, loadTyped: model.loadTyped };
-}
-
-/** What the record card has no field for: values before the first sample. */
-function baseRecord(request: TuningRequest): { u0?: number; y0?: number } {
-  const { u0, y0 } = request.record ?? {};
-  return { ...(u0 === undefined ? {} : { u0 }), ...(y0 === undefined ? {} : { y0 }) };
+  return {
+    element,
+    heading,
+    dispose: leave,
+    load,
+    loadTyped: model.loadTyped,
+    loadRecord: record.load,
+    compose,
+  };
 }
 
 function exampleElement(example: Example, tune: () => void): HTMLElement {

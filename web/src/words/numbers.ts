@@ -24,6 +24,16 @@ export function formatParameter(value: number): string {
   return short !== 0 && (size < 1e-3 || size >= 1e5) ? formatNumber(short, 4) : String(short).replaceAll("-", MINUS);
 }
 
+/** "2.00003 ± 0.00048": the error with two digits, the value with as many decimals. */
+export function formatUncertain(value: number, error: number | null | undefined): string {
+  if (typeof error !== "number" || !(error > 0) || !Number.isFinite(error)) return formatParameter(value);
+  const decimals = 1 - Math.floor(Math.log10(error));
+  const size = Math.max(Math.abs(value), error);
+  if (decimals < 0 || decimals > 7 || size < 1e-3 || size >= 1e5)
+    return `${formatParameter(value)} ± ${formatNumber(error, 2)}`;
+  return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`.replaceAll("-", MINUS);
+}
+
 /** A figure to enter into a controller: five digits at most, no trailing zeros. */
 export function formatSetting(value: number | null | undefined): string {
   if (typeof value !== "number" || !Number.isFinite(value)) return DASH;

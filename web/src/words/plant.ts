@@ -14,6 +14,16 @@ const TITLES: Record<string, string> = {
 
 export const plantTitle = (type: string): string => TITLES[type] ?? type.replaceAll("_", " ");
 
+/** What an identified model is called: its structure, and what is unusual about it. */
+export function structureTitle(plant: Plant): string {
+  const T = plant["T"];
+  if (plant.type === "fopdt" && typeof T === "number" && T < 0) return "unstable first order with dead time";
+  if (plant.type === "ipdt" && typeof T === "number" && T !== 0) return "integrating with lag and dead time";
+  if (plant.type === "sopdt" && plant["zeta"] !== undefined) return "second order that oscillates";
+  if (plant.type === "transfer_function") return "second order with a zero";
+  return plantTitle(plant.type);
+}
+
 /** Parameter name -> unit. */
 export function parameterUnit(plant: Plant, name: string, units: UnitNames): string {
   if (name === "K") {

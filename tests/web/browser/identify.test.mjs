@@ -1,0 +1,223 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import test, { after, before } from "node:test";
+import {
+  accessibilityViolations,
+  drawnTraces,
+  dropFile,
+  launchBrowser,
+  root,
+  startService,
+  withPage as open,
+} from "../harness.mjs";
+
+let service;
+let browser;
+
+before(async () => {
+  service = await startService();
+  browser = await launchBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await service?.stop();
+});
+
+const withPage = (address, options, body, expected) => open(service, browser, address, options, body, expected);
+
+const shown = (value, digits = 3) => Number(Number(value).toPrecision(digits));
+const candidatesShown = (page) => page.getByRole("heading", { name: "Model candidates" }).waitFor();
+const identified = (page) =>
+  page.waitForResponse((response) => response.url().endsWith("/v1/identify") && response.status() === 200);
+
+// A first-order step response with known parameters: K 2, T 30, L 5 from rest at y = 20. From t = 250 on something else
+// moves y.
+const rows = Array.from({ length: 400 }, (_, t) => {
+  const y = 20 + (t > 25 ? 10 * (1 - Math.exp(-(t - 25) / 30)) : 0);
+  return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
+});
+const stepTest = ["t,u,y", ...rows].join("\n");
+const disturbedTest = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.02 * (t - 250)}`))].join("\n");
+
+const job = async (page) =>
+  (
+    await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)
+  ).json();
+
+test("a dropped record is identified at once, and Use and tune leads to its design", async () => {
+  await withPage("", {}, async (page) => {
+    const answered = identified(page);
+    await dropFile(page, ".drop", "step.csv", stepTest);
+    const { model } = await (await answered).json();
+    await candidatesShown(page);
+    assert.match(page.url(), /#\/identify$/);
+    const options = page.getByRole("group", { name: "Which model to use" }).locator("label");
+    assert.equal(await options.count(), model.candidates.length);
+    const chosen = await options.filter({ has: page.locator(":checked") }).innerText();
+    assert.match(chosen, /chosen by the service/);
+    assert.match(chosen, new RegExp(`fit ${shown(model.fit_percent)}`));
+    assert.match(chosen, /K 2\.000\d+ ± 0\.000\d+/);
+    await page.getByText(model.choice_reason).waitFor();
+    assert.equal(await drawnTraces(page, "Record and model"), 4, "record, model, u and residual");
+    assert.match(await page.getByRole("region", { name: "Was the test good enough?" }).innerText(), /Good enough/);
+    await page.getByText("u steps once, at 20 s, from 0 to 5.").waitFor();
+
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
+    const { request, result } = await job(page);
+    assert.equal(request.record.csv, stepTest);
+    assert.deepEqual(result.model.plant, model.plant);
+    assert.ok(Math.abs(result.model.plant.K / 2 - 1) < 0.01);
+    assert.equal(await drawnTraces(page, "Recorded test and model"), 2);
+    assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
+  });
+});
+
+test("another candidate is drawn with its own run and tuned as that model", async () => {
+  await withPage("", {}, async (page) => {
+    const answered = identified(page);
+    await dropFile(page, ".drop", "step.csv", stepTest);
+    const { model } = await (await answered).json();
+    await candidatesShown(page);
+    const residual = () =>
+      page
+        .locator("section.plot svg.canvas path")
+        .evaluateAll((list) => list.map((item) => item.getAttribute("d")).join());
+    const before = await residual();
+    const other = model.candidates.findIndex((item) => item.plant.type === "sopdt");
+    await page.getByRole("radio").nth(other).check();
+    await page.waitForFunction(
+      (old) => [...document.querySelectorAll("section.plot svg.canvas path")].map((p) => p.getAttribute("d")).join() !== old,
+      before,
+    );
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
+    const { request, result } = await job(page);
+    assert.equal(request.identify.model, "sopdt");
+    assert.equal(result.model.plant.type, "sopdt");
+    assert.ok(Math.abs(result.model.plant.K / model.candidates[other].plant.K - 1) < 1e-6);
+  });
+});
+
+test("the part that counts is chosen by slider, by keys and by number, and identified again on release", async () => {
+  await withPage("", {}, async (page) => {
+    const first = identified(page);
+    await dropFile(page, ".drop", "disturbed.csv", disturbedTest);
+    const whole = (await (await first).json()).model;
+    await candidatesShown(page);
+    const slider = page.getByRole("slider", { name: "Use up to, slider" });
+    assert.equal(await slider.getAttribute("aria-valuetext"), "Use up to 399 s");
+    const second = identified(page);
+    await page.getByLabel("Use up to (s)", { exact: true }).fill("240");
+    await page.keyboard.press("Tab");
+    const answer = await second;
+    assert.equal(answer.request().postDataJSON().record.to, 240);
+    const part = (await answer.json()).model;
+    assert.ok(Math.abs(part.plant.K / 2 - 1) < 0.02, `K ${part.plant.K}`);
+    assert.ok(part.fit_percent > 99 && whole.fit_percent < part.fit_percent);
+    assert.equal(part.fit.t.at(-1), 240);
+    // The rest of the record stays in sight.
+    assert.ok((await page.locator("section.plot svg.canvas rect[fill='var(--accent)']").count()) > 0);
+    const third = identified(page);
+    await slider.focus();
+    await page.keyboard.press("Shift+ArrowLeft");
+    const moved = (await third).request().postDataJSON().record;
+    assert.ok(moved.to < 240 && moved.to > 190, `${moved.to}`);
+    const fourth = identified(page);
+    await page.getByRole("button", { name: "Use all of it" }).click();
+    assert.equal((await fourth).request().postDataJSON().record.to, undefined);
+    // The part goes with the record to the tuner, and back with the job.
+    const fifth = identified(page);
+    await page.getByLabel("Use up to (s)", { exact: true }).fill("230");
+    await page.keyboard.press("Enter");
+    await fifth;
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
+    assert.equal((await job(page)).request.record.to, 230);
+    await page.getByRole("link", { name: "Look at the record" }).click();
+    await candidatesShown(page);
+    assert.equal(await page.getByLabel("Use up to (s)", { exact: true }).inputValue(), "230");
+  });
+});
+
+test("a record that cannot be read says why at its field, and is mended there", async () => {
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const heater = readFileSync(path.join(root, "tests/data/records/tclab-step.csv"), "utf8").replace(
+        /^.*\n/,
+        "h,i,j,a,d,e,b\n",
+      );
+      const refused = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
+      await dropFile(page, ".drop", "heater.csv", heater);
+      const answer = await refused;
+      assert.equal(answer.status(), 422);
+      const { errors } = await answer.json();
+      const summary = page.getByRole("group", { name: "What to mend" });
+      await summary.waitFor();
+      for (const error of errors) {
+        assert.ok((await summary.innerText()).includes(error.detail), error.detail);
+        const input = page.getByLabel(`Column ${error.pointer.split("/").at(-1)}`);
+        assert.equal(await input.getAttribute("aria-invalid"), "true");
+        assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), error.detail);
+      }
+      await page.getByLabel("Column t").fill("a");
+      await page.getByLabel("Column u").fill("b");
+      await page.getByLabel("Column y").fill("5");
+      const answered = identified(page);
+      await page.getByRole("button", { name: "Identify again" }).click();
+      assert.ok((await (await answered).json()).model.fit_percent > 97);
+      await candidatesShown(page);
+      assert.ok(await summary.isHidden());
+    },
+    ["422"],
+  );
+});
+
+test("a record in which nothing happens is refused in the service's words", async () => {
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const refused = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
+      await dropFile(page, ".drop", "flat.csv", ["t,u,y", ...rows.map((_, t) => `${t},5,20`)].join("\n"));
+      const { detail, errors = [] } = await (await refused).json();
+      const summary = page.getByRole("group", { name: "What to mend" });
+      await summary.waitFor();
+      assert.ok((await summary.innerText()).includes(errors[0]?.detail ?? detail));
+    },
+    ["422"],
+  );
+});
+
+test("Identify without a record says where to get one", async () => {
+  await withPage("#/identify", {}, async (page) => {
+    await page.getByText("There is no recorded test here yet.").waitFor();
+    await page.getByRole("link", { name: "Drop one on Start" }).click();
+    await page.getByRole("heading", { name: "What do you have?" }).waitFor();
+  });
+});
+
+for (const [name, options] of [
+  ["desktop", {}],
+  ["dark desktop", { scheme: "dark" }],
+  ["tablet", { width: 834, height: 1194 }],
+  ["phone", { width: 400, height: 860 }],
+]) {
+  test(`Identify on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
+    await withPage("", options, async (page) => {
+      await dropFile(page, ".drop", "step.csv", stepTest);
+      await candidatesShown(page);
+      for (const summary of ["How the record is read", "What was found in the record"])
+        await page.getByText(summary).click();
+      assert.deepEqual(await accessibilityViolations(page), []);
+      assert.equal(
+        await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
+        0,
+      );
+    });
+  });
+}

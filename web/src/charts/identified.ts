@@ -1,0 +1,87 @@
+// A recorded test with a candidate's model: y, u and the residual on one time axis, the used part marked.
+import type { Candidate, Model } from "../api/types.ts";
+import type { Frame, Mark, Pane } from "../plot/frame.ts";
+import { formatNumber, withUnit } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
+
+type Column = (number | null)[];
+
+export interface Samples {
+  t: number[];
+  y: Column;
+  u?: Column;
+}
+
+/** `whole`: the record beyond the used part, where it is known; `part`: the used part, as it is being chosen. */
+export function identifiedFrame(
+  model: Model,
+  candidate: Candidate | null,
+  units: UnitNames,
+  whole: Samples | null,
+  part: { from: number; to: number } | null,
+): Frame | null {
+  const fit = model.fit;
+  if (!fit || fit.t.length === 0) return null;
+  const y_model = candidate?.y_model?.length === fit.t.length ? candidate.y_model : fit.y_model;
+  const record: Samples = whole ?? fit;
+  const marks: Mark[] = part ? [{ kind: "band", ...part, label: "used" }] : [];
+  const panes: Pane[] = [
+    {
+      y: { kind: "linear", label: withUnit("y", units.y) },
+      traces: [
+        { name: "record", look: "data", x: record.t, y: record.y },
+        { name: "model", look: 1, x: fit.t, y: y_model },
+      ],
+      marks,
+      weight: 2.4,
+    },
+  ];
+  if (record.u && record.u.length === record.t.length)
+    panes.push({
+      y: { kind: "linear", label: withUnit("u", units.u) },
+      traces: [{ name: "u", look: "data", ...held(record.t, record.u) }],
+      marks: unnamed(marks),
+    });
+  panes.push({
+    y: { kind: "linear", label: withUnit("y − model", units.y) },
+    traces: [{ name: "residual", look: "data", x: fit.t, y: difference(fit.y, y_model) }],
+    marks: unnamed(marks),
+  });
+  return {
+    title: "Record and model",
+    description: `The model reproduces ${formatNumber(candidate?.fit_percent ?? model.fit_percent)} % of the record's movement.`,
+    x: { kind: "linear", label: withUnit("time", units.time) },
+    panes,
+    ownLegend: true,
+    link: "record",
+    cursorLabel: withUnit("time", units.time),
+    cursorKind: "linear",
+    fileName: "record-and-model",
+  };
+}
+
+const unnamed = (marks: Mark[]): Mark[] =>
+  marks.map((mark) => (mark.kind === "band" ? { kind: "band", from: mark.from, to: mark.to } : mark));
+
+/** u holds from its sample to the next: corners instead of slopes. */
+export function held(t: readonly number[], u: readonly (number | null)[]): { x: number[]; y: Column } {
+  const x: number[] = [];
+  const y: Column = [];
+  for (let index = 0; index < t.length; index += 1) {
+    const value = u[index] ?? null;
+    if (index > 0 && value !== u[index - 1]) {
+      x.push(t[index]!);
+      y.push(u[index - 1] ?? null);
+    }
+    x.push(t[index]!);
+    y.push(value);
+  }
+  return { x, y };
+}
+
+function difference(a: Column, b: Column): Column {
+  return a.map((value, index) => {
+    const other = b[index];
+    return typeof value === "number" && typeof other === "number" ? value - other : null;
+  });
+}

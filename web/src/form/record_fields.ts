@@ -1,0 +1,145 @@
+// How a record is to be read and identified: columns, kind, model, method. The same fields on Start and on Identify.
+import type { FieldError, RecordedTest } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { choiceField, textField } from "./controls.ts";
+import type { Field } from "./controls.ts";
+import type { FormErrors } from "./errors.ts";
+import { parseNumber } from "./number.ts";
+
+export type Identify = Record<string, unknown>;
+
+export interface RecordFields {
+  elements: HTMLElement[];
+  /** What the fields add to a record and to `identify`. */
+  read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
+  load(record: RecordedTest, identify: Identify | undefined): void;
+}
+
+const KINDS = [
+  ["auto", "automatic"],
+  ["step", "step test"],
+  ["relay", "relay test"],
+  ["general", "any other movement"],
+] as const;
+
+const MODELS = [
+  ["auto", "automatic"],
+  ["fopdt", "first order with dead time"],
+  ["sopdt", "second order with dead time"],
+  ["sopdt_zero", "second order with a zero"],
+  ["ipdt", "integrating with dead time"],
+  ["ipdt_lag", "integrating with a lag"],
+] as const;
+
+const METHODS = [
+  ["auto", "automatic"],
+  ["output_error", "fit of the whole record"],
+  ["relay_fourier", "relay formulas alone"],
+  ["two_point", "two points of the step"],
+] as const;
+
+const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
+  typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
+
+/** `all`: also what only somebody who looks at the record can know. */
+export function recordFields(errors: FormErrors, all: boolean): RecordFields {
+  const column = (name: "t" | "u" | "y", meaning: string): Field<HTMLInputElement> =>
+    textField(
+      {
+        label: `Column ${name}`,
+        hint: `${meaning}; heading or number`,
+        placeholder: "auto",
+        pointer: () => `/record/columns/${name}`,
+      },
+      errors,
+    );
+  const optional = (label: string, hint: string, pointer: string): Field<HTMLInputElement> =>
+    textField({ label, hint, placeholder: "optional", pointer: () => pointer }, errors);
+  const columns = { t: column("t", "time"), u: column("u", "output"), y: column("y", "measurement") };
+  const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
+  const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
+  const method = all
+    ? choiceField({ label: "Method", choices: METHODS, pointer: () => "/identify/method" }, errors)
+    : null;
+  const numbers = all
+    ? {
+        dt: optional("Sampling time", "where there is no time column", "/record/dt"),
+        u0: optional("u before", "output before the first sample", "/record/u0"),
+        y0: optional("y before", "measurement before the first sample", "/record/y0"),
+        shift: optional("Shift", "of relay formulas; 1/Pu if empty", "/identify/shift"),
+      }
+    : {};
+  // Parts of a loaded request that have no field here: sent back as they came.
+  let rest: { record: Partial<RecordedTest>; identify: Identify } = { record: {}, identify: {} };
+
+  return {
+    elements: [
+      h("div", { class: "fields three" }, columns.t.element, columns.u.element, columns.y.element),
+      h(
+        "div",
+        { class: "fields" },
+        kind.element,
+        model.element,
+        method?.element,
+        Object.values(numbers).map((field) => field.element),
+      ),
+    ],
+    read() {
+      const record: RecordedTest = { ...rest.record };
+      const identify: Identify = { ...rest.identify, model: model.input.value };
+      const faults: FieldError[] = [];
+      const named = Object.entries(columns).flatMap(([name, field]) =>
+        field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : [],
+      );
+      if (named.length > 0) record.columns = Object.fromEntries(named);
+      if (kind.input.value !== "auto") record.kind = kind.input.value;
+      if (method && method.input.value !== "auto") identify["method"] = method.input.value;
+      for (const [name, field] of Object.entries(numbers)) {
+        if (field.input.value.trim() === "") continue;
+        const parsed = parseNumber(field.input.value, name);
+        const pointer = field.control.pointer()!;
+        if (!parsed.ok) faults.push({ pointer, detail: parsed.sentence });
+        else if (name === "shift") identify["shift"] = parsed.value;
+        else record[name as "dt" | "u0" | "y0"] = parsed.value;
+      }
+      return { record, identify, errors: faults };
+    },
+    load(record, identify = {}) {
+      for (const name of ["t", "u", "y"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
+      kind.input.value = known(KINDS, record.kind);
+      model.input.value = known(MODELS, identify["model"]);
+      if (method) method.input.value = known(METHODS, identify["method"]);
+      for (const [name, field] of Object.entries(numbers)) {
+        const value = name === "shift" ? identify["shift"] : record[name as "dt" | "u0" | "y0"];
+        field.input.value = typeof value === "number" && !(name === "dt" && record.y) ? String(value) : "";
+      }
+      const { model: _model, method: given, shift, ...others } = identify;
+      const { u0, y0, from, to } = record;
+      const dt = record.csv === undefined ? undefined : record.dt;
+      rest = {
+        record: all ? {} : defined({ u0, y0, from, to, dt }),
+        identify: all ? others : { ...others, ...defined({ method: given, shift }) },
+      };
+    },
+  };
+}
+
+const defined = (values: Identify): Identify =>
+  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));
+
+/** A column is named by its heading, or by its number from 1. */
+const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? Number(text) : text);
+
+/** A record given as numbers, as the text that a field shows. */
+export function csvOf(record: RecordedTest): string {
+  if (record.csv !== undefined) return record.csv;
+  const { t, u = [], y = [], dt = 1 } = record;
+  return ["t,u,y", ...y.map((value, index) => `${t?.[index] ?? index * dt},${u[index] ?? ""},${value}`)].join("\n");
+}
+
+/** The samples of a record without how it is to be read. */
+export function samplesOf(record: RecordedTest): RecordedTest {
+  const { csv, t, dt, u, y } = record;
+  if (csv !== undefined) return { csv };
+  return { ...(t === undefined ? { dt: dt ?? 1 } : { t }), u: u ?? [], y: y ?? [] };
+}

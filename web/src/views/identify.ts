@@ -1,0 +1,218 @@
+// Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
+import { ApiError } from "../api/client.ts";
+import { identify } from "../api/identify.ts";
+import { latest } from "../api/latest.ts";
+import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
+import { identifiedFrame } from "../charts/identified.ts";
+import type { Samples } from "../charts/identified.ts";
+import { h } from "../dom.ts";
+import { areaField } from "../form/controls.ts";
+import { FormErrors } from "../form/errors.ts";
+import { csvOf, recordFields, samplesOf } from "../form/record_fields.ts";
+import { tuneSubject } from "../form/tune_subject.ts";
+import type { TuneSubject } from "../form/tune_subject.ts";
+import { createPlot } from "../plot/plot.ts";
+import type { Plot } from "../plot/plot.ts";
+import { formatNumber, unitNames } from "../words/numbers.ts";
+import { structureTitle } from "../words/plant.ts";
+import { qualityOf } from "../words/quality.ts";
+import { candidatesCard } from "./candidates_card.ts";
+import { cycleCard } from "./cycle_card.ts";
+import { partCard } from "./part_card.ts";
+import { qualityCard } from "./quality_card.ts";
+import type { View } from "./start.ts";
+
+export interface IdentifyEvents {
+  /** The record and how it is read, each time the reader changes something. */
+  onChange(request: IdentifyRequest): void;
+  /** Starts a tuning job; returns what keeps it from starting. */
+  onTune(subject: TuneSubject): Promise<FieldError[]>;
+}
+
+export function identifyView(
+  given: IdentifyRequest,
+  announce: (sentence: string) => void,
+  events: IdentifyEvents,
+): View {
+  const units = unitNames(given.units);
+  const errors = new FormErrors();
+  let model: Model | null = null;
+  // The record beyond the used part, from the answer about all of it.
+  let whole: Samples | null = null;
+  let samples = samplesOf(given.record);
+  const givenText = csvOf(given.record);
+  let plot: Plot | null = null;
+
+  const heading = h("h1", { tabindex: -1 }, given.name ? `Identify: ${given.name}` : "Identify");
+  const busy = h("p", { class: "hint busy", hidden: true }, "Fitting models to the record...");
+  const text = areaField(
+    {
+      label: "The record as text",
+      hint: "One row a sample: time, controller output u, measurement y.",
+      rows: 8,
+      wide: true,
+      pointer: () => "/record/csv",
+      value: givenText,
+    },
+    errors,
+  );
+  const fields = recordFields(errors, true);
+  const again = h("button", { type: "submit" }, "Identify again");
+  const reading = h(
+    "form",
+    { class: "card reading", novalidate: true },
+    h(
+      "details",
+      {},
+      h("summary", {}, "How the record is read: columns, kind of test, model, method"),
+      h("div", { class: "stack" }, fields.elements, text.element, h("div", { class: "actions" }, again)),
+    ),
+  );
+  const slot = h("div", { class: "record-slot" });
+  const sentence = h("p", { class: "hint input-words" });
+  const part = partCard(errors, draw, () => ask());
+  part.setUnit(units.time);
+  const record = h(
+    "div",
+    { class: "record-column" },
+    h("h2", { class: "visually-hidden" }, "The record"),
+    slot,
+    part.element,
+    sentence,
+  );
+  const candidates = candidatesCard(
+    () => {
+      draw();
+      const chosen = candidates.chosen();
+      if (chosen) announce(`${structureTitle(chosen.plant)}, fit ${formatNumber(chosen.fit_percent)} %.`);
+    },
+    () => void tune(),
+  );
+  const quality = qualityCard();
+  const cycle = cycleCard();
+  const side = h("div", { class: "side" }, candidates.element, quality.element, cycle.element);
+  const body = h("div", { class: "identify-body" }, record, side);
+  const element = h(
+    "main",
+    { class: "identify", id: "main" },
+    h("div", { class: "identify-head" }, heading, busy),
+    errors.summary,
+    reading,
+    body,
+  );
+  body.hidden = true;
+
+  function request(): { request: IdentifyRequest; errors: FieldError[] } {
+    const read = fields.read();
+    const chosen = part.read();
+    // Text that nobody touched stands for the record as it came.
+    const base = text.input.value === givenText ? samples : { csv: text.input.value };
+    return {
+      request: { ...given, record: { ...base, ...read.record, ...(chosen ?? {}) }, identify: read.identify },
+      errors: read.errors,
+    };
+  }
+
+  const calls = latest<IdentifyRequest, Model>(identify, {
+    onBusy(now) {
+      busy.hidden = !now;
+      element.toggleAttribute("data-busy", now);
+      candidates.setBusy(now);
+    },
+    onAnswer(answer, asked) {
+      errors.clear();
+      model = answer;
+      const fit = answer.fit;
+      const all = asked.record.from === undefined && asked.record.to === undefined;
+      if (all && fit && fit.t.length > 1) {
+        whole = { t: fit.t, y: fit.y, ...(fit.u ? { u: fit.u } : {}) };
+        part.setExtent({ from: fit.t[0]!, to: fit.t[fit.t.length - 1]! });
+      }
+      body.hidden = false;
+      candidates.show(answer, units);
+      quality.show(answer, units);
+      cycle.show(answer.limit_cycle, answer.ultimate_point, answer.frequency_points, units);
+      const words = qualityOf(answer, units);
+      sentence.textContent = words.input;
+      draw();
+      announce(`${structureTitle(answer.plant)}, fit ${formatNumber(answer.fit_percent)} %. ${words.head}`);
+    },
+    onError(error) {
+      const problem = error instanceof ApiError ? error.problem : {};
+      const pointed = (problem.errors ?? []).filter((fault) => fault.pointer !== "");
+      errors.show(pointed, error instanceof Error ? error.message : String(error));
+      if (!model) reading.querySelector("details")!.open = true;
+    },
+  });
+
+  function ask(): void {
+    const now = request();
+    errors.clear();
+    if (now.errors.length > 0) return errors.show(now.errors);
+    events.onChange(now.request);
+    calls.send(now.request);
+  }
+
+  function draw(): void {
+    if (!model) return;
+    const frame = identifiedFrame(model, candidates.chosen(), units, whole, part.read());
+    if (!frame) return;
+    if (plot) return plot.update(frame);
+    plot = createPlot(frame, announce);
+    plot.element.classList.add("tall");
+    slot.replaceChildren(plot.element);
+  }
+
+  async function tune(): Promise<void> {
+    if (!model) return;
+    errors.clear();
+    candidates.setBusy(true);
+    try {
+      const faults = await events.onTune(tuneSubject(request().request, model, candidates.chosen()));
+      if (faults.length > 0) errors.show(faults);
+    } catch (error) {
+      const problem = error instanceof ApiError ? error.problem : {};
+      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+    } finally {
+      candidates.setBusy(false);
+    }
+  }
+
+  fields.load(given.record, given.identify);
+  reading.addEventListener("submit", (event) => {
+    event.preventDefault();
+    // Another record has another extent.
+    if (text.input.value !== givenText) whole = null;
+    ask();
+  });
+
+  const { from, to } = given.record;
+  if (from !== undefined || to !== undefined) void askWithPart(from, to);
+  else ask();
+
+  /** A record that comes with its part chosen: all of it is asked for first, so that it can be drawn. */
+  async function askWithPart(start: number | undefined, end: number | undefined): Promise<void> {
+    const { from: _from, to: _to, ...record } = given.record;
+    try {
+      const fit = (await identify({ ...given, record })).fit;
+      if (fit && fit.t.length > 1) {
+        whole = { t: fit.t, y: fit.y, ...(fit.u ? { u: fit.u } : {}) };
+        part.setExtent({ from: fit.t[0]!, to: fit.t[fit.t.length - 1]! });
+      }
+    } catch {
+      // All of it cannot be identified; the part may be.
+      part.setExtent({ from: start ?? 0, to: end ?? (start ?? 0) + 1 });
+    }
+    part.set({ from: start ?? -Infinity, to: end ?? Infinity });
+    ask();
+  }
+
+  return {
+    element,
+    heading,
+    dispose() {
+      calls.drop();
+      plot?.dispose();
+    },
+  };
+}

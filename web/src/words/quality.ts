@@ -1,0 +1,125 @@
+// "Was the test good enough?": what the service found in the record, in words. Figures that the page does not know are shown by their names.
+import type { Model, Notice } from "../api/types.ts";
+import { formatNumber, formatParameter, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+import type { Level } from "./verdict.ts";
+
+export interface QualityWords {
+  level: Level;
+  head: string;
+  /** What was done to u. */
+  input: string;
+  rows: [name: string, text: string][];
+  notes: string[];
+  warnings: Notice[];
+}
+
+/** Below this fit a model does not explain its record. */
+const POOR_FIT_PERCENT = 70;
+
+export function qualityOf(model: Model, units: UnitNames): QualityWords {
+  const warnings = model.warnings ?? [];
+  const notes = listOf(model.data_quality?.["notes"]);
+  const fit = model.fit_percent;
+  const poor = typeof fit === "number" && fit < POOR_FIT_PERCENT;
+  const level: Level = poor ? "bad" : warnings.length > 0 ? "warn" : "good";
+  return {
+    level,
+    head: poor
+      ? `Doubtful: the model explains ${formatNumber(fit)} % of the record's movement.`
+      : warnings.length > 0
+        ? `Usable with care: ${counted(warnings.length, "thing")} to know.`
+        : notes.length > 0
+          ? `Good enough, with ${counted(notes.length, "remark")}.`
+          : "Good enough.",
+    input: inputWords(model, units),
+    rows: rowsOf(model, units),
+    notes,
+    warnings,
+  };
+}
+
+const counted = (count: number, name: string): string => `${count} ${name}${count === 1 ? "" : "s"}`;
+
+const listOf = (value: unknown): string[] =>
+  Array.isArray(value) ? value.filter((item): item is string => typeof item === "string") : [];
+
+function rowsOf(model: Model, units: UnitNames): [string, string][] {
+  const quality = model.data_quality ?? {};
+  const rows: [string, string][] = [];
+  const number = (name: string): number | null =>
+    typeof quality[name] === "number" && Number.isFinite(quality[name]) ? quality[name] : null;
+  const samples = number("samples");
+  const dropped = number("samples_dropped");
+  if (samples !== null) rows.push(["Samples", `${samples}${dropped ? `, ${dropped} left out` : ""}`]);
+  const spacing = number("sample_time");
+  if (spacing !== null)
+    rows.push([
+      withUnit("Spacing", units.time),
+      `${formatParameter(spacing)}${quality["irregular"] === true ? ", irregular" : ""}`,
+    ]);
+  const noise = number("noise_std");
+  if (noise !== null) rows.push([withUnit("Noise of y", units.y), noise === 0 ? "none" : noiseWords(noise, model)]);
+  const grid = number("quantisation");
+  if (grid !== null) rows.push([withUnit("Smallest step of y", units.y), grid === 0 ? "none found" : formatNumber(grid)]);
+  const steps = number("steps");
+  if (steps !== null) rows.push(["Changes of u", String(steps)]);
+  if (typeof quality["settled"] === "boolean") rows.push(["y came to rest", quality["settled"] ? "yes" : "no"]);
+  const known = new Set([
+    "samples",
+    "samples_dropped",
+    "sample_time",
+    "irregular",
+    "noise_std",
+    "quantisation",
+    "steps",
+    "settled",
+    "notes",
+    "why_null",
+  ]);
+  for (const [name, value] of Object.entries(quality)) if (!known.has(name)) rows.push(...otherRows(name, value));
+  return rows;
+}
+
+function noiseWords(noise: number, model: Model): string {
+  const values = (model.fit?.y ?? []).filter((value): value is number => typeof value === "number");
+  const movement = values.length > 0 ? maximum(values) - minimum(values) : 0;
+  return movement > 0 ? `${formatNumber(noise, 2)}, ${formatNumber((100 * noise) / movement, 2)} %` : formatNumber(noise, 2);
+}
+
+/** A figure that was added to the contract after this page was written. */
+function otherRows(name: string, value: unknown): [string, string][] {
+  const label = name.charAt(0).toUpperCase() + name.slice(1).replaceAll("_", " ");
+  if (typeof value === "number") return [[label, formatNumber(value)]];
+  if (typeof value === "boolean") return [[label, value ? "yes" : "no"]];
+  if (typeof value === "string" && value !== "") return [[label, value.replaceAll("_", " ")]];
+  if (Array.isArray(value)) {
+    const texts = listOf(value);
+    return value.length === 0 ? [] : [[label, texts.length === value.length ? texts.join(", ") : String(value.length)]];
+  }
+  if (typeof value === "object" && value !== null)
+    return Object.entries(value).flatMap(([inner, item]) =>
+      inner === "why_null" ? [] : otherRows(`${name} ${inner}`, item),
+    );
+  return [];
+}
+
+/** "u steps once, at 120 s, from 30 to 35 %." */
+function inputWords(model: Model, units: UnitNames): string {
+  const { t = [], u = [] } = model.fit ?? {};
+  const changes: number[] = [];
+  for (let index = 1; index < u.length; index += 1)
+    if (typeof u[index] === "number" && typeof u[index - 1] === "number" && u[index] !== u[index - 1]) changes.push(index);
+  const values = u.filter((value): value is number => typeof value === "number");
+  if (values.length === 0) return "";
+  const unit = units.u ? ` ${units.u}` : "";
+  const range = `from ${formatParameter(minimum(values))} to ${formatParameter(maximum(values))}${unit}`;
+  if (changes.length === 0) return `u stands at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
+  if (changes.length > 1) return `u changes ${changes.length} times, ${range}.`;
+  const at = changes[0]!;
+  return `u steps once, at ${formatParameter(t[at]!)} ${units.time}, from ${formatParameter(u[at - 1]!)} to ${formatParameter(u[at]!)}${unit}.`;
+}
+
+// Math.min(...list) overflows the stack with long lists.
+const minimum = (values: number[]): number => values.reduce((least, value) => (value < least ? value : least));
+const maximum = (values: number[]): number => values.reduce((most, value) => (value > most ? value : most));

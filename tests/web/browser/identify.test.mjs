@@ -70,7 +70,7 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
     assert.equal(request.record.csv, stepTest);
     assert.deepEqual(result.model.plant, model.plant);
     assert.ok(Math.abs(result.model.plant.K / 2 - 1) < 0.01);
-    assert.equal(await drawnTraces(page, "Recorded test and model"), 2);
+    assert.equal(await drawnTraces(page, "Recorded test and model"), 3);
     assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
   });
 });

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "engine/family_figures.h"
 #include "engine/frequency_traces.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
@@ -214,12 +215,25 @@ void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
                               "; do not use it."});
 }
 
+void add_region(Evaluation& evaluation, const PlantFamily& family) {
+    evaluation.region = region_figures(family, gains(evaluation.controller));
+    if (!evaluation.robustness.stable || evaluation.region->worst_Ms) return;
+    evaluation.warnings.push_back(
+        {"unstable-in-region", "The loop is stable on the nominal plant but not on every plant that it must serve (" +
+                                   shown(100 * evaluation.region->stable_fraction) +
+                                   " % of the region are stable). Ask for less, or use robust, which holds its limits "
+                                   "on all of them."});
+}
+
 }  // namespace
 
-Expected<Evaluation> evaluate(const Plant& plant_description, const Controller& controller,
-                              const EvaluateOptions& options) {
+Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
+    return evaluate(family_of(plant), controller, options);
+}
+
+Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options) {
     if (auto error = check_options(options)) return *error;
-    const auto plant = LinearPlant::make(plant_description);
+    const auto plant = LinearPlant::make(family.nominal());
     if (!plant) return at_field(plant.error(), "plant");
     const auto loop = Loop::make(*plant, gains(controller));
     if (!loop) return at_field(loop.error(), "controller");
@@ -237,6 +251,7 @@ Expected<Evaluation> evaluate(const Plant& plant_description, const Controller& 
         mark_unstable(evaluation, count);
     }
     if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
+    if (!family.single()) add_region(evaluation, family);
     return evaluation;
 }
 

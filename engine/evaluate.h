@@ -8,7 +8,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
-#include "engine/plant/plant.h"
+#include "engine/plant/plant_family.h"
 #include "engine/warning.h"
 
 namespace tunewright {
@@ -94,7 +94,15 @@ struct Equivalents {
     std::string why_no_series;
 };
 
-/// Everything known about one controller on one plant.
+/// Of one controller on every plant of a family.
+struct RegionFigures {
+    double stable_fraction = 0;      ///< of the family, 0 to 1
+    std::optional<double> worst_Ms;  ///< empty where not every plant that was looked at is stable
+    Plant worst_plant;               ///< where Ms is largest, or the loop unstable
+    WhyNull why_null;
+};
+
+/// Everything known about one controller on one plant, or on the nominal plant of a family.
 struct Evaluation {
     Controller controller;
     Equivalents equivalents;
@@ -103,12 +111,15 @@ struct Evaluation {
     std::optional<Responses> responses;        ///< with points > 0 and a stable loop
     std::optional<FrequencyTraces> frequency;  ///< with points > 0
     Verification verification;
+    std::optional<RegionFigures> region;  ///< of a family of more than one plant
     std::vector<Warning> warnings;
     double compute_ms = 0;
 };
 
 /// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...",
 /// "evaluate/..."). An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
-Expected<Evaluation> evaluate(const Plant& plant, const Controller& controller, const EvaluateOptions& options);
+/// All figures are the nominal plant's; `region` says how the others fare.
+Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options);
+Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options);
 
 }  // namespace tunewright

@@ -81,6 +81,13 @@ std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms
     return order;
 }
 
+// The 95 % confidence region of the chosen model.
+Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
+    auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
+    if (!region) return region.error();
+    return PlantFamily{{std::move(*region)}};
+}
+
 // One run of tune(): what its steps share.
 class Run {
 public:
@@ -102,7 +109,8 @@ private:
 
     const TuningRequest& request_;
     const RunControl& control_;
-    Plant plant_;
+    PlantFamily family_;               // what every controller is judged on
+    std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
     std::optional<BestSoFar> best_;
     TuningResult result_;
@@ -131,13 +139,19 @@ std::optional<Error> Run::find_plant() {
                      request_.plant ? "Both plant and record are given; give one of them."
                                     : "Neither plant nor record is given; give one of them."};
     if (request_.plant) {
-        plant_ = *request_.plant;
+        family_ = family_of(*request_.plant);
+        if (!family_.single()) held_ = family_;
         return std::nullopt;
     }
     report(0, "identify", "Fitting models to the record.");
     auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
     if (!model) return model.error();
-    plant_ = model->plant;
+    family_ = {{PlantRegion::of_ranges(model->plant)}};
+    if (auto region = identified_region(*model))
+        family_ = *region;
+    else if (request_.over_identified_region)
+        return region.error();
+    if (request_.over_identified_region) held_ = family_;
     if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
         dead_time_std_ = at->second;
     result_.model = std::move(*model);
@@ -156,7 +170,7 @@ Error Run::placed(Error error, const std::string& where) const {
 }
 
 void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const {
-    auto evaluation = evaluate(plant_, controller, request_.evaluate);
+    auto evaluation = evaluate(family_, controller, request_.evaluate);
     if (!evaluation) {
         entry.error = evaluation.error();
         return;
@@ -222,9 +236,10 @@ Expected<TuningResult> Run::result() {
     const auto planned = plan(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
-    const auto linear = LinearPlant::make(plant_);
+    const Plant& nominal = family_.nominal();
+    const auto linear = LinearPlant::make(nominal);
     if (!linear) return placed(linear.error(), "");
-    const TuningProblem problem{plant_, *linear, dead_time_std_};
+    const TuningProblem problem{nominal, *linear, dead_time_std_, held_};
 
     const double start = result_.model ? kIdentifyShare : 0,
                  share_of_one = (1 - start) / static_cast<double>(planned->size());

@@ -18,12 +18,13 @@ struct MethodRequest {
 };
 
 struct TuningRequest {
-    std::optional<Plant> plant;  ///< exactly one of plant and record
+    std::optional<PlantModel> plant;  ///< exactly one of plant and record
     std::optional<Record> record;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
+    bool over_identified_region = false;  ///< with a record: limits hold over its 95 % confidence region
 };
 
 /// One line of the answer: a method's controller with its evaluation, or why there is none.

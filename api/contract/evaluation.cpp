@@ -1,5 +1,7 @@
 #include "api/contract/evaluation.h"
 
+#include "api/contract/plant.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -222,6 +224,23 @@ const Description<Verification>& verification_contract() {
             .field("stability_methods_agree", &V::stability_methods_agree, truth_figure(),
                    "Whether two independent stability tests agree.")
             .why_null("This check does not apply to this loop.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<RegionFigures>& region_contract() {
+    static const auto description = [] {
+        using R = RegionFigures;
+        Description<R> d("Region",
+                         "The controller on all plants that it must serve: of a set, of uncertainty ranges, or of the "
+                         "95 % confidence region of a record.");
+        d.field("stable_fraction", &R::stable_fraction, only_answered(number()),
+                "Fraction of the plants (of the region's volume) whose loop is stable, 0 to 1.")
+            .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all plants looked at.")
+            .field("worst_plant", &R::worst_plant, only_answered(one_of(plant_contract())),
+                   "The plant of that Ms, or one whose loop is unstable.")
+            .why_null(&R::why_null, kNoFigure);
         return d;
     }();
     return description;

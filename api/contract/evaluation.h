@@ -12,6 +12,8 @@ const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
 const Description<Verification>& verification_contract();
 
+const Description<RegionFigures>& region_contract();
+
 /// {"code", "detail"}.
 const Description<Warning>& warning_contract();
 

@@ -12,16 +12,73 @@ constexpr FieldOptions kOptional{};
 NumberRule gain_rule() { return {.not_zero = true, .cure = "A plant with gain 0 cannot be controlled."}; }
 NumberRule dead_time_rule() { return {.minimum = 0, .cure = "A dead time cannot be negative."}; }
 
-const char* kUncertainty =
-    "uncertainty is not available yet; leave it out. To be safe against a wrong model, lower Ms and Mt (1.4 tolerates "
-    "gain errors of at least 3.5 times).";
+using Range = std::optional<FactorRange>;
+
+// [low, high] around 1.
+Codec<Range> factors() {
+    return {[](const Json& value, Range& target, Reader& reader) {
+                if (!value.is_array() || value.size() != 2)
+                    return reader.fault(wrong_kind(value, "a pair [low, high] of factors such as [0.8, 1.2]", reader));
+                FactorRange range;
+                for (const std::size_t i : {0, 1}) {
+                    const Reader::At at(reader, i);
+                    const auto read = read_number(value[i], {.exclusive_minimum = 0}, reader);
+                    if (!read) return;
+                    (i == 0 ? range.low : range.high) = *read;
+                }
+                if (!(range.low <= 1 && range.high >= 1)) {
+                    return reader.fault(reader.name() + " is [" + full_digits(range.low) + ", " +
+                                        full_digits(range.high) +
+                                        "]; these are factors of the nominal value, which must lie between them: low "
+                                        "<= 1 <= high.");
+                }
+                target = range;
+            },
+            [](const Range& range, Writer& out) {
+                out.begin_array();
+                out.number(range->low);
+                out.number(range->high);
+                out.end_array();
+            },
+            [](SchemaBook&) {
+                const Json factor{{"type", "number"}, {"exclusiveMinimum", 0}};
+                return Json{{"type", "array"}, {"items", factor}, {"minItems", 2}, {"maxItems", 2}};
+            },
+            [](const Range& range) { return !range; }};
+}
+
+// Only the parameters that the plant type has.
+template <class T>
+const Description<Uncertainty>& uncertainty_contract(const std::string& type) {
+    static const auto description = [&] {
+        Description<Uncertainty> d(type + "Uncertainty",
+                                   "Factors [low, high] of nominal values, low <= 1 <= high: limits hold on the "
+                                   "corners, the centre and the worst point found inside.");
+        d.field("K", &Uncertainty::K, factors(), "Of the plant's gain.");
+        if constexpr (requires(T plant) { plant.T; }) d.field("T", &Uncertainty::T, factors(), "Of T.");
+        if constexpr (requires(T plant) { plant.T1; }) {
+            d.field("T1", &Uncertainty::T1, factors(), "Of T1.");
+            d.field("T2", &Uncertainty::T2, factors(), "Of T2.");
+        }
+        d.field("L", &Uncertainty::L, factors(), "Of the dead time.");
+        return d.example({{"K", {0.8, 1.2}}, {"L", {0.9, 1.2}}});
+    }();
+    return description;
+}
+
+template <class T>
+Codec<Uncertainty> uncertainty(const std::string& type) {
+    return unless<Uncertainty>(object(uncertainty_contract<T>(type)),
+                               [](const Uncertainty& given) { return given.empty(); });
+}
 
 template <class T>
 Description<T>& with_dead_time(Description<T>& description, bool required) {
     return description
         .field("L", &T::L, number(dead_time_rule()), "Dead time at the plant's input, >= 0; exact everywhere.",
                {.required = required, .unit = "time"})
-        .refuse("uncertainty", kUncertainty);
+        .field("uncertainty", &T::uncertainty, uncertainty<T>(description.name()),
+               "How far parameters may lie from their nominal values; robust then holds its limits everywhere.");
 }
 
 const Description<Fopdt>& fopdt() {
@@ -285,11 +342,27 @@ const Description<StateSpace>& state_space() {
     return description;
 }
 
+const Description<PlantSet>& plant_set() {
+    constexpr std::size_t kMostPlants = 50;
+    static const auto description = [] {
+        Description<PlantSet> d("PlantSet", "Plants that one controller must serve: limits hold on all of them.");
+        d.tag("type", "set")
+            .field("plants", &PlantSet::plants, list_of(one_of(plant_contract()), 1, kMostPlants),
+                   "Linear plants; the first is nominal: the objective and all figures are its own.",
+                   {.required = true})
+            .example({{"type", "set"},
+                      {"plants", Json::array({Json{{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}},
+                                              Json{{"type", "fopdt"}, {"K", 2.5}, {"T", 8}, {"L", 4}}})}});
+        return d;
+    }();
+    return description;
+}
+
 bool has_lags(const Json& value) { return !value.contains("T") && !value.contains("zeta"); }
 
 std::string later(const std::string& type) {
     return "type " + type +
-           " is not available yet; the types are fopdt, sopdt, ipdt, transfer_function, zpk and state_space.";
+           " is not available yet; the types are fopdt, sopdt, ipdt, transfer_function, zpk, state_space and set.";
 }
 
 }  // namespace
@@ -305,7 +378,16 @@ const Union<Plant>& plant_contract() {
             .alternative(transfer_function())
             .alternative(zpk())
             .alternative(state_space());
-        for (const char* type : {"frequency_response", "nonlinear", "set"}) plant.refuse(type, later(type));
+        return plant;
+    }();
+    return contract;
+}
+
+const Union<PlantModel>& plant_model_contract() {
+    static const auto contract = [] {
+        Union<PlantModel> plant("PlantModel", "One linear plant, or several that one controller must serve.", "type");
+        plant.include(plant_contract()).alternative(plant_set());
+        for (const char* type : {"frequency_response", "nonlinear"}) plant.refuse(type, later(type));
         return plant;
     }();
     return contract;

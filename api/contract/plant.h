@@ -2,10 +2,14 @@
 #pragma once
 
 #include "api/describe/union.h"
-#include "engine/plant/plant.h"
+#include "engine/plant/plant_model.h"
 
 namespace tunewright::api {
 
+/// One linear plant; answers carry only these.
 const Union<Plant>& plant_contract();
+
+/// What a request may be about: a linear plant or several.
+const Union<PlantModel>& plant_model_contract();
 
 }  // namespace tunewright::api

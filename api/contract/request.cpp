@@ -80,19 +80,38 @@ const Description<NoiseOptions>& noise_contract() {
     return description;
 }
 
-// What the computations' form of the plant refuses. Empty after a fault, which the reader then has.
-std::optional<LinearPlant> check_plant(const Plant& plant, Reader& reader) {
+// What the computations' form of the plant refuses; the reader stands at it. Empty after a fault, which the reader then
+// has.
+std::optional<LinearPlant> check_linear(const Plant& plant, Reader& reader) {
     auto linear = LinearPlant::make(plant);
     if (linear) return std::move(*linear);
-    const Reader::At at(reader, "plant");
     reader.fault_below(linear.error().where, 1, linear.error().message);
     return std::nullopt;
 }
 
-// Whether plant and controller form a loop; the reader stands at the controller.
-void check_loop(const LinearPlant& plant, const Controller& controller, Reader& reader) {
-    const auto loop = Loop::make(plant, gains(controller));
-    if (!loop) reader.fault_below(loop.error().where, 1, loop.error().message);
+// The plants on which a loop must exist.
+std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
+    const Reader::At at(reader, "plant");
+    std::vector<LinearPlant> plants;
+    if (const Plant* plant = std::get_if<Plant>(&model)) {
+        if (auto linear = check_linear(*plant, reader)) plants.push_back(std::move(*linear));
+        return plants;
+    }
+    const auto& members = std::get<PlantSet>(model).plants;
+    const Reader::At list(reader, "plants");
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        const Reader::At member(reader, i);
+        if (auto linear = check_linear(members[i], reader)) plants.push_back(std::move(*linear));
+    }
+    return plants;
+}
+
+// Whether every plant forms a loop with the controller, at which the reader stands.
+void check_loops(const std::vector<LinearPlant>& plants, const Controller& controller, Reader& reader) {
+    for (const auto& plant : plants) {
+        const auto loop = Loop::make(plant, gains(controller));
+        if (!loop) return reader.fault_below(loop.error().where, 1, loop.error().message);
+    }
 }
 
 template <class Request>
@@ -114,25 +133,24 @@ void check_source(const Json& value, JobRequest&, Reader& reader) {
 }
 
 void check_job(const Json&, JobRequest& request, Reader& reader) {
-    if (request.uncertainty == "identified") {
+    if (request.uncertainty == "identified" && !request.record) {
         reader.fault_at("uncertainty",
-                        "uncertainty \"identified\" is not available yet; use \"none\" and lower Ms and Mt to be safe "
-                        "against a wrong model.");
+                        "uncertainty is \"identified\", which needs a record. For a plant give the plant its own "
+                        "uncertainty, such as {\"K\": [0.8, 1.2]}.");
     }
     if (!request.plant) return;
-    const auto plant = check_plant(*request.plant, reader);
-    if (!plant || !request.baseline) return;
+    const auto plants = check_plant(*request.plant, reader);
+    if (!request.baseline) return;
     const Reader::At at(reader, "baseline");
-    check_loop(*plant, *request.baseline, reader);
+    check_loops(plants, *request.baseline, reader);
 }
 
 void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
-    const auto plant = check_plant(*request.plant, reader);
-    if (!plant) return;
+    const auto plants = check_plant(*request.plant, reader);
     const Reader::At list(reader, "controllers");
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
         const Reader::At at(reader, i);
-        check_loop(*plant, request.controllers[i], reader);
+        check_loops(plants, request.controllers[i], reader);
     }
 }
 
@@ -195,7 +213,7 @@ const Description<JobRequest>& job_contract() {
                                   "A plant or a recorded test, and how its controllers are to be found and judged.");
         add_labels(d);
         constexpr double kLongest = 3600;
-        d.field("plant", &JobRequest::plant, maybe(one_of(plant_contract())),
+        d.field("plant", &JobRequest::plant, maybe(one_of(plant_model_contract())),
                 "The plant; exactly one of plant and record.")
             .field("record", &JobRequest::record, maybe(object(record_contract())),
                    "The recorded test; exactly one of plant and record.")
@@ -208,7 +226,7 @@ const Description<JobRequest>& job_contract() {
                    "What is simulated and answered.")
             .field("uncertainty", &JobRequest::uncertainty,
                    choice<std::string>({{"none", "none"}, {"identified", "identified"}}),
-                   "\"identified\" is not available yet.")
+                   "identified: robust holds its limits over the record's 95 % confidence region.")
             .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .check_presence(check_source)
@@ -227,7 +245,8 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
     static const auto description = [] {
         Description<EvaluateRequest> d("EvaluateRequest", "A plant and controllers for it.");
         add_labels(d);
-        d.field("plant", &EvaluateRequest::plant, maybe(one_of(plant_contract())), "The plant.", {.required = true})
+        d.field("plant", &EvaluateRequest::plant, maybe(one_of(plant_model_contract())), "The plant.",
+                {.required = true})
             .field("controllers", &EvaluateRequest::controllers,
                    list_of(one_of(controller_contract()), 1, kMostControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
@@ -262,6 +281,7 @@ TuningRequest to_engine(JobRequest request) {
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;
     out.evaluate = request.evaluate;
+    out.over_identified_region = request.uncertainty == "identified";
     return out;
 }
 

@@ -9,7 +9,7 @@ namespace tunewright::api {
 struct JobRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
-    std::optional<Plant> plant;
+    std::optional<PlantModel> plant;
     std::optional<GivenRecord> record;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
@@ -23,7 +23,7 @@ struct JobRequest {
 struct EvaluateRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
-    std::optional<Plant> plant;
+    std::optional<PlantModel> plant;
     std::vector<Controller> controllers;
     EvaluateOptions evaluate;
 };

@@ -100,6 +100,8 @@ const Description<TuningEntry>& entry_contract() {
                          "Traces over frequency; left out with points 0.");
         evaluation_field(d, "verification", &Evaluation::verification, object(verification_contract()),
                          "How the figures were checked.");
+        evaluation_field(d, "region", &Evaluation::region, maybe(answer(region_contract())),
+                         "On every plant that the controller must serve; left out where that is one.");
         d.field("surface", &TuningEntry::surface, maybe(answer(surface_contract())),
                 "Cost over the (Ti, Td) plane, where asked for.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");

@@ -1,6 +1,7 @@
 // One of several described types, told apart by a word: plants by `type`, controllers by `form`.
 #pragma once
 
+#include <algorithm>
 #include <variant>
 
 #include "api/describe/description.h"
@@ -36,6 +37,26 @@ public:
         return *this;
     }
 
+    /// Every alternative of another union, whose variant is one of V's alternatives.
+    template <class W>
+    Union& include(const Union<W>& inner) {
+        const Union<W>* what = &inner;
+        words_.insert(words_.end(), inner.words().begin(), inner.words().end());
+        const auto read_inner = [what](const Json& value, V& target, Reader& reader) {
+            W content{};
+            what->read(value, content, reader);
+            target = std::move(content);
+        };
+        included_.push_back({inner.words(), read_inner, [what](SchemaBook& book) { return what->schema(book); }});
+        writers_.push_back([what](const V& value, Writer& out) {
+            if (const W* content = std::get_if<W>(&value)) what->write(*content, out);
+        });
+        return *this;
+    }
+
+    /// The words of the tag.
+    const std::vector<std::string>& words() const { return words_; }
+
     /// A word of the contract's future: refused with its own sentence.
     Union& refuse(std::string word, std::string sentence) {
         refused_.emplace_back(std::move(word), std::move(sentence));
@@ -54,6 +75,10 @@ public:
                 if (word == alternative.word && (!alternative.matches || alternative.matches(value)))
                     return alternative.read(value, target, reader);
             }
+            for (const Included& inner : included_) {
+                if (std::find(inner.words.begin(), inner.words.end(), word) != inner.words.end())
+                    return inner.read(value, target, reader);
+            }
             for (const auto& [name, sentence] : refused_) {
                 if (word == name) return reader.fault_at(tag_, sentence);
             }
@@ -71,6 +96,7 @@ public:
         if (!book.components.contains(name_)) {
             book.components[name_] = nullptr;
             Json choices = Json::array();
+            for (const Included& inner : included_) choices.push_back(inner.schema(book));
             for (const Alternative& alternative : alternatives_) choices.push_back(alternative.schema(book));
             book.components[name_] = {{"title", name_}, {"description", sentence_}, {"oneOf", std::move(choices)}};
         }
@@ -85,9 +111,16 @@ private:
         std::function<Json(SchemaBook&)> schema;
     };
 
+    struct Included {
+        std::vector<std::string> words;
+        std::function<void(const Json&, V&, Reader&)> read;
+        std::function<Json(SchemaBook&)> schema;
+    };
+
     std::string name_, sentence_, tag_, otherwise_;
     std::vector<std::string> words_;
     std::vector<Alternative> alternatives_;
+    std::vector<Included> included_;
     std::vector<std::function<void(const V&, Writer&)>> writers_;
     std::vector<std::pair<std::string, std::string>> refused_;
 };

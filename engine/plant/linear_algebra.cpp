@@ -170,6 +170,17 @@ Complex resolvent_response(std::span<const double> A, std::span<const double> B,
     return c.cast<Complex>().dot(x) + D;
 }
 
+SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(as_matrix(matrix, n));
+    SymmetricEigen result;
+    for (Eigen::Index k = 0; k < n; ++k) {
+        result.values.push_back(solver.eigenvalues()(k));
+        const Eigen::VectorXd vector = solver.eigenvectors().col(k);
+        result.vectors.emplace_back(vector.data(), vector.data() + n);
+    }
+    return result;
+}
+
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     const Matrix result = as_matrix(matrix, n).exp();
     return {result.data(), result.data() + result.size()};

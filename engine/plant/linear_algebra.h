@@ -12,6 +12,13 @@ namespace tunewright {
 /// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
 std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
 
+/// Of a real symmetric matrix: vectors[k] has length one and belongs to values[k], in ascending order.
+struct SymmetricEigen {
+    std::vector<double> values;
+    std::vector<std::vector<double>> vectors;
+};
+SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
+
 /// Roots of a real polynomial (descending powers, leading coefficient non-zero), with conjugate pairs as above.
 /// Eigenvalues of the scaled and balanced companion matrix, polished by Newton steps where these lower the residual.
 std::vector<std::complex<double>> polynomial_roots(std::span<const double> coefficients);

@@ -4,16 +4,30 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <variant>
 #include <vector>
 
 namespace tunewright {
+
+/// Factors of a nominal value between which the true one lies: 0 < low <= 1 <= high.
+struct FactorRange {
+    double low = 1;
+    double high = 1;
+};
+
+/// How far a plant's parameters may lie from their nominal values. K is the whole plant's gain, whatever its type.
+struct Uncertainty {
+    std::optional<FactorRange> K, T, T1, T2, L;
+    bool empty() const { return !K && !T && !T1 && !T2 && !L; }
+};
 
 /// K e^(-Ls) / (T s + 1), taken literally: T < 0 is unstable, T = 0 a pure dead time with gain.
 struct Fopdt {
     double K = 0;
     double T = 0;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// K e^(-Ls) / ((T1 s + 1)(T2 s + 1)).
@@ -22,6 +36,7 @@ struct Sopdt {
     double T1 = 0;
     double T2 = 0;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// K e^(-Ls) / (T^2 s^2 + 2 zeta T s + 1).
@@ -30,6 +45,7 @@ struct OscillatorySopdt {
     double T = 0;
     double zeta = 0;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// K e^(-Ls) / (s (T s + 1)); K is the slope of y per unit of u.
@@ -37,6 +53,7 @@ struct Ipdt {
     double K = 0;
     double L = 0;
     double T = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// num(s)/den(s) e^(-Ls), coefficients in descending powers of s, proper.
@@ -44,6 +61,7 @@ struct TransferFunction {
     std::vector<double> num;
     std::vector<double> den;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// K prod(s - z)/prod(s - p) e^(-Ls). K is not the static gain.
@@ -52,6 +70,7 @@ struct Zpk {
     std::vector<std::complex<double>> zeros;  ///< complex ones in conjugate pairs
     std::vector<std::complex<double>> poles;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 /// x' = A x + B u(t - L), y = C x + D u(t - L). A is n x n (rows), B and C have n entries.
@@ -61,6 +80,7 @@ struct StateSpace {
     std::vector<double> C;
     double D = 0;
     double L = 0;
+    Uncertainty uncertainty = {};
 };
 
 using Plant = std::variant<Fopdt, Sopdt, OscillatorySopdt, Ipdt, TransferFunction, Zpk, StateSpace>;

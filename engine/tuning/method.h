@@ -8,7 +8,7 @@
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
 #include "engine/plant/linear_plant.h"
-#include "engine/plant/plant.h"
+#include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/tuning/options.h"
 #include "engine/warning.h"
@@ -30,12 +30,14 @@ struct TunedController {
     bool partial = false;  ///< stopped early: the best feasible design so far
 };
 
-/// The plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
-/// identified L.
+/// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
+/// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits
+/// work on the nominal plant.
 struct TuningProblem {
     Plant plant;
     LinearPlant linear;
     std::optional<double> dead_time_std;
+    std::optional<PlantFamily> family = {};
 };
 
 struct TuningMethod {

@@ -8,6 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/tuning/amigo.h"
+#include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/fast_search.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/plane_search.h"
@@ -18,6 +19,7 @@ namespace {
 
 using namespace robust;
 
+constexpr int kMostRounds = 10;  // of adding the worst plant found inside a region
 constexpr double kAllowedExcess =
     2e-5;  // relative, of Ms and Mt on the independent grid: above it nothing is returned as a success
 
@@ -78,24 +80,11 @@ Problem make_problem(const TuningProblem& tuning, const MethodOptions& options, 
     return problem;
 }
 
-struct Excess {
-    double relative = 0;
-    std::string peak;
-    double value = 0;
-};
-
-/// The largest excess over a limit, on a grid that the search never saw. Unstable loops exceed everything.
-Excess measured_excess(const Problem& problem, const Point& x) {
-    const auto loop = Loop::make(*problem.plant, to_parallel(controller_at(problem, x)));
-    if (!loop || !count_unstable_poles(*loop).stable()) return {INFINITY, "stability", 0};
-    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop, 0.06, 53));
-    Excess worst{-1, "", 0};
-    const auto note = [&](const char* name, double value, double limit) {
-        if (value / limit - 1 > worst.relative) worst = {value / limit - 1, name, value};
-    };
-    note("Ms", peaks.S.value, problem.limits.Ms);
-    note("Mt", peaks.T.value, problem.limits.Mt);
-    if (problem.limits.Mks) note("Mks", peaks.CS.value, *problem.limits.Mks);
+/// The largest relative excess over a limit, on a grid that the search never saw.
+double measured_excess(const Problem& problem, const Point& x) {
+    double worst = -1;
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        worst = std::max(worst, excess_on(problem.plant_at(i), problem, x, {.step = 0.06, .density = 53}));
     return worst;
 }
 
@@ -185,6 +174,21 @@ std::optional<Found> search_from_least_peak(Problem& problem, const Report& repo
     return std::nullopt;
 }
 
+/// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
+std::optional<Found> search_again(const Sweep& sweep, const Problem& problem, const Point& before,
+                                  const Report& report) {
+    const auto start = feasible_near(sweep, before);
+    if (!start) return std::nullopt;
+    bool stopped = false;
+    const Report watch = [&](const Point& x, double cost) {
+        stopped = report && !report(x, cost);
+        return !stopped;
+    };
+    const SqpResult result = minimise(sweep, problem, *start, {}, watch);
+    if (!std::isfinite(result.log_cost)) return std::nullopt;
+    return Found{result.x, result.log_cost, stopped};
+}
+
 /// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
 /// is.
 std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
@@ -195,11 +199,17 @@ std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
     return std::nullopt;
 }
 
+std::string on_plants(const Problem& problem) {
+    return problem.others.empty() ? " on this plant"
+                                  : " on all " + std::to_string(problem.plants()) + " plants looked at";
+}
+
 Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& least) {
     const std::string name = problem.pid ? "PID" : "PI";
     if (!least)
         return {ErrorKind::unstable_plant, "",
-                "No " + name + " controller was found that stabilises this plant" +
+                "No " + name + " controller was found that stabilises " +
+                    (problem.others.empty() ? "this plant" : "all of these plants") +
                     (problem.pid ? ". " : "; a PID might. ") +
                     "Check the signs and the unit of the dead time, or shorten the dead time."};
     const auto workable = workable_limit(problem, *least);
@@ -214,7 +224,7 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
                 "they lie very far apart."};
     return {ErrorKind::no_feasible_controller, "",
             "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
-                " and Mt <= " + shown(problem.limits.Mt) + " on this plant" +
+                " and Mt <= " + shown(problem.limits.Mt) + on_plants(problem) +
                 (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
                 ". The smallest common limit that works is Ms = Mt = " + shown(workable.value_or(least->M * 1.01)) +
                 "; use that or more."};
@@ -222,9 +232,11 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
 
 /// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
 std::optional<Error> check_Mks(const Problem& problem) {
-    if (!problem.limits.Mks || problem.plant->integrators() != 0) return std::nullopt;
-    const double least = 1 / std::abs(problem.plant->low_frequency_gain());
-    if (*problem.limits.Mks > least) return std::nullopt;
+    double least = 0;
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        if (problem.plant_at(i).integrators() == 0)
+            least = std::max(least, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
+    if (!problem.limits.Mks || *problem.limits.Mks > least) return std::nullopt;
     return Error{ErrorKind::no_feasible_controller, "Mks",
                  "Mks is " + shown(*problem.limits.Mks) +
                      ", but holding the output against a load takes |C S| = 1/|P(0)| = " + shown(least) +
@@ -232,25 +244,28 @@ std::optional<Error> check_Mks(const Problem& problem) {
 }
 
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
-/// ones.
+/// ones. `before`: the design that some new plants have proved too bold.
 Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
-                                CostSurface* surface, const RunControl& control) {
+                                CostSurface* surface, const RunControl& control, const Point* before) {
     const double reference = reference_frequency(problem);
     ProgressReport progress(problem, control);
     const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
     const Sweep sweep(problem, reference);
-    auto found =
-        has_reference_optima(problem, sweep) ? search(kind, sweep, problem, start, surface, report) : std::nullopt;
+    std::optional<Found> found;
+    if (has_reference_optima(problem, sweep)) {
+        if (before != nullptr) found = search_again(sweep, problem, *before, report);
+        if (!found) found = search(kind, sweep, problem, start, surface, report);
+    }
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
     if (!found) found = search_from_least_peak(problem, report);
     if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
     double tighter = 0;
     for (int round = 0; round < 4; ++round) {
-        const Excess excess = measured_excess(problem, found->x);
-        if (excess.relative <= 0.5 * kAllowedExcess) return *found;
-        if (!std::isfinite(excess.relative) || round == 3) break;
-        tighter += 1.5 * excess.relative * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
+        const double excess = measured_excess(problem, found->x);
+        if (excess <= 0.5 * kAllowedExcess) return *found;
+        if (!std::isfinite(excess) || round == 3) break;
+        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
         const Problem narrowed = tightened(problem, std::min(tighter, 0.5));
         const Sweep narrow_sweep(narrowed, reference);
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
@@ -260,6 +275,15 @@ Expected<Found> verified_search(const std::string& kind, Problem& problem, const
     return Error{ErrorKind::numerical_failure, "",
                  "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
                  "Try another search or a filter with a longer Tf."};
+}
+
+Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& problem, const Point& x) {
+    double worst = 0;
+    for (const auto& plant : found) worst = std::max(worst, excess_on(plant, problem, x, {}));
+    return {"limit-exceeded-inside",
+            "Between the plants on which the limits hold one was left on which a limit is "
+            "exceeded by " +
+                shown(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
 }
 
 void add_warnings(TunedController& result, const Problem& problem, const Point& x) {
@@ -280,6 +304,9 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     const auto filter = filter_rule(tuning, options, pid);
     if (!filter) return filter.error();
     Problem problem = make_problem(tuning, options, *filter, pid);
+    auto others = other_members(tuning, first_sign);
+    if (!others) return others.error();
+    problem.others = *others;
     if (auto error = check_Mks(problem)) return *error;
     if (has_no_finite_optimum(problem))
         return Error{ErrorKind::unbounded_optimum, "filter",
@@ -289,11 +316,22 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     CostSurface surface;
     const std::string kind = options.text("search").value_or("fast");
     const bool with_surface = options.boolean("surface").value_or(false);
-    const auto found =
-        verified_search(kind, problem, kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, pid),
-                        with_surface ? &surface : nullptr, control);
-    if (!found) return found.error();
+    const PlaneStart start = kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, pid);
     TunedController result;
+    auto found = verified_search(kind, problem, start, with_surface ? &surface : nullptr, control, nullptr);
+    for (int round = 0; found && !found->stopped && tuning.family; ++round) {
+        const auto added = worst_inside(*tuning.family, problem, found->x, control.stop);
+        if (added.empty()) break;
+        if (round == kMostRounds) {
+            result.warnings.push_back(exceeded_inside(added, problem, found->x));
+            break;
+        }
+        others->insert(others->end(), added.begin(), added.end());
+        problem.others = *others;
+        const Point before = found->x;
+        found = verified_search(kind, problem, start, nullptr, control, &before);
+    }
+    if (!found) return found.error();
     result.controller = controller_at(problem, found->x);
     result.partial = found->stopped;
     if (with_surface) result.surface = surface;

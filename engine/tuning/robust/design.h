@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "engine/controller/pid.h"
 #include "engine/plant/linear_plant.h"
@@ -30,7 +31,8 @@ struct Limits {
 using Point = std::array<double, 3>;
 
 struct Problem {
-    const LinearPlant* plant = nullptr;
+    const LinearPlant* plant = nullptr;   ///< nominal: the cost is its own
+    std::span<const LinearPlant> others;  ///< stability and the limits must hold on these too
     bool pid = true;
     double sign = 1;  ///< of Kp
     FilterRule filter;
@@ -41,6 +43,8 @@ struct Problem {
     double setpoint_optimum = 1;
 
     int dimension() const { return pid ? 3 : 2; }
+    std::size_t plants() const { return 1 + others.size(); }
+    const LinearPlant& plant_at(std::size_t i) const { return i == 0 ? *plant : others[i - 1]; }
 };
 
 inline double filter_time(const Problem& problem, double Td) {

@@ -18,11 +18,15 @@ constexpr double kUnstable = 20;                        // ln of the larger peak
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
 double larger_peak(const Problem& problem, const std::vector<double>& x) {
-    const auto loop =
-        Loop::make(*problem.plant, to_parallel(controller_at(problem, {x[0], x[1], x.size() > 2 ? x[2] : 0})));
-    if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
-    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
-    return std::log(std::max(peaks.S.value, peaks.T.value));
+    const ParallelPid gains = to_parallel(controller_at(problem, {x[0], x[1], x.size() > 2 ? x[2] : 0}));
+    double largest = 0;
+    for (std::size_t i = 0; i < problem.plants(); ++i) {
+        const auto loop = Loop::make(problem.plant_at(i), gains);
+        if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
+        const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+        largest = std::max({largest, peaks.S.value, peaks.T.value});
+    }
+    return std::log(largest);
 }
 
 /// A feasible point under ever wider limits.
@@ -65,6 +69,12 @@ std::optional<Point> feasible_near(const Sweep& sweep, const Point& x) {
 }
 
 bool has_no_finite_optimum(const Problem& problem) {
+    for (std::size_t i = 0; i < problem.others.size(); ++i) {
+        Problem alone = problem;
+        alone.plant = &problem.others[i];
+        alone.others = {};
+        if (!has_no_finite_optimum(alone)) return false;
+    }
     const LinearPlant& plant = *problem.plant;
     if (plant.dead_time() > 0 || plant.has_right_half_plane_zero() || problem.limits.Mks) return false;
     const int excess = plant.pole_excess();
@@ -78,6 +88,7 @@ bool has_no_finite_optimum(const Problem& problem) {
     const auto asymptote = LinearPlant::make(Zpk{.K = problem.sign, .zeros = {}, .poles = {0.0, 0.0}, .L = 0});
     Problem limit = problem;
     limit.plant = &*asymptote;
+    limit.others = {};
     limit.sign = 1;
     return !scan(Sweep(limit, 1), 13, 11).empty();
 }

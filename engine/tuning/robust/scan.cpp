@@ -21,12 +21,17 @@ std::vector<double> spaced(double low, double high, int n) {
 }
 
 /// A stable plant with an integral of the right sign is stable at low gain, so the first gap needs no count.
-bool first_gap_is_stable(const Problem& problem) {
-    const LinearPlant& plant = *problem.plant;
+bool stable_at_low_gain(const LinearPlant& plant, double sign) {
     if (plant.integrators() != 0 || plant.unstable_poles() != 0) return false;
     for (const auto pole : plant.poles())
         if (pole.real() > -1e-9 * std::abs(pole)) return false;
-    return problem.sign * plant.low_frequency_gain() > 0;
+    return sign * plant.low_frequency_gain() > 0;
+}
+
+bool first_gap_is_stable(const Problem& problem) {
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        if (!stable_at_low_gain(problem.plant_at(i), problem.sign)) return false;
+    return true;
 }
 
 }  // namespace

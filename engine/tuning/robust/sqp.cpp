@@ -61,8 +61,9 @@ std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, c
 Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
     const ActivePeak* best = nullptr;
     for (const auto& peak : peaks)
-        if (peak.kind == old.kind && (best == nullptr || std::abs(std::log(peak.omega / old.omega)) <
-                                                             std::abs(std::log(best->omega / old.omega))))
+        if (peak.kind == old.kind && peak.plant == old.plant &&
+            (best == nullptr ||
+             std::abs(std::log(peak.omega / old.omega)) < std::abs(std::log(best->omega / old.omega))))
             best = &peak;
     const bool same =
         best != nullptr && (best->omega == old.omega || std::abs(std::log(best->omega / old.omega)) < 0.3);
@@ -72,8 +73,12 @@ Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
 }  // namespace
 
 bool is_stable(const Problem& problem, const Point& x) {
-    const auto loop = Loop::make(*problem.plant, to_parallel(controller_at(problem, x)));
-    return loop && count_unstable_poles(*loop).stable();
+    const ParallelPid gains = to_parallel(controller_at(problem, x));
+    for (std::size_t i = 0; i < problem.plants(); ++i) {
+        const auto loop = Loop::make(problem.plant_at(i), gains);
+        if (!loop || !count_unstable_poles(*loop).stable()) return false;
+    }
+    return true;
 }
 
 std::optional<Point> restore(const Sweep& sweep, Point x) {

@@ -35,7 +35,7 @@ SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& star
 /// along the shortest way; empty if that does not succeed.
 std::optional<Point> restore(const Sweep& sweep, Point x);
 
-/// Is the loop at x stable?
+/// Is the loop at x stable, on every plant?
 bool is_stable(const Problem& problem, const Point& x);
 
 }  // namespace tunewright::robust

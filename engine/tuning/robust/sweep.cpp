@@ -17,8 +17,9 @@ constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> frequencies(const Problem& problem, double reference, double resolved_to) {
-    const double L = problem.plant->dead_time();
+std::vector<double> frequencies(const Problem& problem, const LinearPlant& plant, double reference,
+                                double resolved_to) {
+    const double L = plant.dead_time();
     // |C S| peaks near 1/Tf, which follows Td far up.
     double high = reference * std::pow(10, problem.limits.Mks ? kDecades + 1.5 : kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
@@ -37,8 +38,8 @@ std::vector<double> frequencies(const Problem& problem, double reference, double
             if (w > low && w < std::min(high, resolved_to)) omega.push_back(w);
         }
     };
-    for (const auto pole : problem.plant->poles()) add_resonance(pole);
-    for (const auto zero : problem.plant->zeros()) add_resonance(zero);
+    for (const auto pole : plant.poles()) add_resonance(pole);
+    for (const auto zero : plant.zeros()) add_resonance(zero);
     std::sort(omega.begin(), omega.end());
     omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
     return omega;
@@ -58,22 +59,31 @@ double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits&
 }  // namespace
 
 Sweep::Sweep(const Problem& problem, double reference) : problem_(problem), reference_(reference) {
-    if (problem.plant->dead_time() > 0)
-        resolved_to_ = kTurnsResolved * 2 * std::numbers::pi / problem.plant->dead_time();
-    omega_ = frequencies(problem, reference, resolved_to_);
-    // On an undamped pole P is infinite; its neighbours tell the same.
-    std::erase_if(omega_, [&](double w) { return !std::isfinite(std::abs(problem.plant->at({0, w}))); });
-    for (const double w : omega_) {
-        const Complex P = problem.plant->at({0, w});
-        P_re_.push_back(P.real());
-        P_im_.push_back(P.imag());
-    }
-    resolved_ = static_cast<std::size_t>(std::lower_bound(omega_.begin(), omega_.end(), resolved_to_) - omega_.begin());
+    for (std::size_t i = 0; i < problem.plants(); ++i) curves_.push_back(curve_of(i));
     // The smallest circle around both: from -Mt/(Mt - 1) to -1 + 1/Ms on the real axis.
     const double left = -problem.limits.Mt / (problem.limits.Mt - 1), right = -1 + 1 / problem.limits.Ms;
     circle_centre_ = 0.5 * (left + right);
     circle_radius_ = 0.5 * (right - left);
-    for (auto* level : {&S_, &T_, &CS_, &circle_}) level->resize(omega_.size());
+}
+
+Sweep::Curve Sweep::curve_of(std::size_t index) const {
+    Curve curve;
+    const LinearPlant& plant = problem_.plant_at(index);
+    curve.plant = &plant;
+    curve.index = index;
+    if (plant.dead_time() > 0) curve.resolved_to = kTurnsResolved * 2 * std::numbers::pi / plant.dead_time();
+    curve.omega = frequencies(problem_, plant, reference_, curve.resolved_to);
+    // On an undamped pole P is infinite; its neighbours tell the same.
+    std::erase_if(curve.omega, [&](double w) { return !std::isfinite(std::abs(plant.at({0, w}))); });
+    for (const double w : curve.omega) {
+        const Complex P = plant.at({0, w});
+        curve.P_re.push_back(P.real());
+        curve.P_im.push_back(P.imag());
+    }
+    const auto first = std::lower_bound(curve.omega.begin(), curve.omega.end(), curve.resolved_to);
+    curve.resolved = static_cast<std::size_t>(first - curve.omega.begin());
+    for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());
+    return curve;
 }
 
 Sweep::Shape Sweep::shape(const Point& x) const {
@@ -81,28 +91,27 @@ Sweep::Shape Sweep::shape(const Point& x) const {
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
 
-double Sweep::value(ConstraintKind kind, const Point& x, double omega) const {
-    const Shape c = shape(x);
+/// The constraint's value at one frequency, exactly.
+double Sweep::value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const {
     const Complex s(0, omega);
     const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
-    return constraint_value(kind, worst_phase(problem_.plant->at(s) * C, omega), C, problem_.limits, circle_centre_,
+    return constraint_value(kind, worst_phase(curve, curve.plant->at(s) * C, omega), C, problem_.limits, circle_centre_,
                             circle_radius_);
 }
 
-Complex Sweep::worst_phase(Complex L, double omega) const {
-    if (omega < resolved_to_) return L;
+Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
+    if (omega < curve.resolved_to) return L;
     // Reached within a turn of the dead time; |L| >= 1 there is far beyond any limit.
     return -std::min(std::abs(L), 1 - 1e-6);
 }
 
-std::array<double, 3> Sweep::gradient(ConstraintKind kind, const Point& x, double omega) const {
-    const Shape c = shape(x);
+std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const {
     const Complex s(0, omega), integral = c.Ki / s, derivative = c.Kd * s, sum = c.Kp + integral + derivative;
     const Complex filter = 1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s);
     // d ln C by ln Kp, ln Ti, ln Td.
     std::array<Complex, 3> dC = {1.0, -integral / sum, derivative / sum};
     if (problem_.filter.Tf_over_Td) dC[2] -= c.Tf * s * (1.0 + c.Tf * s) / filter;
-    const Complex L = worst_phase(problem_.plant->at(s) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
+    const Complex L = worst_phase(curve, curve.plant->at(s) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
     std::array<double, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
         switch (kind) {
@@ -116,36 +125,36 @@ std::array<double, 3> Sweep::gradient(ConstraintKind kind, const Point& x, doubl
     return result;
 }
 
-void Sweep::add_peaks(ConstraintKind kind, const std::vector<double>& level, const Point& x, double threshold,
-                      std::vector<ActivePeak>& found) const {
+void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Shape& c,
+                      double threshold, std::vector<ActivePeak>& found) const {
     // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
     const double from = std::exp(2 * (threshold - 0.1));
     for (std::size_t i = 0; i < n; ++i) {
         const bool first = i == 0, last = i + 1 == n;
         if (level[i] < from || (!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
-        ActivePeak peak{.kind = kind, .omega = omega_[i], .value = 0.5 * std::log(level[i])};
-        if (i != resolved_ && !first && !last) {
+        ActivePeak peak{.kind = kind, .plant = curve.index, .omega = curve.omega[i], .value = 0.5 * std::log(level[i])};
+        if (i != curve.resolved && !first && !last) {
             // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
             // moves.
-            double a = std::log(omega_[i - 1]), b = std::log(omega_[i]), c = std::log(omega_[i + 1]);
-            double fa = 0.5 * std::log(level[i - 1]), fb = peak.value, fc = 0.5 * std::log(level[i + 1]);
+            double a = std::log(curve.omega[i - 1]), b = std::log(curve.omega[i]), d = std::log(curve.omega[i + 1]);
+            double fa = 0.5 * std::log(level[i - 1]), fb = peak.value, fd = 0.5 * std::log(level[i + 1]);
             for (int k = 0; k < 6; ++k) {
-                const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b), bend = (right - left) / (c - a);
+                const double left = (fb - fa) / (b - a), right = (fd - fb) / (d - b), bend = (right - left) / (d - a);
                 if (!(bend < 0)) break;
                 const double top =
-                    std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + 0.02 * (b - a), c - 0.02 * (c - b));
+                    std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + 0.02 * (b - a), d - 0.02 * (d - b));
                 if (std::abs(top - b) < 1e-7 * (1 + std::abs(b))) break;
-                const double f = value(kind, x, std::exp(top));
+                const double f = value(curve, kind, c, std::exp(top));
                 const double gain = f - fb;
                 if (f >= fb) {
-                    (top > b ? a : c) = b;
-                    (top > b ? fa : fc) = fb;
+                    (top > b ? a : d) = b;
+                    (top > b ? fa : fd) = fb;
                     b = top;
                     fb = f;
                 } else {
-                    (top > b ? c : a) = top;
-                    (top > b ? fc : fa) = f;
+                    (top > b ? d : a) = top;
+                    (top > b ? fd : fa) = f;
                 }
                 if (std::abs(gain) < 1e-10) break;
             }
@@ -153,24 +162,23 @@ void Sweep::add_peaks(ConstraintKind kind, const std::vector<double>& level, con
             peak.value = fb;
         }
         if (peak.value < threshold) continue;
-        peak.gradient = gradient(kind, x, peak.omega);
+        peak.gradient = gradient(curve, kind, c, peak.omega);
         found.push_back(peak);
     }
 }
 
-void Sweep::add_limits(const Point& x, double threshold, std::vector<ActivePeak>& found) const {
+void Sweep::add_limits(const Curve& curve, const Shape& c, double threshold, std::vector<ActivePeak>& found) const {
     // Without filter a direct loop gain q remains at infinite frequency.
-    const Shape c = shape(x);
     if (c.Tf > 0) return;
-    const int excess = problem_.plant->pole_excess() - (problem_.pid ? 1 : 0);
+    const int excess = curve.plant->pole_excess() - (problem_.pid ? 1 : 0);
     if (excess > 0) return;
-    const double q = problem_.plant->gain() * (problem_.pid ? c.Kd : c.Kp);
-    const bool turning = problem_.plant->dead_time() > 0;
+    const double q = curve.plant->gain() * (problem_.pid ? c.Kd : c.Kp);
+    const bool turning = curve.plant->dead_time() > 0;
     const double nearest = turning ? 1 - std::abs(q) : std::abs(1 + q);
     const std::size_t gain_index = problem_.pid ? 2 : 0;
     const auto add = [&](ConstraintKind kind, double value, double slope) {
         if (!(value >= threshold)) return;
-        ActivePeak peak{.kind = kind, .omega = kInfinity, .value = std::min(value, 50.0)};
+        ActivePeak peak{.kind = kind, .plant = curve.index, .omega = kInfinity, .value = std::min(value, 50.0)};
         peak.gradient[0] = slope;
         if (gain_index == 2) peak.gradient[2] = slope;
         found.push_back(peak);
@@ -182,15 +190,15 @@ void Sweep::add_limits(const Point& x, double threshold, std::vector<ActivePeak>
         nearest > 0 ? 1 / nearest : 50);
 }
 
-std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
-    const Shape c = shape(x);
+/// Squared ratios to the limits at every frequency of the grid.
+void Sweep::fill_levels(Curve& curve, const Shape& c) const {
     const Limits& limits = problem_.limits;
     const double s_limit = 1 / (limits.Ms * limits.Ms), t_limit = 1 / (limits.Mt * limits.Mt);
     const double cs_limit = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0,
                  circle_limit = circle_radius_ * circle_radius_;
-    const std::size_t n = omega_.size();
-    const double *w = omega_.data(), *pr = P_re_.data(), *pi = P_im_.data();
-    double *S = S_.data(), *T = T_.data(), *CS = CS_.data(), *circle = circle_.data();
+    const std::size_t n = curve.omega.size();
+    const double *w = curve.omega.data(), *pr = curve.P_re.data(), *pi = curve.P_im.data();
+    double *S = curve.S.data(), *T = curve.T.data(), *CS = curve.CS.data(), *circle = curve.circle.data();
     for (std::size_t i = 0; i < n; ++i) {
         const double fr = 1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, fi = w[i] * c.Tf, scale = 1 / (fr * fr + fi * fi);
         const double nr = c.Kp, ni = c.Kd * w[i] - c.Ki / w[i];
@@ -202,7 +210,7 @@ std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
         CS[i] = (cr * cr + ci * ci) * distance * cs_limit;
         circle[i] = circle_limit / ((lr - circle_centre_) * (lr - circle_centre_) + li * li);
     }
-    for (std::size_t i = resolved_; i < n; ++i) {
+    for (std::size_t i = curve.resolved; i < n; ++i) {
         const Complex C =
             Complex(c.Kp, c.Kd * w[i] - c.Ki / w[i]) / Complex(1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, w[i] * c.Tf);
         const double size = std::abs(C) * std::hypot(pr[i], pi[i]), nearest = size < 1 ? 1 - size : 1e-6;
@@ -212,23 +220,28 @@ std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
         const double to_circle = std::abs(circle_centre_) - size;
         circle[i] = circle_limit / std::max(to_circle * to_circle, 1e-12);
     }
+}
+
+std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
+    const Shape c = shape(x);
     std::vector<ActivePeak> found;
-    if (limits.m_circle) {
-        add_peaks(ConstraintKind::circle, circle_, x, threshold, found);
-    } else {
-        add_peaks(ConstraintKind::S, S_, x, threshold, found);
-        add_peaks(ConstraintKind::T, T_, x, threshold, found);
+    for (Curve& curve : curves_) {
+        fill_levels(curve, c);
+        if (problem_.limits.m_circle) {
+            add_peaks(curve, ConstraintKind::circle, curve.circle, c, threshold, found);
+        } else {
+            add_peaks(curve, ConstraintKind::S, curve.S, c, threshold, found);
+            add_peaks(curve, ConstraintKind::T, curve.T, c, threshold, found);
+        }
+        if (problem_.limits.Mks) add_peaks(curve, ConstraintKind::CS, curve.CS, c, threshold, found);
+        add_limits(curve, c, threshold, found);
     }
-    if (limits.Mks) add_peaks(ConstraintKind::CS, CS_, x, threshold, found);
-    add_limits(x, threshold, found);
     std::sort(found.begin(), found.end(), [](const ActivePeak& a, const ActivePeak& b) { return a.value > b.value; });
     return found;
 }
 
-std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
-    const Point unit = {0, std::log(Ti), problem_.pid ? std::log(Td) : 0};
-    const Shape c = shape(unit);
-    std::vector<GainGap> forbidden;
+/// Adds the intervals of |Kp| that one plant forbids.
+void Sweep::forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& forbidden) const {
     const Limits& limits = problem_.limits;
     const auto forbid_circle = [&](double X, double Y, double centre, double radius) {
         const double size = X * X + Y * Y, discriminant = radius * radius * size - centre * centre * Y * Y;
@@ -240,12 +253,11 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
     };
     const double t_centre = -limits.Mt * limits.Mt / (limits.Mt * limits.Mt - 1),
                  t_radius = limits.Mt / (limits.Mt * limits.Mt - 1);
-    const double largest_gain = kInfinity;
-    for (std::size_t i = 0; i < omega_.size(); ++i) {
-        const double w = omega_[i];
+    for (std::size_t i = 0; i < curve.omega.size(); ++i) {
+        const double w = curve.omega[i];
         const Complex C = Complex(c.Kp, c.Kd * w - c.Ki / w) / Complex(1 - 0.5 * w * w * c.Tf * c.Tf, w * c.Tf);
-        Complex G = Complex(P_re_[i], P_im_[i]) * C;
-        if (i >= resolved_) G = -std::abs(G);
+        Complex G = Complex(curve.P_re[i], curve.P_im[i]) * C;
+        if (i >= curve.resolved) G = -std::abs(G);
         if (limits.m_circle) {
             forbid_circle(G.real(), G.imag(), circle_centre_, circle_radius_);
         } else {
@@ -256,11 +268,17 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
             // K^2 |C|^2 <= Mks^2 |1 + K G|^2.
             const double M = *limits.Mks * *limits.Mks, a = std::norm(C) - M * std::norm(G), b = M * G.real();
             const double discriminant = b * b + a * M;
-            if (a > 0) forbidden.push_back({(b + std::sqrt(discriminant)) / a, largest_gain});
+            if (a > 0) forbidden.push_back({(b + std::sqrt(discriminant)) / a, kInfinity});
             if (a < 0 && discriminant > 0 && b < 0)
                 forbidden.push_back({(b + std::sqrt(discriminant)) / a, (b - std::sqrt(discriminant)) / a});
         }
     }
+}
+
+std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
+    const Shape c = shape({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
+    std::vector<GainGap> forbidden;
+    for (const Curve& curve : curves_) forbid(curve, c, forbidden);
     std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
     std::vector<GainGap> gaps;
     double reached = 0;
@@ -268,7 +286,7 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
         if (interval.lower > reached) gaps.push_back({reached, interval.lower});
         reached = std::max(reached, interval.upper);
     }
-    if (reached < largest_gain) gaps.push_back({reached, largest_gain});
+    if (reached < kInfinity) gaps.push_back({reached, kInfinity});
     return gaps;
 }
 

@@ -20,6 +20,7 @@ enum class ConstraintKind { S, T, CS, circle };
 /// theorem).
 struct ActivePeak {
     ConstraintKind kind = ConstraintKind::S;
+    std::size_t plant = 0;  ///< Problem::plant_at
     double omega = 0;
     double value = 0;  ///< <= 0 is allowed
     std::array<double, 3> gradient{};
@@ -35,15 +36,18 @@ public:
     /// `reference` is the frequency around which the loop will live (phase crossover or the like).
     Sweep(const Problem& problem, double reference);
 
-    /// All local maxima above `threshold`, and the limits at frequency infinity; the largest value first.
+    /// All local maxima above `threshold` on every plant, and the limits at frequency infinity; the largest value
+    /// first.
     std::vector<ActivePeak> peaks(const Point& x, double threshold) const;
 
     /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hagglund 2008, Eq.
-    /// 6, for every circle at once), in ascending order.
+    /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 
-    /// The constraint's value at one frequency, exactly.
-    double value(ConstraintKind kind, const Point& x, double omega) const;
+    /// The constraint's value on the nominal plant at one frequency, exactly.
+    double value(ConstraintKind kind, const Point& x, double omega) const {
+        return value(curves_.front(), kind, shape(x), omega);
+    }
 
     const Problem& problem() const { return problem_; }
     double reference() const { return reference_; }
@@ -52,21 +56,31 @@ private:
     struct Shape {
         double Kp, Ki, Kd, Tf;
     };
+    /// One plant on its own grid.
+    struct Curve {
+        const LinearPlant* plant = nullptr;
+        std::size_t index = 0;
+        double resolved_to = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
+                                                                       // grid: worst phase assumed
+        std::size_t resolved = 0;                                      // index of the first such frequency
+        std::vector<double> omega, P_re, P_im;
+        std::vector<double> S, T, CS, circle;  // scratch: one sweep per thread of work
+    };
+    Curve curve_of(std::size_t index) const;
     Shape shape(const Point& x) const;
-    void add_peaks(ConstraintKind kind, const std::vector<double>& level, const Point& x, double threshold,
-                   std::vector<ActivePeak>& found) const;
-    void add_limits(const Point& x, double threshold, std::vector<ActivePeak>& found) const;
-    std::complex<double> worst_phase(std::complex<double> L, double omega) const;
-    std::array<double, 3> gradient(ConstraintKind kind, const Point& x, double omega) const;
+    double value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
+    void fill_levels(Curve& curve, const Shape& c) const;
+    void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Shape& c,
+                   double threshold, std::vector<ActivePeak>& found) const;
+    void add_limits(const Curve& curve, const Shape& c, double threshold, std::vector<ActivePeak>& found) const;
+    void forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& forbidden) const;
+    std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;
+    std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
 
     Problem problem_;
     double reference_;
     double circle_centre_ = 0, circle_radius_ = 0;
-    double resolved_to_ = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
-                                                                    // grid: worst phase assumed
-    std::size_t resolved_ = 0;                                      // index of the first such frequency
-    std::vector<double> omega_, P_re_, P_im_;
-    mutable std::vector<double> S_, T_, CS_, circle_;  // scratch: one sweep per thread of work
+    mutable std::vector<Curve> curves_;
 };
 
 /// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)

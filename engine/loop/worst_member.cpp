@@ -1,0 +1,54 @@
+#include "engine/loop/worst_member.h"
+
+#include <cmath>
+#include <limits>
+
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFirstStep = 0.5, kLastStep = 0.02;
+
+double badness_at(const PlantRegion& region, const Badness& badness, const PlantRegion::Point& z) {
+    const auto plant = LinearPlant::make(region.at(z));
+    return plant ? badness(*plant) : kInfinity;
+}
+
+}  // namespace
+
+WorstMember find_worst(const PlantRegion& region, const Badness& badness, const std::vector<PlantRegion::Point>& starts,
+                       const std::stop_token& stop) {
+    WorstMember worst{starts.front(), -kInfinity};
+    const auto try_point = [&](const PlantRegion::Point& z) {
+        if (stop.stop_requested() || worst.badness == kInfinity) return false;
+        const double value = badness_at(region, badness, z);
+        if (!(value > worst.badness)) return false;
+        worst = {z, value};
+        return true;
+    };
+    for (const auto& z : starts) try_point(z);
+    const auto n = static_cast<std::size_t>(region.dimension());
+    for (double step = kFirstStep; step >= kLastStep;) {
+        bool better = false;
+        for (std::size_t k = 0; k < n; ++k)
+            for (const double side : {step, -step}) {
+                PlantRegion::Point z = worst.z;
+                z[k] += side;
+                z = region.inside(z);
+                if (z != worst.z) better = try_point(z) || better;
+            }
+        if (!better) step /= 2;
+    }
+    return worst;
+}
+
+double log_sensitivity_peak(const LinearPlant& plant, const ParallelPid& controller) {
+    const auto loop = Loop::make(plant, controller);
+    if (!loop || !count_unstable_poles(*loop).stable()) return kInfinity;
+    return std::log(find_peaks(*loop, make_loop_grid(*loop)).S.value);
+}
+
+}  // namespace tunewright

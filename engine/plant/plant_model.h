@@ -1,0 +1,18 @@
+// What a request may be about: one linear plant (perhaps with uncertain parameters), several, or measured points.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "engine/plant/plant.h"
+
+namespace tunewright {
+
+/// Several plants that one controller must serve. The first is nominal; at least one.
+struct PlantSet {
+    std::vector<Plant> plants;
+};
+
+using PlantModel = std::variant<Plant, PlantSet>;
+
+}  // namespace tunewright

@@ -1,0 +1,60 @@
+#include "engine/tuning/robust/family.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/loop/worst_member.h"
+
+namespace tunewright::robust {
+namespace {
+
+constexpr double kAllowedInside = 5e-5;  // relative, of a limit between the plants on which it is held
+
+Error both_signs() {
+    return {ErrorKind::no_feasible_controller, "",
+            "The plants need gains of both signs, which no controller has. Narrow the uncertainty; for a recorded "
+            "test: the record leaves even the sign of the plant's gain open, so repeat the test with a larger step."};
+}
+
+}  // namespace
+
+Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, double (*sign_of)(const LinearPlant&)) {
+    std::vector<LinearPlant> members;
+    if (!tuning.family) return members;
+    for (const auto& member : members_beside_nominal(*tuning.family)) {
+        auto linear = LinearPlant::make(member);
+        if (!linear) return linear.error();
+        if (sign_of(*linear) != sign_of(tuning.linear)) return both_signs();
+        members.push_back(std::move(*linear));
+    }
+    return members;
+}
+
+double excess_on(const LinearPlant& plant, const Problem& problem, const Point& x, const GridFineness& fineness) {
+    const auto loop = Loop::make(plant, to_parallel(controller_at(problem, x)));
+    if (!loop || !count_unstable_poles(*loop).stable()) return std::numeric_limits<double>::infinity();
+    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop, fineness.step, fineness.density));
+    double worst = std::max(peaks.S.value / problem.limits.Ms, peaks.T.value / problem.limits.Mt);
+    if (problem.limits.Mks) worst = std::max(worst, peaks.CS.value / *problem.limits.Mks);
+    return worst - 1;
+}
+
+std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
+                                      const std::stop_token& stop) {
+    const Badness badness = [&](const LinearPlant& plant) { return excess_on(plant, problem, x, {}); };
+    std::vector<LinearPlant> found;
+    for (const auto& region : family.regions) {
+        if (region.dimension() == 0) continue;
+        for (const auto& starts : {region.spread(kRegionSamples), region.ends()}) {
+            const WorstMember worst = find_worst(region, badness, starts, stop);
+            if (!(worst.badness > kAllowedInside)) continue;
+            if (auto plant = LinearPlant::make(region.at(worst.z))) found.push_back(std::move(*plant));
+        }
+    }
+    return found;
+}
+
+}  // namespace tunewright::robust

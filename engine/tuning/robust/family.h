@@ -1,0 +1,31 @@
+// The further plants of a robust design: which they are, and where between them a limit is exceeded.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/tuning/method.h"
+#include "engine/tuning/robust/design.h"
+
+namespace tunewright::robust {
+
+/// Members of the tuning problem's family beside the nominal plant. Error: no_feasible_controller if they need gains of
+/// both signs; `sign_of` tells a plant's sign.
+Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, double (*sign_of)(const LinearPlant&));
+
+/// Density of the frequency grid, as make_loop_grid's.
+struct GridFineness {
+    double step = 0.15;
+    int density = 24;
+};
+
+/// The largest relative excess of the loop at x over a limit on one plant; infinite if it is unstable.
+double excess_on(const LinearPlant& plant, const Problem& problem, const Point& x, const GridFineness& fineness);
+
+/// For each region of the family the plant inside on which the design at x exceeds a limit most, where that is by more
+/// than 5e-5: from 128 points and the ends the worst is followed (find_worst). Empty: the limits hold.
+std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
+                                      const std::stop_token& stop);
+
+}  // namespace tunewright::robust

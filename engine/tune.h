@@ -35,6 +35,7 @@ struct TuningEntry {
     MethodOptions options;
     std::optional<Plant> reduced_model;
     std::optional<CostSurface> surface;
+    std::optional<RimcReport> rimc;
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 };

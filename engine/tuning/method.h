@@ -11,6 +11,7 @@
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/tuning/options.h"
+#include "engine/tuning/rimc_report.h"
 #include "engine/warning.h"
 
 namespace tunewright {
@@ -27,6 +28,7 @@ struct TunedController {
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
     std::optional<CostSurface> surface;
+    std::optional<RimcReport> rimc;
     bool partial = false;  ///< stopped early: the best feasible design so far
 };
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 
 #include "engine/tuning/amigo.h"
+#include "engine/tuning/imc.h"
 #include "engine/tuning/lambda.h"
 #include "engine/tuning/method.h"
+#include "engine/tuning/rimc.h"
 #include "engine/tuning/robust.h"
 #include "engine/tuning/simc.h"
 #include "engine/tuning/ziegler_nichols_step.h"
@@ -11,7 +13,13 @@ namespace tunewright {
 
 const std::vector<TuningMethod>& method_registry() {
     static const std::vector<TuningMethod> methods = {
-        robust_method(), amigo_method(), simc_method(), lambda_method(), ziegler_nichols_step_method(),
+        robust_method(),
+        rimc_method(),
+        amigo_method(),
+        simc_method(),
+        lambda_method(),
+        imc_method(),
+        ziegler_nichols_step_method(),
     };
     return methods;
 }

@@ -1,0 +1,25 @@
+// The revised IMC controller before it is reduced to a PID: with the model's dead time inside.
+#pragma once
+
+#include <complex>
+
+namespace tunewright {
+
+/// C = Q/(1 - G Q) on the model G = kp e^(-theta s)/(tau s + 1), with
+///   Q = (beta s + 1)(tau s + 1)/(kp (lambda s + 1)^2),
+/// so that the nominal T is (beta s + 1) e^(-theta s)/(lambda s + 1)^2. Liu and Gao (2008), Eqs. 19-23; beta, the
+/// filter's zero, is their alpha of Eq. 21 (they use that letter twice).
+struct ImcController {
+    double kp = 0;      ///< != 0
+    double tau = 0;     ///< > 0
+    double theta = 0;   ///< >= 0
+    double lambda = 0;  ///< > 0
+    double beta = 0;
+
+    std::complex<double> model(std::complex<double> s) const { return kp * std::exp(-theta * s) / (tau * s + 1.0); }
+    std::complex<double> Q(std::complex<double> s) const {
+        return (beta * s + 1.0) * (tau * s + 1.0) / (kp * (lambda * s + 1.0) * (lambda * s + 1.0));
+    }
+};
+
+}  // namespace tunewright

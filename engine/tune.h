@@ -8,6 +8,7 @@
 #include "engine/evaluate.h"
 #include "engine/identification/identify.h"
 #include "engine/progress.h"
+#include "engine/rimc_entry.h"
 #include "engine/tuning/method.h"
 
 namespace tunewright {
@@ -35,7 +36,7 @@ struct TuningEntry {
     MethodOptions options;
     std::optional<Plant> reduced_model;
     std::optional<CostSurface> surface;
-    std::optional<RimcReport> rimc;
+    std::optional<RimcEntry> rimc;
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 };

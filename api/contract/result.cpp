@@ -5,6 +5,7 @@
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant.h"
+#include "api/contract/rimc.h"
 
 namespace tunewright::api {
 namespace {
@@ -104,6 +105,8 @@ const Description<TuningEntry>& entry_contract() {
                          "On every plant that the controller must serve; left out where that is one.");
         d.field("surface", &TuningEntry::surface, maybe(answer(surface_contract())),
                 "Cost over the (Ti, Td) plane, where asked for.");
+        d.field("rimc", &TuningEntry::rimc, maybe(answer(rimc_contract())),
+                "Of the method rimc: what its design achieves on the model.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },

@@ -8,6 +8,8 @@ import type { Route } from "./routes.ts";
 import { createStore } from "./store.ts";
 import { applyTheme, themeButton } from "./theme.ts";
 import { designView } from "./views/design.ts";
+import { relayView } from "./views/relay.ts";
+import type { RelayView } from "./views/relay.ts";
 import { identifyView } from "./views/identify.ts";
 import { noRecordView } from "./views/no_record.ts";
 import { startView } from "./views/start.ts";
@@ -33,6 +35,7 @@ const announce = (sentence: string): void => {
 const links = {
   start: h("a", { href: "#/" }, "Start"),
   identify: h("a", { href: "#/identify" }, "Identify"),
+  relay: h("a", { href: "#/relay" }, "Relay test"),
   design: h("a", { href: "#/", hidden: true }, "Design"),
 };
 const skip = h("a", { class: "skip", href: "#main" }, "Skip to the content");
@@ -40,6 +43,7 @@ const stage = h("div", { class: "stage" });
 
 let view: View | null = null;
 let start: StartView | null = null;
+let relay: RelayView | null = null;
 let stopWatching: (() => void) | null = null;
 
 document.body.append(
@@ -61,7 +65,7 @@ skip.addEventListener("click", (event) => {
 
 function mount(next: View, title: string, focus: boolean): void {
   if (view !== next) {
-    if (view && view !== start) view.dispose();
+    if (view && view !== start && view !== relay) view.dispose();
     view = next;
     stage.replaceChildren(next.element);
     window.scrollTo(0, 0);
@@ -75,11 +79,26 @@ function startScreen(): StartView {
   start ??= startView(store, {
     onJob: openJob,
     onRecord: openRecord,
+    onRelay(form, values) {
+      location.hash = formatRoute({ screen: "relay", plant: form, values });
+    },
     onModel(form, values) {
       history.replaceState(null, "", formatRoute({ screen: "new", plant: form, values }));
     },
   });
   return start;
+}
+
+/** Kept too, with what was typed. */
+function relayScreen(): RelayView {
+  relay ??= relayView(announce, {
+    units: () => startScreen().units(),
+    onIdentify: openRecord,
+    onPlant(form, values) {
+      history.replaceState(null, "", formatRoute({ screen: "relay", plant: form, values }));
+    },
+  });
+  return relay;
 }
 
 function openJob(job: Job): void {
@@ -217,6 +236,12 @@ function go(first: boolean): void {
     if (route.job !== null) return void openJobRecord(route.job, !first);
     const test = before.test;
     mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
+    return;
+  }
+  if (route.screen === "relay") {
+    const screen = relayScreen();
+    mount(screen, "Relay test · Tunewright", !first);
+    screen.open(route.plant, route.values);
     return;
   }
   mount(startScreen(), "Tunewright", !first);

@@ -1,7 +1,7 @@
 // Start: a record, a model, or an example; everything below is optional.
 import { ApiError } from "../api/client.ts";
 import { postJob } from "../api/jobs.ts";
-import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest } from "../api/types.ts";
+import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import type { TuneSubject } from "../form/tune_subject.ts";
@@ -26,6 +26,8 @@ export interface StartEvents {
   onModel(form: string, values: Record<string, string>): void;
   /** A record to look at. */
   onRecord(request: IdentifyRequest): void;
+  /** A plant, as typed, to simulate a relay test on. */
+  onRelay(form: string, values: Record<string, string>): void;
 }
 
 export interface StartView extends View {
@@ -34,6 +36,7 @@ export interface StartView extends View {
   loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
   /** A tuning request about this, with the methods, units and settings that stand in the form. */
   compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] };
+  units(): Units;
 }
 
 /** So many examples stand open; the others are folded. */
@@ -46,7 +49,11 @@ export function startView(store: Store, events: StartEvents): StartView {
   let busy = false;
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
-  const model = modelCard(errors, { onTune: () => void tuneModel(), onChange: events.onModel });
+  const model = modelCard(errors, {
+    onTune: () => void tuneModel(),
+    onChange: events.onModel,
+    onRelay: events.onRelay,
+  });
   const record = recordCard(errors, { onIdentify: identifyRecord, onTune: () => void tuneRecord() });
   const methods = methodsCard(errors);
   const today = todayCard(errors, () => {
@@ -201,6 +208,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     loadTyped: model.loadTyped,
     loadRecord: record.load,
     compose,
+    units: today.readUnits,
   };
 }
 

@@ -1,0 +1,46 @@
+// What a relay test on a plant would show.
+import { call } from "./client.ts";
+import type { LimitCycle, Notice, Plant, RecordedTest, Units } from "./types.ts";
+
+export interface RelaySettings {
+  u_plus?: number;
+  u_minus?: number;
+  hysteresis?: number;
+  noise_std?: number;
+  relay_sample_time?: number;
+  record_interval?: number;
+  cycles?: number;
+  seed?: number;
+}
+
+export interface RelayPlan {
+  u_plus?: number;
+  u_minus?: number;
+  hysteresis?: number;
+  amplitude?: number;
+  expected_period?: number;
+  cycles?: number;
+  duration?: number;
+  record_interval?: number;
+  reason?: string;
+}
+
+export interface RelayRequest {
+  units?: Units;
+  plant: Plant;
+  relay: RelaySettings;
+}
+
+export interface RelayAnswer {
+  /** Ready to be identified as it is. */
+  record: RecordedTest & { t: number[]; u: number[]; y: number[] };
+  limit_cycle: LimitCycle;
+  /** The relay acts on -y, because the plant's gain is negative. */
+  reversed?: boolean;
+  plan?: RelayPlan;
+  warnings?: Notice[];
+}
+
+export async function simulateRelay(request: RelayRequest): Promise<RelayAnswer> {
+  return (await call("POST", "v1/experiments/relay", request)).data as RelayAnswer;
+}

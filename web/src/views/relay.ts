@@ -1,0 +1,199 @@
+// Relay test: what one would show on a plant, how to make it, and its record for Identify.
+import { ApiError } from "../api/client.ts";
+import { latest } from "../api/latest.ts";
+import { simulateRelay } from "../api/relay.ts";
+import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/relay.ts";
+import type { FieldError, IdentifyRequest, Units } from "../api/types.ts";
+import { relayFrame } from "../charts/relay.ts";
+import { h, uniqueId } from "../dom.ts";
+import { textField } from "../form/controls.ts";
+import { FormErrors } from "../form/errors.ts";
+import { parseNumber } from "../form/number.ts";
+import { plantFields } from "../form/plant_fields.ts";
+import { createPlot } from "../plot/plot.ts";
+import type { Plot } from "../plot/plot.ts";
+import { formatNumber, unitNames } from "../words/numbers.ts";
+import { planSentences } from "../words/relay_plan.ts";
+import { cycleCard } from "./cycle_card.ts";
+import type { View } from "./start.ts";
+
+export interface RelayEvents {
+  /** The labels of the units that stand on Start. */
+  units(): Units;
+  onIdentify(request: IdentifyRequest): void;
+  /** The plant as typed, for the address. */
+  onPlant(form: string, values: Record<string, string>): void;
+}
+
+export interface RelayView extends View {
+  /** Takes a plant as typed, if one is given, and simulates. */
+  open(form: string, values: Record<string, string>): void;
+}
+
+type SettingName = keyof RelaySettings;
+
+const SETTINGS: { name: SettingName; label: string; hint: string; unit: keyof ReturnType<typeof unitNames> | ""; value: string }[] =
+  [
+    { name: "u_plus", label: "Upper level", hint: "of u, from the operating point", unit: "u", value: "1" },
+    { name: "u_minus", label: "Lower level", hint: "other size than above: a biased test", unit: "u", value: "-1" },
+    { name: "hysteresis", label: "Hysteresis", hint: "switches when y leaves it; 3 times the noise", unit: "y", value: "0" },
+    { name: "cycles", label: "Cycles", hint: "recorded from the start", unit: "", value: "6" },
+    { name: "noise_std", label: "Noise of y", hint: "standard deviation; the relay sees it", unit: "y", value: "0" },
+    { name: "relay_sample_time", label: "Relay looks every", hint: "0: switches at the very instant", unit: "time", value: "0" },
+    { name: "record_interval", label: "Record every", hint: "empty: 200 rows a period", unit: "time", value: "" },
+    { name: "seed", label: "Seed", hint: "of the noise", unit: "", value: "0" },
+  ];
+
+export function relayView(announce: (sentence: string) => void, events: RelayEvents): RelayView {
+  const errors = new FormErrors();
+  let units = unitNames(undefined);
+  let answer: RelayAnswer | null = null;
+  let plot: Plot | null = null;
+  const heading = h("h1", { tabindex: -1 }, "What would a relay test on this plant show?");
+  const busy = h("p", { class: "hint busy", hidden: true }, "Simulating...");
+  const plant = plantFields(errors, () => {
+    const { form, values } = plant.typed();
+    events.onPlant(form, values);
+    simulate();
+  });
+  const settings = SETTINGS.map((setting) => ({
+    ...setting,
+    field: textField({ ...setting, unit: "", pointer: () => `/relay/${setting.name}` }, errors),
+  }));
+  const settingsTitle = h("h2", { id: uniqueId("relay") }, "The relay");
+  const form = h(
+    "form",
+    { class: "card relay-form", novalidate: true },
+    h("h2", {}, "The plant"),
+    plant.elements,
+    settingsTitle,
+    h(
+      "div",
+      { class: "fields", role: "group", "aria-labelledby": settingsTitle.id },
+      settings.map(({ field }) => field.element),
+    ),
+    h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Simulate")),
+  );
+  const slot = h("div", { class: "record-slot" });
+  const identify = h("button", { type: "button", class: "primary", onclick: () => hand() }, "Identify this record");
+  const remarks = h("ul", { class: "notes" });
+  const planTitle = h("h2", { id: uniqueId("plan") }, "A test worth making");
+  const planText = h("div", { class: "stack" });
+  const planCard = h("section", { class: "card plan", "aria-labelledby": planTitle.id }, planTitle, planText);
+  const cycle = cycleCard();
+  const results = h(
+    "div",
+    { class: "relay-results" },
+    h("h2", { class: "visually-hidden" }, "The record"),
+    slot,
+    h("div", { class: "actions" }, identify),
+    remarks,
+    h("div", { class: "cards two" }, planCard, cycle.element),
+  );
+  results.hidden = true;
+  const element = h(
+    "main",
+    { class: "identify relay", id: "main" },
+    h("div", { class: "identify-head" }, heading, busy),
+    errors.summary,
+    h("div", { class: "relay-body" }, form, results),
+  );
+
+  function read(): { request: RelayRequest; errors: FieldError[] } {
+    const reading = plant.read();
+    const faults = [...reading.errors];
+    const relay: RelaySettings = {};
+    for (const { name, label, field } of settings) {
+      if (field.input.value.trim() === "") continue;
+      const parsed = parseNumber(field.input.value, label);
+      if (parsed.ok) relay[name] = parsed.value;
+      else faults.push({ pointer: `/relay/${name}`, detail: parsed.sentence });
+    }
+    return { request: { units: events.units(), plant: reading.plant, relay }, errors: faults };
+  }
+
+  const calls = latest<RelayRequest, RelayAnswer>(simulateRelay, {
+    onBusy(now) {
+      busy.hidden = !now;
+      element.toggleAttribute("data-busy", now);
+    },
+    onAnswer(next, asked) {
+      errors.clear();
+      answer = next;
+      results.hidden = false;
+      identify.disabled = false;
+      const frame = relayFrame(next, asked.relay.hysteresis ?? 0, units);
+      if (plot) plot.update(frame);
+      else {
+        plot = createPlot(frame, announce);
+        plot.element.classList.add("tall");
+        slot.replaceChildren(plot.element);
+      }
+      const sentences = [
+        ...(next.reversed ? ["The plant's gain is negative: the relay acts the other way round."] : []),
+        ...(next.warnings ?? []).map((warning) => warning.detail),
+      ];
+      remarks.hidden = sentences.length === 0;
+      remarks.replaceChildren(...sentences.map((sentence) => h("li", {}, sentence)));
+      cycle.show(next.limit_cycle, null, [], units);
+      showPlan(next.plan);
+      announce(`Oscillates with a period of ${formatNumber(next.limit_cycle.Pu, 4)} ${units.time}.`);
+    },
+    onError(error) {
+      const problem = error instanceof ApiError ? error.problem : {};
+      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+      identify.disabled = true;
+    },
+  });
+
+  function showPlan(plan: RelayPlan | undefined): void {
+    planCard.hidden = !plan;
+    if (!plan) return;
+    planText.replaceChildren(
+      h("p", {}, planSentences(plan, units).join(" ")),
+      ...(plan.reason ? [h("p", { class: "hint" }, plan.reason)] : []),
+      h("div", { class: "actions" }, h("button", { type: "button", onclick: () => use(plan) }, "Use these settings")),
+    );
+  }
+
+  function use(plan: RelayPlan): void {
+    for (const { name, field } of settings) {
+      const value = (plan as Record<string, unknown>)[name];
+      // The relay of the plan writes its record as often as the plan says, unless it looks at y more rarely.
+      if (typeof value === "number" && name !== "record_interval") field.input.value = String(Number(value.toPrecision(4)));
+    }
+    simulate();
+  }
+
+  function simulate(): void {
+    const now = read();
+    errors.clear();
+    if (now.errors.length > 0) return errors.show(now.errors);
+    calls.send(now.request);
+  }
+
+  function hand(): void {
+    if (answer) events.onIdentify({ units: events.units(), record: { ...answer.record } });
+  }
+
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    simulate();
+  });
+
+  return {
+    element,
+    heading,
+    dispose() {
+      calls.drop();
+      plot?.dispose();
+    },
+    open(id, values) {
+      units = unitNames(events.units());
+      plant.setUnits(units);
+      for (const { unit, field } of settings) field.setUnit(unit === "" ? "" : units[unit]);
+      if (id !== "") plant.loadTyped(id, values);
+      simulate();
+    },
+  };
+}

@@ -1,6 +1,7 @@
 // Starts the page: header, routes, the job that is followed, and what happens when something unforeseen goes wrong.
-import { getExamples, getJob, getMethods, getRecentJobs, postJob, watchJob } from "./api/jobs.ts";
-import type { FieldError, IdentifyRequest, Job } from "./api/types.ts";
+import { getExamples, getJob, getMethods, getRecentJobs, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { isFinal } from "./api/types.ts";
+import type { FieldError, IdentifyRequest, Job, TuningRequest } from "./api/types.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tune_subject.ts";
 import { formatRoute, parseRoute } from "./routes.ts";
@@ -104,6 +105,18 @@ function relayScreen(): RelayView {
 function openJob(job: Job): void {
   store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null }));
   location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
+}
+
+/** A job in the place of the one that is shown: the screen stays, Back leads where it led before. */
+async function retune(request: TuningRequest): Promise<void> {
+  const from = store.get().route;
+  const job = await postJobAndWait(request, 20);
+  if (store.get().route !== from || from.screen !== "design") return;
+  const route: Route = { ...from, job: job.id };
+  store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
+  history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));
+  links.design.href = formatRoute({ ...route, entry: null });
+  if (!isFinal(job.status)) follow(job.id);
 }
 
 function openRecord(test: IdentifyRequest): void {
@@ -226,7 +239,7 @@ function go(first: boolean): void {
     }));
     links.design.href = formatRoute({ ...route, entry: null });
     links.design.hidden = false;
-    mount(designView(store, announce, takeJob), "Design · Tunewright", !first);
+    mount(designView(store, announce, { onJob: takeJob, onRetune: retune }), "Design · Tunewright", !first);
     follow(route.job);
     return;
   }

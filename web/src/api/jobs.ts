@@ -9,6 +9,11 @@ export async function postJob(request: TuningRequest): Promise<Job> {
   return (await call("POST", "v1/jobs", request)).data as Job;
 }
 
+/** The job as it stands when it has ended, or after so many seconds. */
+export async function postJobAndWait(request: TuningRequest, seconds: number): Promise<Job> {
+  return (await call("POST", "v1/jobs", request, { Prefer: `wait=${seconds}` })).data as Job;
+}
+
 export async function cancelJob(id: string): Promise<Job> {
   return (await call("POST", `${jobPath(id)}/cancel`)).data as Job;
 }

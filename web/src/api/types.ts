@@ -140,6 +140,25 @@ export interface FrequencyTraces {
   CS_abs: (number | null)[];
 }
 
+/** What an entry of the method rimc adds: figures of its PID on the model that it was designed for. */
+export interface Rimc {
+  lambda: number;
+  Ms?: number | null;
+  /** Of y per unit of load, signed. */
+  disturbance_peak?: number | null;
+  dead_time_error?: number | null;
+  stability_limit?: number | null;
+  /** With the option `curve`. */
+  disturbance_peak_curve?: { lambda_over_tau: number[]; DP_over_kp: (number | null)[]; Ms: (number | null)[] };
+  /** The controller that the PID approximates. */
+  full_controller?: {
+    robustness?: Partial<Robustness>;
+    load?: Figures;
+    responses?: { setpoint?: Response; load?: Response };
+  };
+  why_null?: WhyNull;
+}
+
 export interface Entry {
   method: string;
   title?: string;
@@ -155,6 +174,8 @@ export interface Entry {
   responses?: { setpoint?: Response; load?: Response };
   frequency?: FrequencyTraces;
   verification?: Record<string, unknown>;
+  region?: Region;
+  rimc?: Rimc;
   compute_ms?: number;
   partial?: boolean;
 }
@@ -196,6 +217,8 @@ export interface FrequencyPoint {
 export interface Region {
   stable_fraction?: number | null;
   worst_Ms?: number | null;
+  /** The plant of that Ms, or one whose loop is unstable. */
+  worst_plant?: Plant;
   why_null?: WhyNull;
 }
 

@@ -1,5 +1,7 @@
 // A recorded test with a candidate's model: y, u and the residual on one time axis, the used part marked.
 import type { Candidate, Model } from "../api/types.ts";
+import { extent } from "../plot/axis.ts";
+import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Pane } from "../plot/frame.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
@@ -42,9 +44,11 @@ export function identifiedFrame(
       traces: [{ name: "u", look: "data", ...held(record.t, record.u) }],
       marks: unnamed(marks),
     });
+  const residual = difference(fit.y, y_model);
+  const range = wideRange(residual, fit.y);
   panes.push({
-    y: { kind: "linear", label: withUnit("y − model", units.y) },
-    traces: [{ name: "residual", look: "data", x: fit.t, y: difference(fit.y, y_model) }],
+    y: { kind: "linear", label: withUnit("y − model", units.y), ...(range ? { range } : {}) },
+    traces: [{ name: "residual", look: "data", x: fit.t, y: residual }],
     marks: unnamed(marks),
   });
   return {
@@ -58,6 +62,14 @@ export function identifiedFrame(
     cursorKind: "linear",
     fileName: "record-and-model",
   };
+}
+
+/** A residual below a thousandth of y's movement is not blown up to fill its pane: rounding would look like a signal. */
+function wideRange(residual: Column, y: Column): Range | null {
+  const [lo, hi] = extent([residual], "linear");
+  const [least, most] = extent([y], "linear");
+  const floor = 1e-3 * (most - least);
+  return Math.max(-lo, hi) < floor ? [-floor, floor] : null;
 }
 
 const unnamed = (marks: Mark[]): Mark[] =>

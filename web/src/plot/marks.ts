@@ -225,8 +225,11 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
         const edge = box.y.toPixel(mark.y) + (above ? -radius : radius);
         return at(box.x.toPixel(mark.x), edge + (above === inside ? 15 : -5), "middle");
       }
-      case "point":
-        return at(box.x.toPixel(mark.x) + 6, box.y.toPixel(mark.y) - 6, "start");
+      case "point": {
+        const x = box.x.toPixel(mark.x);
+        const crowded = x > box.left + 0.75 * box.width;
+        return at(crowded ? x - 6 : x + 6, box.y.toPixel(mark.y) - 6, crowded ? "end" : "start");
+      }
     }
   });
 }

@@ -1,7 +1,7 @@
 // Design: the verdict, the settings to enter, the figures and the plots of a job; its progress while it runs.
 import { cancelJob } from "../api/jobs.ts";
 import { isFinal } from "../api/types.ts";
-import type { Job, Plant, Result } from "../api/types.ts";
+import type { Job, Plant, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { nyquistFrame } from "../charts/nyquist.ts";
@@ -10,6 +10,7 @@ import { responseFrame } from "../charts/responses.ts";
 import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h, mathElement } from "../dom.ts";
 import { plantFormula } from "../form/formula.ts";
+import { withLambda } from "../form/retune.ts";
 import type { Frame } from "../plot/frame.ts";
 import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
@@ -26,6 +27,7 @@ import { createLegend } from "./legend.ts";
 import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
 import { progressCard } from "./progress_card.ts";
+import { rimcCard } from "./rimc_card.ts";
 import { settingsCard } from "./settings_card.ts";
 import type { View } from "./start.ts";
 import { showFailure, showVerdict } from "./verdict_card.ts";
@@ -34,7 +36,13 @@ import { showFailure, showVerdict } from "./verdict_card.ts";
 const BROAD_FROM = 3;
 const WIDE_FROM = 5;
 
-export function designView(store: Store, announce: (sentence: string) => void, onJob: (job: Job) => void): View {
+export interface DesignEvents {
+  onJob(job: Job): void;
+  /** Tunes again and shows the answer in this one's place. */
+  onRetune(request: TuningRequest): Promise<void>;
+}
+
+export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
   const heading = h("h1", { tabindex: -1 }, "Design");
   const plantLine = h("p", { class: "hint" });
   const formula = h("div", { class: "formula small" });
@@ -56,10 +64,11 @@ export function designView(store: Store, announce: (sentence: string) => void, o
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
+  const rimc = rimcCard(announce, retune);
   const legend = createLegend(store);
   const plotGrid = h("div", { class: "plots" });
   const side = h("div", { class: "side" }, settings.element, figures, model, notes, computed);
-  const main = h("div", { class: "main-column" }, legend.element, plotGrid);
+  const main = h("div", { class: "main-column" }, rimc.element, legend.element, plotGrid);
   const body = h("div", { class: "design-body" });
   const headRight = h("div", { class: "head-right" }, trouble, verdict, progress.element);
   const element = h(
@@ -74,11 +83,24 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const job = store.get().job;
     if (!job) return;
     try {
-      onJob(await cancelJob(job.id));
+      events.onJob(await cancelJob(job.id));
     } catch (error) {
       trouble.textContent = error instanceof Error ? error.message : String(error);
       trouble.hidden = false;
     }
+  }
+
+  /** The entry whose settings are shown. */
+  function selectedEntry(result: Result, workspace: Workspace): number {
+    const firstAnswer = result.controllers.findIndex((candidate) => !candidate.error);
+    return Math.min(workspace.selected ?? Math.max(0, firstAnswer), result.controllers.length - 1);
+  }
+
+  async function retune(lambda: number): Promise<void> {
+    const workspace = store.get();
+    const { request, result } = workspace.job ?? {};
+    if (!request || !result) return;
+    await events.onRetune(withLambda(request, result, selectedEntry(result, workspace), lambda));
   }
 
   function showHead(job: Job): void {
@@ -101,7 +123,10 @@ export function designView(store: Store, announce: (sentence: string) => void, o
       const shown = drawn.find((item) => item.index === index);
       return { name: names[index]!, entry, swatch: () => (shown ? swatch(shown.look) : null) };
     });
-    const groups = figureGroups(units);
+    const groups = figureGroups(
+      units,
+      result.controllers.some((entry) => entry.region),
+    );
     const mainGroups = groups.filter((group) => group.main);
     const otherGroups = groups.filter((group) => !group.main);
     const open = figures.querySelector("details")?.open ?? false;
@@ -143,14 +168,14 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
     const drawn = drawnEntries(result, workspace.drawn ?? defaultDrawn(result));
-    const firstAnswer = entries.findIndex((candidate) => !candidate.error);
-    const selected = Math.min(workspace.selected ?? Math.max(0, firstAnswer), entries.length - 1);
+    const selected = selectedEntry(result, workspace);
     if (!side.isConnected) body.replaceChildren(side, main);
     element.classList.toggle("broad", entries.length >= BROAD_FROM && entries.length < WIDE_FROM);
     body.classList.toggle("wide", entries.length >= WIDE_FROM);
     showVerdict(verdict, job, result, names, selected);
     settings.show(entries[selected]!, names[selected]!, units);
     showFigures(result, drawn, names, units);
+    rimc.show(entries[selected]!, result.model?.plant ?? job.request?.plant, units);
     model.hidden = !result.model;
     if (result.model && model.childElementCount === 0) model.replaceChildren(modelResult(result.model, units));
     showNotes(notes, entries, names);
@@ -188,6 +213,7 @@ export function designView(store: Store, announce: (sentence: string) => void, o
     heading,
     dispose() {
       leave();
+      rimc.dispose();
       for (const plot of plots.values()) plot.dispose();
     },
   };

@@ -19,6 +19,8 @@ export interface MethodsCard {
 
 /** Options that decide what comes out: shown at once, the others on request. */
 const MAIN_OPTIONS = ["controller", "Ms", "Mt", "Mks", "tau_c", "lambda"];
+/** What the page draws, and the service computes only if it is asked to. */
+const DRAWN_OPTIONS: Record<string, string> = { rimc: "curve" };
 const DEFAULT_TUNE: TuneEntry[] = [{ method: "robust", Ms: 1.4, Mt: 1.4 }];
 
 interface Row {
@@ -174,6 +176,9 @@ export function methodsCard(errors: FormErrors): MethodsCard {
             if (parsed.ok) place(entry, spec.path, parsed.value);
             else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
           }
+          const drawn = DRAWN_OPTIONS[row.method.id];
+          if (drawn && entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn))
+            entry[drawn] = true;
           return entry;
         });
       if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });

@@ -2,6 +2,7 @@
 import type { Entry, WhyNull } from "../api/types.ts";
 import { formatNumber, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
+import { percent } from "./verdict.ts";
 
 export interface FigureRow {
   label: string;
@@ -52,7 +53,8 @@ export function filterWords(type: string | undefined): string {
   }
 }
 
-export function figureGroups(units: UnitNames): FigureGroup[] {
+/** `region`: with the figures of controllers that serve more than one plant. */
+export function figureGroups(units: UnitNames, region = false): FigureGroup[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);
   const controller = (label: string, name: string, meaning: string, absent: string): FigureRow => ({
@@ -94,6 +96,7 @@ export function figureGroups(units: UnitNames): FigureGroup[] {
         robustness("Mt", "Mt", "peak of |T|"),
         robustness("Gain margin", "gain_margin", "the loop gain may grow by this factor"),
         robustness("Phase margin (°)", "phase_margin_deg", "smallest over all crossings"),
+        ...(region ? regionRows() : []),
       ],
     },
     {
@@ -164,6 +167,25 @@ export function figureGroups(units: UnitNames): FigureGroup[] {
         performance("setpoint", withUnit("Rise", units.time), "rise_time", "from 10 % to 90 %"),
         performance("setpoint", withUnit("First move of u", units.u), "first_move", "u right after the step"),
       ],
+    },
+  ];
+}
+
+function regionRows(): FigureRow[] {
+  const alone = "It serves one plant only.";
+  return [
+    {
+      label: "Stable plants (%)",
+      meaning: "of all that this plant may be: a set, its ranges, or what was identified",
+      value: ({ region }) =>
+        typeof region?.stable_fraction === "number"
+          ? { text: percent(region.stable_fraction), why: "" }
+          : missing(alone),
+    },
+    {
+      label: "Ms at worst",
+      meaning: "the largest of all these plants",
+      value: ({ region }) => numeric(region, "worst_Ms", alone),
     },
   ];
 }

@@ -44,9 +44,10 @@ export function verdictOf(entry: Entry, today: Entry | undefined, request: Tunin
   }
   const units = unitNames(request?.units);
   return {
-    ...heading(entry),
+    ...regionHeading(entry, heading(entry)),
     sentences: [
       ...limitSentences(entry, units.time),
+      ...regionSentences(entry),
       ...toleranceSentences(entry, units.time),
       ...costSentences(entry, today, units),
       ...deadTimeSentences(entry, request, units.time),
@@ -63,6 +64,28 @@ function heading(entry: Entry): Pick<Verdict, "level" | "head"> {
     return { level: "good", head: "Robust, limited by the margin you asked for." };
   return { level: "good", head: entry.method === "baseline" ? "Today's settings are robust." : "Robust." };
 }
+
+/** A loop that is unstable on some of the plants it must serve is no good, however the nominal one fares. */
+function regionHeading(entry: Entry, nominal: Pick<Verdict, "level" | "head">): Pick<Verdict, "level" | "head"> {
+  const stable = entry.region?.stable_fraction;
+  return typeof stable === "number" && stable < 1
+    ? { level: "bad", head: "Unstable on a part of what the plant may be." }
+    : nominal;
+}
+
+function regionSentences(entry: Entry): string[] {
+  const { stable_fraction: stable, worst_Ms: worst } = entry.region ?? {};
+  if (typeof stable !== "number") return [];
+  if (stable >= 1)
+    return [
+      `It is stable on every plant that this one may be${typeof worst === "number" ? `, with Ms ${formatNumber(worst)} at worst` : ""}.`,
+    ];
+  return [`It is stable on ${percent(stable)} % of the plants that this one may be. Record a better test, or lower Ms.`];
+}
+
+/** Never 100 for less than all, never 0 for more than nothing. */
+export const percent = (fraction: number): string =>
+  String(fraction > 0 ? Math.max(0.1, Math.floor(1000 * fraction + 1e-9) / 10) : 0);
 
 /** The limits that the design touches. */
 function reached(entry: Entry): ("Ms" | "Mt" | "Mks")[] {

@@ -90,7 +90,7 @@ function noiseWords(noise: number, model: Model): string {
 /** A figure that was added to the contract after this page was written. */
 function otherRows(name: string, value: unknown): [string, string][] {
   const label = name.charAt(0).toUpperCase() + name.slice(1).replaceAll("_", " ");
-  if (typeof value === "number") return [[label, formatNumber(value)]];
+  if (typeof value === "number") return [[label, formatParameter(value)]];
   if (typeof value === "boolean") return [[label, value ? "yes" : "no"]];
   if (typeof value === "string" && value !== "") return [[label, value.replaceAll("_", " ")]];
   if (Array.isArray(value)) {

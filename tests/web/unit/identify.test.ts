@@ -1,0 +1,162 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { latest } from "../../../web/src/api/latest.ts";
+import type { Candidate, IdentifyRequest, Model } from "../../../web/src/api/types.ts";
+import { held, identifiedFrame } from "../../../web/src/charts/identified.ts";
+import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
+import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tune_subject.ts";
+import { parameterTexts } from "../../../web/src/views/candidates_card.ts";
+import { cycleRows } from "../../../web/src/words/cycle.ts";
+import { formatUncertain, unitNames } from "../../../web/src/words/numbers.ts";
+import { structureTitle } from "../../../web/src/words/plant.ts";
+import { qualityOf } from "../../../web/src/words/quality.ts";
+
+const units = unitNames({ time: "s", u: "%", y: "degC" });
+const fopdt: Candidate = {
+  plant: { type: "fopdt", K: 1.25, T: 40, L: 8 },
+  fit_percent: 97.2,
+  standard_errors: { K: 0.012, T: 0.31, L: 0.22 },
+  y_model: [0, 0.5, 1],
+};
+const ipdt: Candidate = { plant: { type: "ipdt", K: 0.03, L: 7, T: 0 }, fit_percent: 81, y_model: [0, 0.8, 2] };
+const model: Model = {
+  plant: fopdt.plant,
+  fit_percent: 97.2,
+  candidates: [fopdt, ipdt],
+  fit: { t: [0, 1, 2], u: [0, 5, 5], y: [0, 0.6, 1], y_model: [0, 0.5, 1] },
+  data_quality: { samples: 3, samples_dropped: 2, sample_time: 1, irregular: false, noise_std: 0.01, quantisation: 0, settled: true },
+  warnings: [],
+};
+const request: IdentifyRequest = { units: {}, record: { csv: "t,u,y\n" }, identify: { model: "auto" } };
+
+test("the frame has y over u over the residual of the candidate that is chosen", () => {
+  const frame = identifiedFrame(model, ipdt, units, null, null)!;
+  assert.deepEqual(
+    frame.panes.map((pane) => pane.y.label),
+    ["y (°C)", "u (%)", "y − model (°C)"],
+  );
+  assert.deepEqual(frame.panes[0]!.traces[1]!.y, ipdt.y_model);
+  assert.deepEqual(
+    frame.panes[2]!.traces[0]!.y.map((value) => Number(value!.toFixed(9))),
+    [0, -0.2, -1],
+  );
+  assert.match(frame.description, /81\.0 %/);
+});
+
+test("with a part chosen the whole record stays in sight and the part is marked in every pane", () => {
+  const whole = { t: [0, 1, 2, 3, 4], y: [0, 0.6, 1, 7, 7], u: [0, 5, 5, 5, 5] };
+  const frame = identifiedFrame(model, fopdt, units, whole, { from: 0, to: 2 })!;
+  assert.equal(frame.panes[0]!.traces[0]!.x.length, 5);
+  assert.equal(frame.panes[0]!.traces[1]!.x.length, 3);
+  for (const pane of frame.panes) assert.equal(pane.marks!.filter((mark) => mark.kind === "band").length, 1);
+});
+
+test("a residual of rounding dust is drawn as nothing, not as a signal", () => {
+  const exact: Model = { ...model, fit: { t: [0, 1, 2], y: [0, 0.6, 1], y_model: [1e-13, 0.6, 1] } };
+  const frame = identifiedFrame(exact, null, units, null, null)!;
+  assert.deepEqual(frame.panes.at(-1)!.y.range, [-1e-3, 1e-3]);
+});
+
+test("u is drawn with corners: it holds from its sample to the next", () => {
+  assert.deepEqual(held([0, 1, 2], [0, 5, 5]), { x: [0, 1, 1, 2], y: [0, 0, 5, 5] });
+});
+
+test("the service's choice is tuned as its record, another structure as that model of the record", () => {
+  assert.equal(serviceChoice(model), 0);
+  assert.deepEqual(tuneSubject(request, model, fopdt), { record: request.record, identify: { model: "auto" } });
+  assert.deepEqual(tuneSubject(request, model, ipdt), { record: request.record, identify: { model: "ipdt" } });
+  assert.deepEqual(tuneSubject(request, model, null), { record: request.record, identify: { model: "auto" } });
+});
+
+test("a structure that occurs twice is tuned as the plant: its name would not tell which", () => {
+  const unstable: Candidate = { plant: { type: "fopdt", K: -2, T: -30, L: 7 }, fit_percent: 90 };
+  const both = { ...model, candidates: [fopdt, unstable] };
+  assert.deepEqual(tuneSubject(request, both, unstable), { plant: unstable.plant });
+  assert.equal(structureOf({ type: "ipdt", K: 1, T: 2 }), "ipdt_lag");
+  assert.equal(structureOf({ type: "ipdt", K: 1, T: 0 }), "ipdt");
+  assert.equal(structureOf({ type: "transfer_function" }), "sopdt_zero");
+  assert.equal(structureTitle(unstable.plant), "unstable first order with dead time");
+});
+
+test("parameters carry their errors with as many digits as these allow", () => {
+  assert.equal(formatUncertain(2.0001221, 0.000477), "2.00012 ± 0.00048");
+  assert.equal(formatUncertain(-39.96, 0.31), "−39.96 ± 0.31");
+  assert.equal(formatUncertain(1234, 45), "1234 ± 45");
+  assert.equal(formatUncertain(1.25, null), "1.25");
+  assert.deepEqual(parameterTexts(fopdt, units), ["K 1.250 ± 0.012 °C/%", "T 40.00 ± 0.31 s", "L 8.00 ± 0.22 s"]);
+  assert.deepEqual(parameterTexts(ipdt, units), ["K 0.03 °C/%/s", "L 7 s"]);
+});
+
+test("a time whose error is longer than the record is said to be unknown", () => {
+  const loose = { ...fopdt, standard_errors: { K: 0.012, T: 0.31, L: 2.1e8 } };
+  assert.deepEqual(parameterTexts(loose, units, 800)[2], "L 8 ± unknown s");
+});
+
+test("a good test is said to be good; warnings and a poor fit change that, with their figures", () => {
+  assert.equal(qualityOf(model, units).head, "Good enough.");
+  const warned = qualityOf({ ...model, warnings: [{ code: "drift", detail: "y drifts." }] }, units);
+  assert.deepEqual([warned.level, warned.head], ["warn", "Usable with care: 1 thing to know."]);
+  const noted = { ...model, data_quality: { ...model.data_quality, notes: ["a", "b"] } };
+  assert.equal(qualityOf(noted, units).head, "Good enough, with 2 remarks.");
+  const poor = qualityOf({ ...model, fit_percent: 46 }, units);
+  assert.deepEqual([poor.level, poor.head], ["bad", "Doubtful: the model explains 46.0 % of the record's movement."]);
+});
+
+test("the record is described by its figures, and by those that this page does not know by their names", () => {
+  const data_quality = { ...model.data_quality, drift: 0.02, saturated: false, gaps: ["3 s at 120 s"], relay: { cycles: 9 } };
+  const words = qualityOf({ ...model, data_quality }, units);
+  assert.equal(words.input, "u steps once, at 1 s, from 0 to 5 %.");
+  assert.deepEqual(Object.fromEntries(words.rows), {
+    Samples: "3, 2 left out",
+    "Spacing (s)": "1",
+    "Noise of y (°C)": "0.010, 1.0 %",
+    "Smallest step of y (°C)": "none found",
+    "y came to rest": "yes",
+    Drift: "0.02",
+    Saturated: "no",
+    Gaps: "3 s at 120 s",
+    "Relay cycles": "9",
+  });
+});
+
+test("a limit cycle is given with the plant's ultimate point and the describing function's", () => {
+  const cycle = { Pu: 14.391, Au: 0.22326, phi_u: -2.21885, periods: 9, describing_function: { Ku: 3.9, Pu: 14.391 } };
+  const rows = cycleRows(cycle, { Ku: 8.1, Pu: 7.7 }, units);
+  assert.deepEqual(
+    rows.map((row) => `${row.label} ${row.text}`),
+    ["Pu (s) 14.391", "Au (°C/%) 0.2233", "φu (rad) −2.219", "Periods 9", "Ku (%/°C) 8.100", "Pu at Ku (s) 7.700", "Ku, estimated (%/°C) 3.900"],
+  );
+  assert.match(rows[2]!.meaning, /−127°/);
+});
+
+test("records given as numbers and as text are told apart by their samples alone", () => {
+  const arrays = { dt: 2, u: [0, 1], y: [5, 6], kind: "relay", u0: 0, from: 1 };
+  assert.deepEqual(samplesOf(arrays), { dt: 2, u: [0, 1], y: [5, 6] });
+  assert.equal(csvOf(arrays), "t,u,y\n0,0,5\n2,1,6");
+  assert.deepEqual(samplesOf({ csv: "x", columns: { t: 1 } }), { csv: "x" });
+});
+
+test("of requests that overtake each other only the first and the newest are sent, and only the newest is shown", async () => {
+  const sent: number[] = [];
+  const answers: number[] = [];
+  const gates: (() => void)[] = [];
+  const calls = latest<number, number>(
+    (request) => {
+      sent.push(request);
+      return new Promise((resolve) => gates.push(() => resolve(10 * request)));
+    },
+    { onBusy: () => undefined, onAnswer: (answer) => answers.push(answer), onError: () => assert.fail() },
+  );
+  for (const request of [1, 2, 3, 4]) calls.send(request);
+  const settle = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
+  gates.shift()!();
+  await settle();
+  gates.shift()!();
+  await settle();
+  assert.deepEqual([sent, answers], [[1, 4], [40]]);
+  calls.send(5);
+  calls.drop();
+  gates.shift()!();
+  await settle();
+  assert.deepEqual(answers, [40]);
+});

@@ -108,9 +108,11 @@ function openJob(job: Job): void {
 }
 
 /** A job in the place of the one that is shown: the screen stays, Back leads where it led before. */
-async function retune(request: TuningRequest): Promise<void> {
+async function retune(request: TuningRequest, index: number): Promise<void> {
   const from = store.get().route;
   const job = await postJobAndWait(request, 20);
+  const failure = job.error ?? job.result?.controllers[index]?.error;
+  if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
   if (store.get().route !== from || from.screen !== "design") return;
   const route: Route = { ...from, job: job.id };
   store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));

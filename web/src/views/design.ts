@@ -38,8 +38,8 @@ const WIDE_FROM = 5;
 
 export interface DesignEvents {
   onJob(job: Job): void;
-  /** Tunes again and shows the answer in this one's place. */
-  onRetune(request: TuningRequest): Promise<void>;
+  /** Tunes again and shows the answer in this one's place; throws where the entry of that index gets none. */
+  onRetune(request: TuningRequest, index: number): Promise<void>;
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
@@ -100,7 +100,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const workspace = store.get();
     const { request, result } = workspace.job ?? {};
     if (!request || !result) return;
-    await events.onRetune(withLambda(request, result, selectedEntry(result, workspace), lambda));
+    const index = selectedEntry(result, workspace);
+    await events.onRetune(withLambda(request, result, index, lambda), index);
   }
 
   function showHead(job: Job): void {

@@ -1,0 +1,126 @@
+import assert from "node:assert/strict";
+import test, { after, before } from "node:test";
+import { accessibilityViolations, drawnTraces, launchBrowser, startService, withPage as open } from "../harness.mjs";
+
+let service;
+let browser;
+
+before(async () => {
+  service = await startService();
+  browser = await launchBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  await service?.stop();
+});
+
+const withPage = (address, options, body, expected) => open(service, browser, address, options, body, expected);
+
+const jobOf = async (page) =>
+  (await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
+
+/** Tunes the plant by robust and rimc, and shows rimc. */
+async function showRimc(page) {
+  await page.getByText(/^Compare with/).click();
+  await page.getByRole("checkbox", { name: /rimc$/ }).check();
+  await page.getByRole("button", { name: "Tune this model" }).click();
+  await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+  await page.getByRole("button", { name: "rimc", exact: true }).click();
+  await page.getByRole("heading", { name: "What λ buys: load peak and Ms" }).waitFor();
+}
+
+const card = (page) => page.getByRole("region", { name: "Revised IMC: speed against robustness" });
+const cell = async (page, label, column = 0) =>
+  Number(
+    (await card(page).locator("tr").filter({ hasText: label }).first().locator("td").nth(column).innerText()).replace(
+      "−",
+      "-",
+    ),
+  );
+const shown = (value) => Number(Number(value).toPrecision(3));
+
+test("the chart shows the curve of this plant with the design on it, and its figures", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    await showRimc(page);
+    const { result } = await jobOf(page);
+    const { rimc } = result.controllers[1];
+    assert.equal(await drawnTraces(page, "What λ buys: load peak and Ms"), 2);
+    assert.equal(await cell(page, "Ms"), shown(rimc.Ms));
+    assert.equal(await cell(page, "Load peak"), shown(rimc.disturbance_peak));
+    assert.equal(await cell(page, "Dead time error"), shown(rimc.dead_time_error));
+    const labels = await page.getByRole("img", { name: "What λ buys: load peak and Ms" }).locator("text").allTextContents();
+    assert.ok(labels.includes(`Ms ${Number(rimc.Ms).toPrecision(3)}`), labels.join());
+    // Of another method there is no such card.
+    await page.getByRole("button", { name: "robust", exact: true }).click();
+    await card(page).waitFor({ state: "hidden" });
+  });
+});
+
+test("the slider shows what a lambda would buy while it moves, and designs it when it is let go", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    await showRimc(page);
+    const before = await jobOf(page);
+    const slider = page.getByRole("slider", { name: "λ, slider" });
+    assert.match(await slider.getAttribute("aria-valuetext"), /^lambda 10\.0 s, Ms 1\.\d\d$/);
+    const tuned = page.waitForResponse((response) => response.request().method() === "POST");
+    await slider.focus();
+    await page.keyboard.press("Shift+ArrowLeft");
+    await tuned;
+    await page.waitForFunction((id) => !location.hash.includes(id), before.id);
+    const after = await jobOf(page);
+    const [old, next] = [before, after].map((job) => job.result.controllers[1].rimc);
+    assert.ok(next.lambda < old.lambda && next.Ms > old.Ms && next.disturbance_peak < old.disturbance_peak);
+    assert.deepEqual(after.request.tune[0], before.request.tune[0]);
+    await page.waitForFunction(
+      (Ms) => [...document.querySelectorAll(".rimc td")].some((item) => item.textContent === Ms),
+      Number(next.Ms).toPrecision(3),
+    );
+    // Who holds the slider keeps it, and the settings are those of the new design.
+    assert.ok(await slider.evaluate((element) => element === document.activeElement));
+    await page.getByRole("heading", { name: "Settings to enter: rimc" }).waitFor();
+    const Kp = await page.locator(".settings td").first().innerText();
+    assert.equal(Number(Kp), Number(Number(after.result.controllers[1].controller.Kp).toPrecision(5)));
+  });
+});
+
+test("a lambda out of reach is refused in the service's words, and the design stays", async () => {
+  await withPage(
+    "#/new/fopdt?K=1&T=10&L=2",
+    {},
+    async (page) => {
+      await showRimc(page);
+      const before = await jobOf(page);
+      await page.getByLabel("λ (s)", { exact: true }).fill("-3");
+      await page.keyboard.press("Enter");
+      await page.getByText("λ is -3; it must be above 0.").waitFor();
+      const answer = page.waitForResponse((response) => response.request().method() === "POST");
+      await page.getByLabel("λ (s)", { exact: true }).fill("4000");
+      await page.keyboard.press("Enter");
+      const { result } = await (await answer).json();
+      assert.ok(result.controllers[1].error, "lambda beyond the branch has no design");
+      await card(page).getByText(result.controllers[1].error.detail).waitFor();
+      assert.equal(await page.getByLabel("λ (s)", { exact: true }).inputValue(), "10");
+      assert.equal((await jobOf(page)).id, before.id);
+    },
+    ["422"],
+  );
+});
+
+for (const [name, options] of [
+  ["desktop", {}],
+  ["dark desktop", { scheme: "dark" }],
+  ["tablet", { width: 834, height: 1194 }],
+  ["phone", { width: 400, height: 860 }],
+]) {
+  test(`revised IMC on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
+    await withPage("#/new/fopdt?K=1&T=10&L=2", options, async (page) => {
+      await showRimc(page);
+      assert.deepEqual(await accessibilityViolations(page), []);
+      assert.equal(
+        await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
+        0,
+      );
+    });
+  });
+}

@@ -1,6 +1,7 @@
 #include "api/service.h"
 
 #include "api/contract/controller.h"
+#include "api/contract/relay.h"
 #include "api/contract/request.h"
 #include "api/contract/result.h"
 #include "api/json/digest.h"
@@ -140,6 +141,20 @@ Answer identify_call(std::string_view body, const RunControl& control) {
     add_reading(request.read, model->data_quality);
     Writer out;
     identify_answer_contract().write({std::move(*model)}, out);
+    return {200, out.take()};
+}
+
+Answer relay_call(std::string_view body, const RunControl& control) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
+    const auto decoded = decode(std::get<Json>(parsed), relay_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<RelayRequest>(decoded);
+
+    const auto experiment = simulate_relay(*request.plant, request.relay, control);
+    if (!experiment) return refusal(to_problem(experiment.error()));
+    Writer out;
+    relay_answer_contract().write(*experiment, out);
     return {200, out.take()};
 }
 

@@ -41,6 +41,7 @@ std::string progress_json(const Progress& progress);
 
 Answer evaluate_call(std::string_view body, const RunControl& control);  ///< POST /v1/evaluate
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
+Answer relay_call(std::string_view body, const RunControl& control);     ///< POST /v1/experiments/relay
 
 std::string methods_json();               ///< GET /v1/methods
 Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none

@@ -38,7 +38,15 @@ const Description<LimitCycle>& limit_cycle_contract() {
             .field("fit_rms", &LimitCycle::fit_rms, only_answered(maybe(number())),
                    "Root mean square of model minus record over the steady periods (Eq. 15).", {.unit = "y"})
             .field("describing_function", &LimitCycle::describing_function, maybe(answer(ultimate_point_contract())),
-                   "Ultimate point by the describing function: an approximation; the model's is better.");
+                   "Ultimate point by the describing function: an approximation; the model's is better.")
+            .field("t_plus", &LimitCycle::t_plus, only_answered(maybe(number())),
+                   "How long u stays at its upper level in each period.", {.unit = "time"})
+            .field("t_minus", &LimitCycle::t_minus, only_answered(maybe(number())),
+                   "How long u stays at its lower level in each period.", {.unit = "time"})
+            .field("y_max", &LimitCycle::y_max, only_answered(maybe(number())), "Largest y of the oscillation.",
+                   {.unit = "y"})
+            .field("y_min", &LimitCycle::y_min, only_answered(maybe(number())), "Smallest y of the oscillation.",
+                   {.unit = "y"});
         return d;
     }();
     return description;

@@ -1,3 +1,4 @@
+#include "api/contract/relay.h"
 #include "api/contract/request.h"
 #include "api/contract/result.h"
 #include "api/embed/files.h"
@@ -18,6 +19,8 @@ std::string openapi_json() {
         evaluate_answer_contract().schema(book);
         identify_request_contract().schema(book);
         identify_answer_contract().schema(book);
+        relay_request_contract().schema(book);
+        relay_answer_contract().schema(book);
         Json& schemas = document["components"]["schemas"];
         for (auto& [name, schema] : book.components.items()) schemas[name] = schema;
 

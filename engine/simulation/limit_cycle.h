@@ -27,6 +27,8 @@ struct LimitCycle {
     std::optional<ShiftedPoint> shift;
     std::optional<double> fit_rms;  ///< root of Eq. 15's mean square: model against record over the steady periods, y
     std::optional<UltimatePoint> describing_function;  ///< 4 d/(pi a) with the relay's and y's amplitudes
+    std::optional<double> t_plus, t_minus;             ///< how long u stays at its upper and at its lower level
+    std::optional<double> y_max, y_min;                ///< largest and smallest y of the steady oscillation
 };
 
 /// A measured value of the plant's frequency response.

@@ -14,7 +14,7 @@ namespace tunewright::server {
 /// /v1/jobs and what is below it. Answers that come later are made on `pool`.
 void add_job_routes(http::Router& router, JobService& jobs, Executor& pool);
 
-/// /v1/evaluate and /v1/identify: computed on `lane` while the client waits, with a deadline, or until `closing`.
+/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or until `closing`.
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);
 
 /// /v1/methods, /v1/examples, /openapi.json: the same for the life of the process.

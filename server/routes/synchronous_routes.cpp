@@ -22,6 +22,7 @@ using SyncCall = api::Answer (*)(std::string_view, const RunControl&);
 constexpr std::size_t kMostWaiting = 64;
 constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kIdentifyTime{30};
+constexpr std::chrono::seconds kRelayTime{10};
 
 double monotonic_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -85,6 +86,7 @@ http::AsyncHandler synchronous(SyncCall work, std::chrono::seconds limit, Execut
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing) {
     router.deferred("POST", "/v1/evaluate", synchronous(api::evaluate_call, kEvaluateTime, lane, timer, closing));
     router.deferred("POST", "/v1/identify", synchronous(api::identify_call, kIdentifyTime, lane, timer, closing));
+    router.deferred("POST", "/v1/experiments/relay", synchronous(api::relay_call, kRelayTime, lane, timer, closing));
 }
 
 }  // namespace tunewright::server

@@ -1,0 +1,125 @@
+#include "api/contract/relay.h"
+
+#include "api/contract/evaluation.h"
+#include "api/contract/limit_cycle.h"
+#include "api/contract/plant.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kLongestName = 200;
+
+const Description<RelaySettings>& relay_settings_contract() {
+    static const auto description = [] {
+        Description<RelaySettings> d("Relay",
+                                     "u_plus from t = 0 at rest; to u_minus when y > hysteresis, to u_plus when y < "
+                                     "-hysteresis; the other way round where the plant's gain is negative.");
+        d.field("u_plus", &RelaySettings::u_plus, number(), "Upper level, from the operating point; > u_minus.",
+                {.unit = "u"})
+            .field("u_minus", &RelaySettings::u_minus, number(), "Lower level, from the operating point.",
+                   {.unit = "u"})
+            .field("hysteresis", &RelaySettings::hysteresis, number({.minimum = 0}),
+                   "The relay switches when |y| leaves it.", {.unit = "y"})
+            .field("noise_std", &RelaySettings::noise_std, number({.minimum = 0}),
+                   "Standard deviation of white noise on each sample, seen by the relay; needs relay_sample_time > 0.",
+                   {.unit = "y"})
+            .field("relay_sample_time", &RelaySettings::relay_sample_time, number({.minimum = 0}),
+                   "Time between looks of the relay at y; 0: it switches at the very instant.", {.unit = "time"})
+            .field("record_interval", &RelaySettings::record_interval, maybe(number({.exclusive_minimum = 0})),
+                   "Spacing of the record's rows, a whole multiple of relay_sample_time; Pu/200 or relay_sample_time if "
+                   "not given. Every switch is a row, too.",
+                   {.unit = "time"})
+            .field("cycles", &RelaySettings::cycles, integer(1, kMostRelayCycles), "Cycles recorded from t = 0.")
+            .field("seed", &RelaySettings::seed, integer(0, 2147483647), "Of the noise: equal seeds, equal records.")
+            .field("shift", &RelaySettings::shift, maybe(number({.exclusive_minimum = 0})),
+                   "Shift of limit_cycle.shift; 1/Pu if not given.", {.unit = "1/time"});
+        return d;
+    }();
+    return description;
+}
+
+void check_relay(const Json&, RelayRequest& request, Reader& reader) {
+    const auto plant = LinearPlant::make(*request.plant);
+    if (!plant) reader.fault_below(plant.error().where, 0, plant.error().message);
+    if (const auto error = refuse_settings(request.relay)) reader.fault_below(error->where, 0, error->message);
+}
+
+Codec<std::vector<double>> column() { return only_answered(numbers(0, kMostRelayRows)); }
+
+const Description<RelayRecord>& relay_record_contract() {
+    static const auto description = [] {
+        const auto zero = [](const RelayRecord&, Writer& out) { out.integer(0); };
+        const auto zero_schema = [](SchemaBook&) {
+            return Json{{"type", "number"}, {"const", 0}};
+        };
+        Description<RelayRecord> d("RelayRecord",
+                                   "The simulated test, ready to be sent to /v1/identify as its record. u holds from "
+                                   "its row to the next.");
+        d.tag("kind", "relay")
+            .field("t", &RelayRecord::t, column(), "Times.", {.unit = "time"})
+            .field("u", &RelayRecord::u, column(), "Relay output.", {.unit = "u"})
+            .field("y", &RelayRecord::y, column(), "Measurement, noise included.", {.unit = "y"})
+            .field("u0", {}, zero, zero_schema, "u before the first row.", {.unit = "u"})
+            .field("y0", {}, zero, zero_schema, "y before the first row.", {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<RelayPlan>& relay_plan_contract() {
+    static const auto description = [] {
+        Description<RelayPlan> d("RelayPlan", "A relay test worth making on this plant.");
+        d.field("u_plus", &RelayPlan::u_plus, only_answered(number()), "Upper level.", {.unit = "u"})
+            .field("u_minus", &RelayPlan::u_minus, only_answered(number()), "Lower level.", {.unit = "u"})
+            .field("hysteresis", &RelayPlan::hysteresis, only_answered(number()),
+                   "3 noise_std, or as given without noise.", {.unit = "y"})
+            .field("amplitude", &RelayPlan::amplitude, only_answered(number()), "Half of the swing of y to expect.",
+                   {.unit = "y"})
+            .field("expected_period", &RelayPlan::expected_period, only_answered(number()), "Period to expect.",
+                   {.unit = "time"})
+            .field("cycles", &RelayPlan::cycles, only_answered(integer(1, kMostRelayCycles)),
+                   "Cycles to run, those to settle included.")
+            .field("duration", &RelayPlan::duration, only_answered(number()), "How long that takes, about.",
+                   {.unit = "time"})
+            .field("record_interval", &RelayPlan::record_interval, only_answered(number()),
+                   "Spacing of the rows: at least 200 a period.", {.unit = "time"})
+            .field("reason", &RelayPlan::reason, only_answered(text(1000)), "Why these.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+const Description<RelayRequest>& relay_request_contract() {
+    static const auto description = [] {
+        Description<RelayRequest> d("RelayRequest", "A plant and the relay test to simulate on it.");
+        d.field("name", &RelayRequest::name, maybe(text(kLongestName)), "A label, such as the loop's tag.")
+            .field("units", &RelayRequest::units, maybe(object(units_contract())), "Labels of the units.")
+            .field("plant", &RelayRequest::plant, maybe(one_of(plant_contract())), "The plant.", {.required = true})
+            .field("relay", &RelayRequest::relay, object(relay_settings_contract()), "The relay and the record.")
+            .check(check_relay)
+            .example({{"plant", {{"type", "fopdt"}, {"K", 1}, {"T", 10}, {"L", 2}}},
+                      {"relay", {{"u_plus", 1.3}, {"u_minus", -0.7}, {"hysteresis", 0.2}, {"cycles", 6}}}});
+        return d;
+    }();
+    return description;
+}
+
+const Description<RelayExperiment>& relay_answer_contract() {
+    static const auto description = [] {
+        Description<RelayExperiment> d("RelayAnswer", "What the relay test would show.");
+        d.field("record", &RelayExperiment::record, answer(relay_record_contract()), "The test from rest.")
+            .field("limit_cycle", &RelayExperiment::limit_cycle, answer(limit_cycle_contract()),
+                   "The steady oscillation without noise, as a fixed point; Au, phi_u and shift are the plant's own.")
+            .field("reversed", &RelayExperiment::reversed, only_answered(boolean()),
+                   "The relay acts on -y, because the plant's gain is negative.")
+            .field("plan", &RelayExperiment::plan, answer(relay_plan_contract()), "A test worth making.")
+            .field("warnings", &RelayExperiment::warnings, list_of(answer(warning_contract())), "Remarks.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -104,7 +104,7 @@ std::optional<Error> record_samples(const LinearPlant& plant, const RelaySetting
                                     RelayRecord& record) {
     const RelayMotion motion(plant, steady.direction);
     SampledRelay relay(motion, plant.dead_time(), {settings.u_plus, settings.u_minus, settings.hysteresis},
-                       settings.relay_sample_time, settings.noise_std, settings.seed);
+                       settings.relay_sample_time, settings.noise_std, static_cast<std::uint64_t>(settings.seed));
     const auto every = static_cast<std::int64_t>(std::llround(spacing / settings.relay_sample_time));
     constexpr std::int64_t kMostSamples = 10'000'000;
     int switches = 0;
@@ -160,6 +160,7 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
                       "of the relay, or set noise_std to 0.");
     if (s.cycles < 1 || s.cycles > kMostRelayCycles)
         return refuse("cycles", "cycles is " + std::to_string(s.cycles) + "; it must be 1 to 1000.");
+    if (s.seed < 0) return refuse("seed", "seed must be >= 0.");
     if (s.shift && !(*s.shift > 0)) return refuse("shift", "shift must be > 0.");
     if (!s.record_interval) return std::nullopt;
     if (!(*s.record_interval > 0)) return refuse("record_interval", "record_interval must be > 0.");

@@ -1,7 +1,6 @@
 // A relay test on a linear plant: what it would show, and the plan of a good one.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +24,7 @@ struct RelaySettings {
     /// relay_sample_time.
     std::optional<double> record_interval;
     int cycles = 10;           ///< 1 to 1000 cycles of u_plus and u_minus from t = 0
-    std::uint32_t seed = 0;    ///< of the noise
+    int seed = 0;                     ///< of the noise; >= 0
     std::optional<double> shift;  ///< sigma of the limit cycle's shifted point, > 0; none: 1/Pu
 };
 

@@ -57,6 +57,8 @@ def main():
     with Service("--queue-limit", "50", "--grace", "0") as service:
         examples = [example["request"] for example in service.get("/v1/examples").json["examples"]] + [QUICK]
         evaluate = {"plant": FOPDT, "controllers": [{"form": "ideal", "Kp": 1, "Ti": 10, "Td": 1}], "evaluate": {}}
+        relay = {"plant": FOPDT, "relay": {"u_plus": 1.3, "u_minus": -0.7, "hysteresis": 0.2, "noise_std": 0.01,
+                                           "relay_sample_time": 0.1, "record_interval": 0.2, "cycles": 3, "seed": 1}}
         end = time.monotonic() + given.seconds
         while time.monotonic() < end:
             request = bend(chance.choice(examples), chance)
@@ -66,6 +68,7 @@ def main():
             if chance.random() < 0.3:
                 body = bent_bytes(body, chance)
             path, body = chance.choice([("/v1/jobs", body), ("/v1/evaluate", json.dumps(bend(evaluate, chance)).encode()),
+                                        ("/v1/experiments/relay", json.dumps(bend(relay, chance)).encode()),
                                         ("/v1/identify", body)])
             answer = service.post(path, body, {"Prefer": "wait=2"})
             counts[answer.status] = counts.get(answer.status, 0) + 1

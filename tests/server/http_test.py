@@ -34,6 +34,7 @@ class HttpTest(unittest.TestCase):
     def test_a_wrong_method_is_405_with_allow(self):
         for method, path, allowed in (("PUT", "/v1/jobs", {"GET", "HEAD", "POST", "OPTIONS"}),
                                       ("GET", "/v1/evaluate", {"POST", "OPTIONS"}),
+                                      ("GET", "/v1/experiments/relay", {"POST", "OPTIONS"}),
                                       ("POST", "/healthz", {"GET", "HEAD", "OPTIONS"}),
                                       ("PATCH", "/v1/jobs/x", {"GET", "HEAD", "DELETE", "OPTIONS"}),
                                       ("TRACE", "/v1/methods", {"GET", "HEAD", "OPTIONS"}),
@@ -111,6 +112,14 @@ class HttpTest(unittest.TestCase):
         self.assertEqual(answer.status, 200, answer.body[:300])
         self.assertRegex(answer.headers["Server-Timing"], r"^compute;dur=[\d.]+$")
         self.assertEqual(len(answer.json["controllers"]), 1)
+
+    def test_a_relay_test_is_simulated_at_once(self):
+        answer = self.service.post("/v1/experiments/relay", {"plant": FOPDT, "relay": {"hysteresis": 0.2, "cycles": 3}})
+        self.assertEqual(answer.status, 200, answer.body[:300])
+        self.assertRegex(answer.headers["Server-Timing"], r"^compute;dur=[\d.]+$")
+        self.assertEqual(answer.json["limit_cycle"]["periods"], 2)
+        refused = self.service.post("/v1/experiments/relay", {"plant": FOPDT, "relay": {"hysteresis": 100}})
+        self.assertProblem(refused, 422)
 
     def test_a_connection_serves_many_requests_and_pipelined_ones_in_order(self):
         connection = http.client.HTTPConnection("127.0.0.1", self.service.port)

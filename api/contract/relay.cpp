@@ -26,10 +26,11 @@ const Description<RelaySettings>& relay_settings_contract() {
                    {.unit = "y"})
             .field("relay_sample_time", &RelaySettings::relay_sample_time, number({.minimum = 0}),
                    "Time between looks of the relay at y; 0: it switches at the very instant.", {.unit = "time"})
-            .field("record_interval", &RelaySettings::record_interval, maybe(number({.exclusive_minimum = 0})),
-                   "Spacing of the record's rows, a whole multiple of relay_sample_time; Pu/200 or relay_sample_time if "
-                   "not given. Every switch is a row, too.",
-                   {.unit = "time"})
+            .field(
+                "record_interval", &RelaySettings::record_interval, maybe(number({.exclusive_minimum = 0})),
+                "Spacing of the record's rows, a whole multiple of relay_sample_time; Pu/200 or relay_sample_time if "
+                "not given. Every switch is a row, too.",
+                {.unit = "time"})
             .field("cycles", &RelaySettings::cycles, integer(1, kMostRelayCycles), "Cycles recorded from t = 0.")
             .field("seed", &RelaySettings::seed, integer(0, 2147483647), "Of the noise: equal seeds, equal records.")
             .field("shift", &RelaySettings::shift, maybe(number({.exclusive_minimum = 0})),
@@ -50,9 +51,7 @@ Codec<std::vector<double>> column() { return only_answered(numbers(0, kMostRelay
 const Description<RelayRecord>& relay_record_contract() {
     static const auto description = [] {
         const auto zero = [](const RelayRecord&, Writer& out) { out.integer(0); };
-        const auto zero_schema = [](SchemaBook&) {
-            return Json{{"type", "number"}, {"const", 0}};
-        };
+        const auto zero_schema = [](SchemaBook&) { return Json{{"type", "number"}, {"const", 0}}; };
         Description<RelayRecord> d("RelayRecord",
                                    "The simulated test, ready to be sent to /v1/identify as its record. u holds from "
                                    "its row to the next.");

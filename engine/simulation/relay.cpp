@@ -55,8 +55,8 @@ double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
 std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRelayCycle& steady, double spacing) {
     const double rows = settings.cycles * (steady.Pu() / spacing + 2);
     if (rows <= static_cast<double>(kMostRelayRows)) return std::nullopt;
-    const double fitting = settings.cycles * steady.Pu() /
-                           (static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles);
+    const double fitting =
+        settings.cycles * steady.Pu() / (static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles);
     return refuse("record_interval", "record_interval is " + text(spacing) + "; " + std::to_string(settings.cycles) +
                                          " cycles of about " + text(steady.Pu()) + " would make " +
                                          std::to_string(static_cast<long long>(rows)) +
@@ -138,10 +138,10 @@ void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const
                                 "the ratio of the means of y and u says nothing about the plant."});
     const double mean = out.record.t.back() / settings.cycles;
     if (settings.noise_std > 0 && mean < steady.Pu() / 2)
-        out.warnings.push_back({"noise-switches-relay",
-                                "Noise switches the relay: its cycles take " + text(mean) +
-                                    " on average instead of " + text(steady.Pu()) + ". Raise the hysteresis to " +
-                                    text(out.plan.hysteresis) + ", 3 noise_std."});
+        out.warnings.push_back({"noise-switches-relay", "Noise switches the relay: its cycles take " + text(mean) +
+                                                            " on average instead of " + text(steady.Pu()) +
+                                                            ". Raise the hysteresis to " + text(out.plan.hysteresis) +
+                                                            ", 3 noise_std."});
 }
 
 }  // namespace

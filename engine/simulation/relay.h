@@ -23,8 +23,8 @@ struct RelaySettings {
     /// Spacing of the record's rows; a whole multiple of relay_sample_time if that is not 0. None: Pu/200, or
     /// relay_sample_time.
     std::optional<double> record_interval;
-    int cycles = 10;           ///< 1 to 1000 cycles of u_plus and u_minus from t = 0
-    int seed = 0;                     ///< of the noise; >= 0
+    int cycles = 10;              ///< 1 to 1000 cycles of u_plus and u_minus from t = 0
+    int seed = 0;                 ///< of the noise; >= 0
     std::optional<double> shift;  ///< sigma of the limit cycle's shifted point, > 0; none: 1/Pu
 };
 

@@ -125,8 +125,7 @@ private:
         std::vector<double> out(Index(n_ * n_), 0.0);
         for (int i = 0; i < n_; ++i)
             for (int k = 0; k < n_; ++k)
-                for (int j = 0; j < n_; ++j)
-                    out[Index(i * n_ + j)] += M[Index(i * n_ + k)] * N[Index(k * n_ + j)];
+                for (int j = 0; j < n_; ++j) out[Index(i * n_ + j)] += M[Index(i * n_ + k)] * N[Index(k * n_ + j)];
         return out;
     }
 
@@ -154,7 +153,7 @@ private:
         const Phase at = phase(point.durations, to_minus);
         const double t_plus = point.durations.t_plus, P = t_plus + point.durations.t_minus;
         if (to_minus ? switching_.minus_at_jump : switching_.plus_at_jump) {
-            const bool early = at.s < t_plus / 2, late = at.s > (t_plus + P) / 2;
+            const bool early = at.s<t_plus / 2, late = at.s>(t_plus + P) / 2;
             const double target = early ? 0 : late ? P : t_plus;
             residual = at.s - target;
             row[n_] = at.by_plus - (early ? 0 : 1);
@@ -224,7 +223,11 @@ bool verify(RelayMotion& motion, double L, const RelayLevels& levels, SteadyRela
 class Settling {
 public:
     Settling(const LinearPlant& plant, const RelayLevels& levels, double direction, const RunControl& control)
-        : plant_(plant), levels_(levels), control_(control), motion_(plant, direction), direction_(direction),
+        : plant_(plant),
+          levels_(levels),
+          control_(control),
+          motion_(plant, direction),
+          direction_(direction),
           run_(motion_, plant.dead_time(), levels) {}
 
     Expected<SteadyRelayCycle> solve() {

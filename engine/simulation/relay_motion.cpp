@@ -64,8 +64,13 @@ std::optional<double> Quintic::extremum() const {
 }
 
 RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
-    : n_(plant.realisation().n), integrators_(plant.integrators()), A_(plant.realisation().A), B_(plant.realisation().B), C_(plant.realisation().C),
-      D_(direction * plant.realisation().D), levels_(Index(kLevels)) {
+    : n_(plant.realisation().n),
+      integrators_(plant.integrators()),
+      A_(plant.realisation().A),
+      B_(plant.realisation().B),
+      C_(plant.realisation().C),
+      D_(direction * plant.realisation().D),
+      levels_(Index(kLevels)) {
     for (double& c : C_) c *= direction;
     CA_ = row_times(C_, A_, n_);
     CAA_ = row_times(CA_, A_, n_);
@@ -76,8 +81,7 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
         const double size = std::abs(pole);
         fastest = std::max(fastest, size);
         const bool decays = pole.real() < -1e-10 * size;
-        const double ends =
-            decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
+        const double ends = decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
         if (decays) decay_time_ = std::max(decay_time_, ends);
         if (pole.real() > 1e-10 * size) growth_rate_ = std::max(growth_rate_, pole.real());
         modes_.push_back({size, ends});

@@ -14,8 +14,8 @@ struct OutputMotion {
     double y = 0, slope = 0, curvature = 0;
 };
 
-/// The quintic through value, slope and curvature at both ends of a step of length h. On steps of a tenth of a radian of
-/// the fastest mode its error is 2e-11 of that mode's amplitude.
+/// The quintic through value, slope and curvature at both ends of a step of length h. On steps of a tenth of a radian
+/// of the fastest mode its error is 2e-11 of that mode's amplitude.
 class Quintic {
 public:
     Quintic() = default;

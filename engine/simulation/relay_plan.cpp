@@ -8,15 +8,15 @@
 namespace tunewright {
 namespace {
 
-constexpr double kNoiseBand = 3;     // hysteresis per noise_std
-constexpr double kSwing = 3;         // amplitude of y per hysteresis
+constexpr double kNoiseBand = 3;  // hysteresis per noise_std
+constexpr double kSwing = 3;      // amplitude of y per hysteresis
 constexpr int kQuietCycles = 3, kNoisyCycles = 10;
 constexpr double kRowsPerPeriod = 200;
 
 double amplitude(const SteadyRelayCycle& cycle) { return (cycle.y_max - cycle.y_min) / 2; }
 
-// Scaling levels and hysteresis together scales y: the cycle for levels f u and hysteresis eps is f times that for u and
-// eps/f.
+// Scaling levels and hysteresis together scales y: the cycle for levels f u and hysteresis eps is f times that for u
+// and eps/f.
 std::optional<SteadyRelayCycle> enlarged(const LinearPlant& plant, const RelayLevels& levels, double& factor,
                                          const RunControl& control) {
     std::optional<SteadyRelayCycle> best;
@@ -49,8 +49,7 @@ std::string sentence(const RelayPlan& plan, const RelaySettings& settings, int s
     }
     out += std::to_string(settling) + (settling == 1 ? " cycle" : " cycles") + " to settle and " +
            std::to_string(plan.cycles - settling) +
-           (settings.noise_std > 0 ? " to average: the error falls with the root of their number."
-                                   : " to measure.");
+           (settings.noise_std > 0 ? " to average: the error falls with the root of their number." : " to measure.");
     return out;
 }
 

@@ -14,8 +14,9 @@ Error refuse(const char* where, std::string message) {
 Error latched_at_rest(const EndedRun& run) {
     const bool high = run.u == run.levels.u_plus;
     const std::string level = high ? "u_plus" : "u_minus";
-    const std::string rest = "With u at " + level + " = " + text(run.u) + " the plant comes to rest at y = " +
-                             text(run.direction * run.y) + ", and the relay does not switch";
+    const std::string rest = "With u at " + level + " = " + text(run.u) +
+                             " the plant comes to rest at y = " + text(run.direction * run.y) +
+                             ", and the relay does not switch";
     const bool right_side = high ? run.y > 0 : run.y < 0;
     if (right_side)
         return refuse("relay/hysteresis", rest + " before y leaves the hysteresis " + text(run.levels.hysteresis) +
@@ -23,8 +24,8 @@ Error latched_at_rest(const EndedRun& run) {
                                               ", or raise the relay's levels.");
     const char* side = (run.direction > 0) == high ? "above" : "below";
     return refuse(high ? "relay/u_plus" : "relay/u_minus",
-                  rest + ": it waits for y " + side + " the hysteresis. u_plus and u_minus must lie on both sides of 0, " +
-                      "the operating point.");
+                  rest + ": it waits for y " + side +
+                      " the hysteresis. u_plus and u_minus must lie on both sides of 0, " + "the operating point.");
 }
 
 Error ramps_away(const EndedRun& run) {
@@ -44,8 +45,9 @@ Error first_order_escape(const EndedRun& run) {
     const double worse = K * std::max(run.levels.u_plus, -run.levels.u_minus) + run.levels.hysteresis;
     const double limit = std::log(std::max(swing / worse, 1.0));
     return {ErrorKind::unsupported, "plant/L",
-            "y runs away: L/|T| is " + text(run.plant.dead_time() / T) + ", and this relay can turn y back only for L/|T| < " +
-                text(limit) + " (ln 2 = 0.693 for a symmetric relay without hysteresis). A smaller hysteresis" +
+            "y runs away: L/|T| is " + text(run.plant.dead_time() / T) +
+                ", and this relay can turn y back only for L/|T| < " + text(limit) +
+                " (ln 2 = 0.693 for a symmetric relay without hysteresis). A smaller hysteresis" +
                 " and levels of equal size widen the range up to ln 2; beyond it no relay test works."};
 }
 
@@ -79,8 +81,9 @@ Error no_steady_cycle(const LinearPlant& plant, const RelayLevels&, int cycles) 
                                   ? "A double integrator without damping keeps growing under a relay."
                                   : "Its oscillation grows, or never repeats with two switches a period.";
     return {ErrorKind::unsupported, "plant",
-            "After " + std::to_string(cycles) + " cycles the relay and the plant have not found a steady oscillation. " +
-                cause + " Try another hysteresis or other levels."};
+            "After " + std::to_string(cycles) +
+                " cycles the relay and the plant have not found a steady oscillation. " + cause +
+                " Try another hysteresis or other levels."};
 }
 
 std::optional<Error> switches_without_end(const LinearPlant& plant, const RelayLevels& levels, double direction) {

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kMostSteps = 4'000'000;
 constexpr std::size_t kMostPending = 20'000;
 constexpr int kMostCrowded = 50;
-constexpr double kGrowth = 45;      // e^45 beyond the last swing: never to come back
+constexpr double kGrowth = 45;  // e^45 beyond the last swing: never to come back
 constexpr int kFirstSwitches = 4;
 constexpr double kEscape = 1e9;     // times the swing before these switches
 constexpr double kPatience = 1e12;  // times the shortest step, for ramps
@@ -24,7 +24,13 @@ RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& lev
                 {{dead_time, levels.u_plus}}}) {}
 
 RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, RelayState start)
-    : motion_(&motion), L_(dead_time), levels_(levels), x_(std::move(start.x)), x_rise_(x_), v_(start.v), u_(start.u),
+    : motion_(&motion),
+      L_(dead_time),
+      levels_(levels),
+      x_(std::move(start.x)),
+      x_rise_(x_),
+      v_(start.v),
+      u_(start.u),
       pending_(std::move(start.pending)) {}
 
 double RelayRun::excess(double y) const {

@@ -43,8 +43,13 @@ class SampledSettling {
 public:
     SampledSettling(const LinearPlant& plant, const RelayLevels& levels, double sample_time, double direction,
                     const RunControl& control)
-        : plant_(plant), levels_(levels), Ts_(sample_time), direction_(direction), control_(control),
-          motion_(plant, direction), relay_(motion_, plant.dead_time(), levels, sample_time, 0, 0) {}
+        : plant_(plant),
+          levels_(levels),
+          Ts_(sample_time),
+          direction_(direction),
+          control_(control),
+          motion_(plant, direction),
+          relay_(motion_, plant.dead_time(), levels, sample_time, 0, 0) {}
 
     Expected<SteadyRelayCycle> solve() {
         double started = 0, turned = 0;
@@ -148,8 +153,13 @@ double WhiteNoise::next() {
 
 SampledRelay::SampledRelay(const RelayMotion& motion, double dead_time, const RelayLevels& levels, double sample_time,
                            double noise_std, std::uint64_t seed)
-    : motion_(&motion), levels_(levels), Ts_(sample_time), noise_std_(noise_std), noise_(seed),
-      x_(static_cast<std::size_t>(motion.states()), 0.0), u_(levels.u_plus) {
+    : motion_(&motion),
+      levels_(levels),
+      Ts_(sample_time),
+      noise_std_(noise_std),
+      noise_(seed),
+      x_(static_cast<std::size_t>(motion.states()), 0.0),
+      u_(levels.u_plus) {
     double whole = std::floor(dead_time / Ts_), part = dead_time - whole * Ts_;
     if (part > (1 - 1e-9) * Ts_) {
         whole += 1;
@@ -183,8 +193,8 @@ SampledRelay::Sample SampledRelay::next() {
     return sample;
 }
 
-Expected<SteadyRelayCycle> steady_sampled_cycle(const LinearPlant& plant, const RelayLevels& levels,
-                                                double sample_time, const RunControl& control) {
+Expected<SteadyRelayCycle> steady_sampled_cycle(const LinearPlant& plant, const RelayLevels& levels, double sample_time,
+                                                const RunControl& control) {
     const double direction = relay_direction(plant);
     auto first = SampledSettling(plant, levels, sample_time, direction, control).solve();
     const bool both = plant.unstable_poles() > 0 || plant.integrators() < 0;

@@ -60,7 +60,7 @@ constexpr double kMostDeadSamples = 1e6;
 /// The noise-free oscillation at that sampling: the mean over the pattern that repeats exactly, found within 400
 /// cycles, or over the last 200 of them. `x` is empty. Errors: as steady_relay_cycle; invalid_argument
 /// (`relay/relay_sample_time`) where more than 4,000,000 samples would be needed.
-Expected<SteadyRelayCycle> steady_sampled_cycle(const LinearPlant& plant, const RelayLevels& levels,
-                                                double sample_time, const RunControl& control);
+Expected<SteadyRelayCycle> steady_sampled_cycle(const LinearPlant& plant, const RelayLevels& levels, double sample_time,
+                                                const RunControl& control);
 
 }  // namespace tunewright

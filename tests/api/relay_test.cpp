@@ -32,8 +32,7 @@ TEST(RelayCall, TheRecordIsAcceptedByIdentifyUnchanged) {
     const Answer answer = call(kFirstOrder, {{"u_plus", 1.3}, {"u_minus", -0.7}, {"hysteresis", 0.2}, {"cycles", 5}});
     ASSERT_EQ(answer.status, 200) << answer.body;
     const Json record = Json::parse(answer.body)["record"];
-    const Answer model =
-        identify_call(Json{{"record", record}, {"identify", {{"model", "fopdt"}}}}.dump(), {});
+    const Answer model = identify_call(Json{{"record", record}, {"identify", {{"model", "fopdt"}}}}.dump(), {});
     ASSERT_EQ(model.status, 200) << model.body;
     const Json plant = Json::parse(model.body)["model"]["plant"];
     EXPECT_NEAR(plant["K"], 1, 1e-3);
@@ -62,6 +61,8 @@ struct Refusal {
     const char *pointer, *sentence;
 };
 
+std::string case_name(const testing::TestParamInfo<Refusal>& given) { return given.param.name; }
+
 class RelayRefuses : public testing::TestWithParam<Refusal> {};
 
 TEST_P(RelayRefuses, WithPlaceAndCure) {
@@ -80,7 +81,10 @@ const Json kIntegrating = {{"type", "ipdt"}, {"K", 1}, {"L", 1}};
 INSTANTIATE_TEST_SUITE_P(
     All, RelayRefuses,
     testing::Values(
-        Refusal{"NoiseWithoutSamples", kFirstOrder, {{"noise_std", 0.1}}, "/relay/relay_sample_time",
+        Refusal{"NoiseWithoutSamples",
+                kFirstOrder,
+                {{"noise_std", 0.1}},
+                "/relay/relay_sample_time",
                 "noise belongs to samples"},
         Refusal{"LevelsExchanged", kFirstOrder, {{"u_plus", -1}, {"u_minus", 1}}, "/relay/u_minus", "Exchange the two"},
         Refusal{"TooManyCycles", kFirstOrder, {{"cycles", 1001}}, "/relay/cycles", "1000"},
@@ -89,12 +93,21 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"relay_sample_time", 0.1}, {"record_interval", 0.25}},
                 "/relay/record_interval",
                 "a whole multiple of relay_sample_time"},
-        Refusal{"TooManyRows", kFirstOrder, {{"record_interval", 1e-4}}, "/relay/record_interval",
+        Refusal{"TooManyRows",
+                kFirstOrder,
+                {{"record_interval", 1e-4}},
+                "/relay/record_interval",
                 "at most 100000 are recorded"},
-        Refusal{"HysteresisBeyondTheSwing", kFirstOrder, {{"hysteresis", 1.5}}, "/relay/hysteresis",
+        Refusal{"HysteresisBeyondTheSwing",
+                kFirstOrder,
+                {{"hysteresis", 1.5}},
+                "/relay/hysteresis",
                 "Lower the hysteresis below 0.8"},
         Refusal{"LevelsOfOneSign", kFirstOrder, {{"u_plus", 2}, {"u_minus", 1}}, "/relay/u_minus", "both sides of 0"},
-        Refusal{"LevelsOfOneSignOnAnIntegrator", kIntegrating, {{"u_plus", 2}, {"u_minus", 1}}, "/relay/u_minus",
+        Refusal{"LevelsOfOneSignOnAnIntegrator",
+                kIntegrating,
+                {{"u_plus", 2}, {"u_minus", 1}},
+                "/relay/u_minus",
                 "u_plus must be > 0 and u_minus < 0"},
         Refusal{"InfinitelyFast", Json{{"type", "fopdt"}, {"K", 1}, {"T", 1}, {"L", 0}}, Json::object(),
                 "/relay/hysteresis", "switches infinitely fast"},
@@ -102,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/plant/L", "ln 2"},
         Refusal{"UnknownField", kFirstOrder, {{"hysterese", 1}}, "/relay/hysterese", "did you mean hysteresis"},
         Refusal{"NoPlant", Json{{"type", "fopdt"}, {"K", 0}, {"T", 1}, {"L", 1}}, Json::object(), "/plant/K", "K"}),
-    [](const testing::TestParamInfo<Refusal>& info) { return std::string(info.param.name); });
+    case_name);
 
 }  // namespace
 }  // namespace tunewright::api

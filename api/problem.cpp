@@ -1,5 +1,8 @@
 #include "api/problem.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "api/json/parse.h"
 #include "api/json/writer.h"
 
@@ -52,6 +55,35 @@ Problem to_problem(const Error& error) {
     return problem;
 }
 
+RecordSamples samples_of(const Record& record) {
+    constexpr std::size_t kMostRows = 2000;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (std::isfinite(record.t[i]) && std::isfinite(record.u[i]) && std::isfinite(record.y[i])) rows.push_back(i);
+    }
+    RecordSamples samples;
+    const std::size_t shown = std::min(rows.size(), kMostRows);
+    for (std::size_t k = 0; k < shown; ++k) {
+        const std::size_t i = rows[shown == 1 ? 0 : k * (rows.size() - 1) / (shown - 1)];
+        samples.t.push_back(record.t[i]);
+        samples.u.push_back(record.u[i]);
+        samples.y.push_back(record.y[i]);
+    }
+    return samples;
+}
+
+static void write_record(const RecordSamples& samples, Writer& out) {
+    out.key("record");
+    out.begin_object();
+    out.key("t");
+    out.trace(samples.t);
+    out.key("u");
+    out.trace(samples.u);
+    out.key("y");
+    out.trace(samples.y);
+    out.end_object();
+}
+
 std::string to_json(const Problem& problem) {
     Writer out;
     out.begin_object();
@@ -80,6 +112,7 @@ std::string to_json(const Problem& problem) {
         }
         out.end_array();
     }
+    if (problem.record) write_record(*problem.record, out);
     out.end_object();
     return out.take();
 }

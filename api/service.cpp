@@ -137,7 +137,11 @@ Answer identify_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<IdentifyRequest>(decoded);
 
     auto model = identify(request.read.record, request.identify, control);
-    if (!model) return refusal(to_problem(model.error()));
+    if (!model) {
+        Problem problem = to_problem(model.error());
+        problem.record = samples_of(request.read.record);
+        return refusal(problem);
+    }
     add_reading(request.read, model->data_quality);
     Writer out;
     identify_answer_contract().write({std::move(*model)}, out);

@@ -270,6 +270,21 @@ TEST(BadRequests, AConstantRecordIsNotIdentifiable) {
     EXPECT_EQ(Json::parse(answer.body)["type"], "not-identifiable");
 }
 
+TEST(BadRequests, ARecordThatDeterminesNoModelComesBackAsItWasRead) {
+    std::string csv = "t;u;y\n";
+    for (int i = 0; i < 5000; ++i) csv += std::to_string(2 * i) + ";7;" + (i == 9 ? "" : std::to_string(i % 3)) + "\n";
+    const Answer answer = identify_call(Json{{"record", {{"csv", csv}}}}.dump(), {});
+    ASSERT_EQ(answer.status, 422);
+    const Json problem = Json::parse(answer.body);
+    EXPECT_EQ(schema_faults(problem, "Problem"), std::vector<std::string>{});
+    const Json& record = problem["record"];
+    EXPECT_EQ(record["t"].size(), 2000u);
+    EXPECT_EQ(record["t"].front(), 0);
+    EXPECT_EQ(record["t"].back(), 9998);
+    EXPECT_EQ(record["u"], Json(std::vector<double>(2000, 7)));
+    EXPECT_EQ(record["y"].back(), 4999 % 3);
+}
+
 // Damaged requests of every kind: whatever comes, the answer is a valid problem or a job, never an exception. Seeded.
 TEST(BadRequests, DamagedTextsNeverDoMoreThanBeRefused) {
     std::mt19937 random(1);

@@ -177,6 +177,35 @@ test("a record that cannot be read says why at its field, and is mended there", 
   );
 });
 
+test("a record that no model explains is still drawn, and the part that one explains can be chosen", async () => {
+  // After the step something else drags y far away.
+  const dragged = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.1 * (t - 250)}`))].join("\n");
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const refused = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
+      await dropFile(page, ".drop", "dragged.csv", dragged);
+      const { type, errors, record } = await (await refused).json();
+      assert.equal(type, "not-identifiable");
+      assert.equal(record.t.length, rows.length);
+      const summary = page.getByRole("group", { name: "What to mend" });
+      await summary.waitFor();
+      assert.ok((await summary.innerText()).includes(errors[0].detail));
+      assert.equal(await drawnTraces(page, "Record"), 2);
+      assert.equal(await page.getByRole("button", { name: "Use and tune" }).count(), 0);
+      const answered = identified(page);
+      await page.getByLabel("Use up to (s)", { exact: true }).fill("245");
+      await page.keyboard.press("Enter");
+      assert.ok(Math.abs((await (await answered).json()).model.plant.K / 2 - 1) < 0.01);
+      await candidatesShown(page);
+      assert.ok(await summary.isHidden());
+      assert.equal(await drawnTraces(page, "Record and model"), 4);
+    },
+    ["422"],
+  );
+});
+
 test("a record in which nothing happens is refused in the service's words", async () => {
   await withPage(
     "",

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { latest } from "../../../web/src/api/latest.ts";
 import type { Candidate, IdentifyRequest, Model } from "../../../web/src/api/types.ts";
-import { held, identifiedFrame } from "../../../web/src/charts/identified.ts";
+import { bareRecordFrame, held, identifiedFrame } from "../../../web/src/charts/identified.ts";
 import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tune_subject.ts";
 import { parameterTexts } from "../../../web/src/views/candidates_card.ts";
@@ -49,6 +49,15 @@ test("with a part chosen the whole record stays in sight and the part is marked 
   assert.equal(frame.panes[0]!.traces[0]!.x.length, 5);
   assert.equal(frame.panes[0]!.traces[1]!.x.length, 3);
   for (const pane of frame.panes) assert.equal(pane.marks!.filter((mark) => mark.kind === "band").length, 1);
+});
+
+test("a record without a model is drawn alone, with the part that was chosen", () => {
+  const frame = bareRecordFrame({ t: [0, 1], y: [1, 2], u: [0, 0] }, units, { from: 0.5, to: 1 });
+  assert.deepEqual(
+    frame.panes.map((pane) => pane.traces.map((trace) => trace.name)),
+    [["record"], ["u"]],
+  );
+  assert.ok(frame.panes.every((pane) => pane.marks!.length === 1));
 });
 
 test("a residual of rounding dust is drawn as nothing, not as a signal", () => {

@@ -76,6 +76,8 @@ export interface Problem {
   status?: number;
   detail?: string;
   errors?: FieldError[];
+  /** A record that was read, but determines no model. */
+  record?: { t: number[]; u: (number | null)[]; y: (number | null)[] };
 }
 
 export interface Filter {

@@ -27,13 +27,30 @@ export function identifiedFrame(
   const y_model = candidate?.y_model?.length === fit.t.length ? candidate.y_model : fit.y_model;
   const record: Samples = whole ?? fit;
   const marks: Mark[] = part ? [{ kind: "band", ...part, label: "used" }] : [];
+  const panes = recordPanes(record, units, marks);
+  panes[0]!.traces.push({ name: "model", look: 1, x: fit.t, y: y_model });
+  const residual = difference(fit.y, y_model);
+  const range = wideRange(residual, fit.y);
+  panes.push({
+    y: { kind: "linear", label: withUnit("y − model", units.y), ...(range ? { range } : {}) },
+    traces: [{ name: "residual", look: "data", x: fit.t, y: residual }],
+    marks: unnamed(marks),
+  });
+  const percent = formatNumber(candidate?.fit_percent ?? model.fit_percent);
+  return framed(panes, "Record and model", `The model reproduces ${percent} % of the record's movement.`, units);
+}
+
+/** A record for which there is no model. */
+export function bareRecordFrame(record: Samples, units: UnitNames, part: { from: number; to: number } | null): Frame {
+  const marks: Mark[] = part ? [{ kind: "band", ...part, label: "used" }] : [];
+  return framed(recordPanes(record, units, marks), "Record", "There is no model of it.", units);
+}
+
+function recordPanes(record: Samples, units: UnitNames, marks: Mark[]): Pane[] {
   const panes: Pane[] = [
     {
       y: { kind: "linear", label: withUnit("y", units.y) },
-      traces: [
-        { name: "record", look: "data", x: record.t, y: record.y },
-        { name: "model", look: 1, x: fit.t, y: y_model },
-      ],
+      traces: [{ name: "record", look: "data", x: record.t, y: record.y }],
       marks,
       weight: 2.4,
     },
@@ -44,16 +61,13 @@ export function identifiedFrame(
       traces: [{ name: "u", look: "data", ...held(record.t, record.u) }],
       marks: unnamed(marks),
     });
-  const residual = difference(fit.y, y_model);
-  const range = wideRange(residual, fit.y);
-  panes.push({
-    y: { kind: "linear", label: withUnit("y − model", units.y), ...(range ? { range } : {}) },
-    traces: [{ name: "residual", look: "data", x: fit.t, y: residual }],
-    marks: unnamed(marks),
-  });
+  return panes;
+}
+
+function framed(panes: Pane[], title: string, description: string, units: UnitNames): Frame {
   return {
-    title: "Record and model",
-    description: `The model reproduces ${formatNumber(candidate?.fit_percent ?? model.fit_percent)} % of the record's movement.`,
+    title,
+    description,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes,
     ownLegend: true,

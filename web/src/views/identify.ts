@@ -3,7 +3,7 @@ import { ApiError } from "../api/client.ts";
 import { identify } from "../api/identify.ts";
 import { latest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
-import { identifiedFrame } from "../charts/identified.ts";
+import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
 import type { Samples } from "../charts/identified.ts";
 import { h } from "../dom.ts";
 import { areaField } from "../form/controls.ts";
@@ -42,6 +42,7 @@ export function identifyView(
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
   let plot: Plot | null = null;
+  let plotTitle = "";
 
   const heading = h("h1", { tabindex: -1 }, given.name ? `Identify: ${given.name}` : "Identify");
   const busy = h("p", { class: "hint busy", hidden: true }, "Fitting models to the record...");
@@ -122,13 +123,9 @@ export function identifyView(
     onAnswer(answer, asked) {
       errors.clear();
       model = answer;
-      const fit = answer.fit;
-      const all = asked.record.from === undefined && asked.record.to === undefined;
-      if (all && fit && fit.t.length > 1) {
-        whole = { t: fit.t, y: fit.y, ...(fit.u ? { u: fit.u } : {}) };
-        part.setExtent({ from: fit.t[0]!, to: fit.t[fit.t.length - 1]! });
-      }
+      if (isWhole(asked)) takeWhole(answer.fit);
       body.hidden = false;
+      side.hidden = false;
       candidates.show(answer, units);
       quality.show(answer, units);
       cycle.show(answer.limit_cycle, answer.ultimate_point, answer.frequency_points, units);
@@ -137,11 +134,17 @@ export function identifyView(
       draw();
       announce(`${structureTitle(answer.plant)}, fit ${formatNumber(answer.fit_percent)} %. ${words.head}`);
     },
-    onError(error) {
+    onError(error, asked) {
       const problem = error instanceof ApiError ? error.problem : {};
-      const pointed = (problem.errors ?? []).filter((fault) => fault.pointer !== "");
+      const pointed = (problem.errors ?? []).filter((fault) => fault.pointer !== "/record");
+      model = null;
+      side.hidden = true;
+      sentence.textContent = "";
+      if (isWhole(asked)) takeWhole(problem.record);
+      body.hidden = whole === null;
+      draw();
+      if (!whole) reading.querySelector("details")!.open = true;
       errors.show(pointed, error instanceof Error ? error.message : String(error));
-      if (!model) reading.querySelector("details")!.open = true;
     },
   });
 
@@ -153,12 +156,25 @@ export function identifyView(
     calls.send(now.request);
   }
 
+  const isWhole = (asked: IdentifyRequest): boolean => asked.record.from === undefined && asked.record.to === undefined;
+
+  function takeWhole(record: Samples | undefined): void {
+    const { t = [], y = [], u } = record ?? {};
+    if (t.length < 2) return;
+    whole = { t, y, ...(u ? { u } : {}) };
+    part.setExtent({ from: t[0]!, to: t[t.length - 1]! });
+  }
+
   function draw(): void {
-    if (!model) return;
-    const frame = identifiedFrame(model, candidates.chosen(), units, whole, part.read());
+    const frame = model
+      ? identifiedFrame(model, candidates.chosen(), units, whole, part.read())
+      : whole && bareRecordFrame(whole, units, part.read());
     if (!frame) return;
-    if (plot) return plot.update(frame);
+    // With and without a model they are two different plots: other panes, another legend.
+    if (plot && plotTitle === frame.title) return plot.update(frame);
+    plot?.dispose();
     plot = createPlot(frame, announce);
+    plotTitle = frame.title;
     plot.element.classList.add("tall");
     slot.replaceChildren(plot.element);
   }
@@ -194,15 +210,12 @@ export function identifyView(
   async function askWithPart(start: number | undefined, end: number | undefined): Promise<void> {
     const { from: _from, to: _to, ...record } = given.record;
     try {
-      const fit = (await identify({ ...given, record })).fit;
-      if (fit && fit.t.length > 1) {
-        whole = { t: fit.t, y: fit.y, ...(fit.u ? { u: fit.u } : {}) };
-        part.setExtent({ from: fit.t[0]!, to: fit.t[fit.t.length - 1]! });
-      }
-    } catch {
+      takeWhole((await identify({ ...given, record })).fit);
+    } catch (error) {
       // All of it cannot be identified; the part may be.
-      part.setExtent({ from: start ?? 0, to: end ?? (start ?? 0) + 1 });
+      if (error instanceof ApiError) takeWhole(error.problem.record);
     }
+    if (!whole) part.setExtent({ from: start ?? 0, to: end ?? (start ?? 0) + 1 });
     part.set({ from: start ?? -Infinity, to: end ?? Infinity });
     ask();
   }

@@ -136,8 +136,8 @@ async function tuneSubject(subject: TuneSubject): Promise<FieldError[]> {
   return [];
 }
 
-function identifyScreen(test: IdentifyRequest): View {
-  return identifyView(test, announce, {
+function identifyScreen(test: IdentifyRequest, region = false): View {
+  return identifyView(test, { methods: startScreen().methods(), region }, announce, {
     onChange(changed) {
       store.set((workspace) => ({ ...workspace, test: changed }));
       startScreen().loadRecord(changed.record, changed.identify);
@@ -163,7 +163,7 @@ async function openJobRecord(id: string, focus: boolean): Promise<void> {
       ...(identify ? { identify } : {}),
     };
     store.set((workspace) => ({ ...workspace, test }));
-    mount(identifyScreen(test), "Identify · Tunewright", focus);
+    mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
   } catch (error) {
     mount(noRecordView(error instanceof Error ? error.message : String(error)), "Identify · Tunewright", focus);
   }

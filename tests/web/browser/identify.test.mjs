@@ -75,6 +75,27 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
   });
 });
 
+test("limits on all that the record leaves possible are asked for by a check box, and the choice stays with the job", async () => {
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "step.csv", stepTest);
+    await candidatesShown(page);
+    await page.getByText(/^By robust; /).waitFor();
+    const box = page.getByRole("checkbox", { name: "Hold the limits on all that the record leaves possible" });
+    assert.ok(!(await box.isChecked()));
+    await box.check();
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.getByRole("link", { name: "Look at the record" }).waitFor();
+    assert.equal((await job(page)).request.uncertainty, "identified");
+    await page.getByRole("link", { name: "Look at the record" }).click();
+    await candidatesShown(page);
+    assert.ok(await box.isChecked());
+    await box.uncheck();
+    const sent = page.waitForRequest((request) => request.method() === "POST" && request.url().endsWith("/v1/jobs"));
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    assert.equal((await sent).postDataJSON().uncertainty, undefined);
+  });
+});
+
 test("another candidate is drawn with its own run and tuned as that model", async () => {
   await withPage("", {}, async (page) => {
     const answered = identified(page);

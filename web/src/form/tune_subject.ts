@@ -1,7 +1,9 @@
 // What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant.
 import type { Candidate, IdentifyRequest, Model, Plant } from "../api/types.ts";
 
-export type TuneSubject = Pick<IdentifyRequest, "record" | "identify"> | { plant: Plant };
+export type TuneSubject =
+  /** `uncertainty` "identified": limits hold on all that the record leaves possible. */
+  (Pick<IdentifyRequest, "record" | "identify"> & { uncertainty?: "identified" | undefined }) | { plant: Plant };
 
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 

@@ -12,31 +12,49 @@ export interface CandidatesCard {
   show(model: Model, units: UnitNames): void;
   /** Null where the service lists no candidates. */
   chosen(): Candidate | null;
+  /** Whether limits shall hold on all that the record leaves possible. */
+  onRegion(): boolean;
   setBusy(busy: boolean): void;
 }
 
-export function candidatesCard(onChoose: () => void, onTune: () => void): CandidatesCard {
+export interface CandidatesEvents {
+  onChoose(): void;
+  onTune(): void;
+}
+
+/** `methods`: names of those that Use and tune will use. */
+export function candidatesCard(methods: string[], region: boolean, events: CandidatesEvents): CandidatesCard {
   let candidates: Candidate[] = [];
   let index = -1;
   let duration = Infinity;
   const title = h("h2", { id: uniqueId("candidates") }, "Model candidates");
   const list = h("fieldset", { class: "candidates" });
   const reason = h("p", { class: "hint" });
-  const tune = h("button", { type: "button", class: "primary", onclick: () => onTune() }, "Use and tune");
+  const tune = h("button", { type: "button", class: "primary", onclick: () => events.onTune() }, "Use and tune");
+  const whole = h("input", { type: "checkbox", id: uniqueId("region"), checked: region });
   const element = h(
     "section",
     { class: "card", "aria-labelledby": title.id },
     title,
     list,
     reason,
+    h(
+      "div",
+      { class: "check" },
+      whole,
+      h("label", { for: whole.id }, "Hold the limits on all that the record leaves possible"),
+    ),
     h("div", { class: "actions" }, tune),
+    methods.length > 0
+      ? h("p", { class: "hint" }, `By ${methods.join(", ")}; `, h("a", { href: "#/" }, "choose methods on Start"), ".")
+      : null,
   );
 
   function item(candidate: Candidate, at: number, preferred: number, units: UnitNames, name: string): HTMLElement {
     const input = h("input", { type: "radio", name, value: at, checked: at === index });
     input.addEventListener("change", () => {
       index = at;
-      onChoose();
+      events.onChoose();
     });
     return h(
       "label",
@@ -74,19 +92,38 @@ export function candidatesCard(onChoose: () => void, onTune: () => void): Candid
       if (candidates.length === 0) index = -1;
       const name = uniqueId("candidate");
       const only: Candidate = { ...model };
+      const items = candidates.map((candidate, at) => item(candidate, at, preferred, units, name));
+      const folded = items.filter((_, at) => at !== index && poor(candidates, at));
       list.replaceChildren(
         h("legend", { class: "visually-hidden" }, "Which model to use"),
-        ...(candidates.length > 0
-          ? candidates.map((candidate, at) => item(candidate, at, preferred, units, name))
-          : [item(only, -1, -1, units, name)]),
+        ...(items.length > 0 ? items.filter((row) => !folded.includes(row)) : [item(only, -1, -1, units, name)]),
+        ...(folded.length > 0
+          ? [
+              h(
+                "details",
+                {},
+                h("summary", {}, `${folded.length} that ${folded.length === 1 ? "fits" : "fit"} worse`),
+                folded,
+              ),
+            ]
+          : []),
       );
       reason.textContent = model.choice_reason ?? "";
     },
     chosen: () => candidates[index] ?? null,
+    onRegion: () => whole.checked,
     setBusy(busy) {
       tune.disabled = busy;
     },
   };
+}
+
+/** So many per cent below the best fit a candidate is not worth a look at first. */
+const WORSE_PERCENT = 3;
+
+function poor(candidates: Candidate[], at: number): boolean {
+  const fits = candidates.map((candidate) => candidate.fit_percent ?? -Infinity);
+  return fits[at]! < Math.max(...fits) - WORSE_PERCENT;
 }
 
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);

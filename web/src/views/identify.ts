@@ -22,6 +22,14 @@ import { partCard } from "./part_card.ts";
 import { qualityCard } from "./quality_card.ts";
 import type { View } from "./start.ts";
 
+/** How the record will be tuned. */
+export interface TuningChoice {
+  /** Names of the methods that stand on Start. */
+  methods: string[];
+  /** Limits hold on all that the record leaves possible. */
+  region: boolean;
+}
+
 export interface IdentifyEvents {
   /** The record and how it is read, each time the reader changes something. */
   onChange(request: IdentifyRequest): void;
@@ -31,6 +39,7 @@ export interface IdentifyEvents {
 
 export function identifyView(
   given: IdentifyRequest,
+  tuning: TuningChoice,
   announce: (sentence: string) => void,
   events: IdentifyEvents,
 ): View {
@@ -81,14 +90,14 @@ export function identifyView(
     part.element,
     sentence,
   );
-  const candidates = candidatesCard(
-    () => {
+  const candidates = candidatesCard(tuning.methods, tuning.region, {
+    onChoose() {
       draw();
       const chosen = candidates.chosen();
       if (chosen) announce(`${structureTitle(chosen.plant)}, fit ${formatNumber(chosen.fit_percent)} %.`);
     },
-    () => void tune(),
-  );
+    onTune: () => void tune(),
+  });
   const quality = qualityCard();
   const cycle = cycleCard();
   const side = h("div", { class: "side" }, candidates.element, quality.element, cycle.element);
@@ -184,7 +193,9 @@ export function identifyView(
     errors.clear();
     candidates.setBusy(true);
     try {
-      const faults = await events.onTune(tuneSubject(request().request, model, candidates.chosen()));
+      const subject = tuneSubject(request().request, model, candidates.chosen());
+      const uncertainty = candidates.onRegion() ? ("identified" as const) : undefined;
+      const faults = await events.onTune("plant" in subject ? subject : { ...subject, uncertainty });
       if (faults.length > 0) errors.show(faults);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
@@ -195,6 +206,10 @@ export function identifyView(
   }
 
   fields.load(given.record, given.identify);
+  // A choice acts at once; what is typed waits until it is complete.
+  reading.addEventListener("change", (event) => {
+    if (event.target instanceof HTMLSelectElement) ask();
+  });
   reading.addEventListener("submit", (event) => {
     event.preventDefault();
     // Another record has another extent.

@@ -42,6 +42,7 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
         }),
       ),
     ),
+    model.choice_reason ? h("p", { class: "hint" }, model.choice_reason) : null,
     candidates.length > 1
       ? h(
           "details",

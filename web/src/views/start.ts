@@ -37,6 +37,8 @@ export interface StartView extends View {
   /** A tuning request about this, with the methods, units and settings that stand in the form. */
   compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] };
   units(): Units;
+  /** Names of the chosen methods. */
+  methods(): string[];
 }
 
 /** So many examples stand open; the others are folded. */
@@ -209,6 +211,10 @@ export function startView(store: Store, events: StartEvents): StartView {
     loadRecord: record.load,
     compose,
     units: today.readUnits,
+    methods() {
+      const { tune } = methods.read();
+      return typeof tune === "string" ? ["all methods"] : tune.map((entry) => entry.method.replaceAll("_", " "));
+    },
   };
 }
 

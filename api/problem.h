@@ -26,8 +26,8 @@ struct Problem {
     std::string title;
     std::string detail;
     std::vector<FieldError> errors;
-    std::string instance;                 ///< optional
-    std::optional<RecordSamples> record;  ///< of a record that was read, but not identified
+    std::string instance;                      ///< optional
+    std::optional<RecordSamples> record = {};  ///< of a record that was read, but not identified
 };
 
 /// The one table from the engine's error kinds to status, type and title.

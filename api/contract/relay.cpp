@@ -82,7 +82,7 @@ const Description<RelayPlan>& relay_plan_contract() {
             .field("duration", &RelayPlan::duration, only_answered(number()), "How long that takes, about.",
                    {.unit = "time"})
             .field("record_interval", &RelayPlan::record_interval, only_answered(number()),
-                   "Spacing of the rows: at least 200 a period.", {.unit = "time"})
+                   "Spacing of the rows: 200 a period, or every sample of the relay.", {.unit = "time"})
             .field("reason", &RelayPlan::reason, only_answered(text(1000)), "Why these.");
         return d;
     }();

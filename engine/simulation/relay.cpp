@@ -47,9 +47,12 @@ LimitCycle describe(const LinearPlant& plant, const RelaySettings& settings, con
     return out;
 }
 
+// The spacing of rows where none is given: as fine as is useful, coarser where the record would not hold it.
 double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
     if (settings.record_interval) return *settings.record_interval;
-    return settings.relay_sample_time > 0 ? settings.relay_sample_time : steady.Pu() / kRowsPerPeriod;
+    const double most = 0.9 * static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles;
+    const double fitting = settings.cycles * steady.Pu() / most, Ts = settings.relay_sample_time;
+    return Ts > 0 ? Ts * std::max(1.0, std::ceil(fitting / Ts)) : std::max(steady.Pu() / kRowsPerPeriod, fitting);
 }
 
 std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRelayCycle& steady, double spacing) {
@@ -65,6 +68,11 @@ std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRela
                                          text(1.01 * fitting) + " apart.");
 }
 
+Error full_record(const RelaySettings& settings, int cycles) {
+    return refuse("cycles", "cycles is " + std::to_string(settings.cycles) + "; the record was full after " +
+                                std::to_string(cycles) + ". Ask for fewer cycles or a longer record_interval.");
+}
+
 void add_row(RelayRecord& record, double t, double u, double y) {
     record.t.push_back(t);
     record.u.push_back(u);
@@ -75,7 +83,8 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
                                    const SteadyRelayCycle& steady, double spacing, const RunControl& control,
                                    RelayRecord& record) {
     RelayMotion motion(plant, steady.direction);
-    RelayRun run(motion, plant.dead_time(), {settings.u_plus, settings.u_minus, settings.hysteresis});
+    const RelayLevels levels{settings.u_plus, settings.u_minus, settings.hysteresis};
+    RelayRun run(motion, plant.dead_time(), levels, held_start(plant, levels));
     int switches = 0;
     std::int64_t row = 0;
     while (const auto piece = run.next()) {
@@ -84,7 +93,7 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
         const double last = piece->switched ? piece->t_end - 1e-9 * spacing : piece->t_end;
         for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
             if (!record.t.empty() && t <= record.t.back() + 1e-9 * spacing) continue;
-            if (record.t.size() >= kMostRelayRows) return refuse_rows(settings, steady, spacing);
+            if (record.t.size() >= kMostRelayRows) return full_record(settings, switches / 2);
             add_row(record, t, piece->u, steady.direction * piece->y.at(std::max(0.0, t - piece->t)));
         }
         if (!piece->switched) continue;
@@ -117,8 +126,7 @@ std::optional<Error> record_samples(const LinearPlant& plant, const RelaySetting
         }
         if (sample.switched && ++switches == 2 * settings.cycles) return std::nullopt;
     }
-    return refuse("cycles", "cycles is " + std::to_string(settings.cycles) + "; the record was full after " +
-                                std::to_string(switches / 2) + ". Ask for fewer cycles or a longer record_interval.");
+    return full_record(settings, switches / 2);
 }
 
 void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady,
@@ -127,6 +135,12 @@ void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const
         out.warnings.push_back({"relay-reversed",
                                 "The plant answers a positive u with a negative y, so the relay acts on -y (to u_minus "
                                 "when y < -hysteresis); the other way round it would latch."});
+    if (const double held = held_start(plant, {settings.u_plus, settings.u_minus, settings.hysteresis});
+        held > 0 && settings.relay_sample_time == 0)
+        out.warnings.push_back({"start-held",
+                                "Without dead time and hysteresis a relay at rest cannot start: the record begins with "
+                                "u_plus held for " +
+                                    text(held) + "."});
     if (out.limit_cycle.periods == 0)
         out.warnings.push_back({"not-settled", "The oscillation takes " + std::to_string(steady.settling_cycles) +
                                                    " cycles to become steady and the record has " +

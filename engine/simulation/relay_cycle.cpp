@@ -228,7 +228,7 @@ public:
           control_(control),
           motion_(plant, direction),
           direction_(direction),
-          run_(motion_, plant.dead_time(), levels) {}
+          run_(motion_, plant.dead_time(), levels, held_start(plant, levels)) {}
 
     Expected<SteadyRelayCycle> solve() {
         double previous = 1;
@@ -249,7 +249,7 @@ public:
             steady->settling_cycles = count_settling(*steady);
             return *steady;
         }
-        return no_steady_cycle(plant_, levels_, kMostCycles);
+        return no_steady_cycle(plant_, kMostCycles);
     }
 
 private:

@@ -146,6 +146,11 @@ std::vector<double> RelayMotion::rate(const std::vector<double>& x, double v) co
     return out;
 }
 
+bool RelayMotion::bounded() const {
+    return integrators_ <= 0 &&
+           std::all_of(modes_.begin(), modes_.end(), [](const Mode& mode) { return std::isfinite(mode.ends); });
+}
+
 double RelayMotion::spacing(double elapsed, bool& quiet) const {
     double h = std::max(shortest_, elapsed / 4);
     quiet = true;

@@ -62,6 +62,8 @@ public:
     double spacing(double elapsed, bool& quiet) const;
     /// The time from which every decaying mode is below 1e-10 of itself; 0 if there is none.
     double decay_time() const { return decay_time_; }
+    /// Every mode decays: y stays bounded whatever the relay does.
+    bool bounded() const;
     /// The largest real part of a pole, if positive; else 0.
     double growth_rate() const { return growth_rate_; }
 

@@ -84,7 +84,8 @@ RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, co
     plan.expected_period = cycle.Pu();
     plan.cycles = std::min(cycle.settling_cycles + (noisy ? kNoisyCycles : kQuietCycles), kMostRelayCycles);
     plan.duration = plant.dead_time() + plan.cycles * cycle.Pu();
-    plan.record_interval = round_down(cycle.Pu() / kRowsPerPeriod);
+    const double spacing = cycle.Pu() / kRowsPerPeriod, Ts = settings.relay_sample_time;
+    plan.record_interval = Ts > 0 ? Ts * std::max(1.0, std::floor(spacing / Ts)) : round_down(spacing);
     plan.reason = sentence(plan, settings, plan.cycles - (noisy ? kNoisyCycles : kQuietCycles), factor);
     return plan;
 }

@@ -9,8 +9,8 @@ namespace tunewright {
 /// With noise: a hysteresis of 3 noise_std, which a single white sample exceeds by chance once in 741, and levels,
 /// raised in their proportion where needed, that swing y over 3 hystereses to either side; 10 steady cycles for
 /// averaging (the error falls with the root of their number). Without: levels and hysteresis as given and 3 steady
-/// cycles. Rows 1, 2 or 5 times a power of ten apart, at least 200 a period. `steady` is the cycle of the settings as
-/// given.
+/// cycles. Rows 1, 2 or 5 times a power of ten apart, at least 200 a period, or as many whole samples of a sampled
+/// relay. `steady` is the cycle of the settings as given.
 RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady,
                      const RunControl& control);
 

@@ -76,10 +76,12 @@ Error no_oscillation(const EndedRun& run) {
             "steps allowed. Leave the fastest modes out, or set relay_sample_time > 0."};
 }
 
-Error no_steady_cycle(const LinearPlant& plant, const RelayLevels&, int cycles) {
-    const std::string cause = plant.integrators() >= 2
-                                  ? "A double integrator without damping keeps growing under a relay."
-                                  : "Its oscillation grows, or never repeats with two switches a period.";
+Error no_steady_cycle(const LinearPlant& plant, int cycles) {
+    std::string cause = "Its switches never repeat after two: several oscillations of the plant compete.";
+    if (plant.integrators() >= 2)
+        cause = "A double integrator without damping keeps growing under a relay.";
+    else if (!RelayMotion(plant, 1).bounded())
+        cause = "Its oscillation grows, or never repeats with two switches a period.";
     return {ErrorKind::unsupported, "plant",
             "After " + std::to_string(cycles) +
                 " cycles the relay and the plant have not found a steady oscillation. " + cause +

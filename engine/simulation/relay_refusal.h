@@ -20,7 +20,7 @@ struct EndedRun {
 Error no_oscillation(const EndedRun& run);
 
 /// After `cycles` cycles the switches still do not repeat.
-Error no_steady_cycle(const LinearPlant& plant, const RelayLevels& levels, int cycles);
+Error no_steady_cycle(const LinearPlant& plant, int cycles);
 
 /// Without dead time and hysteresis, and with a pole excess of at most 2 whose leading coefficient has the feedback's
 /// sign, the switches accumulate: there is no oscillation to wait for.

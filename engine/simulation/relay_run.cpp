@@ -16,12 +16,21 @@ constexpr double kPatience = 1e12;  // times the shortest step, for ramps
 
 }  // namespace
 
-RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels)
+double held_start(const LinearPlant& plant, const RelayLevels& levels) {
+    if (plant.dead_time() > 0 || levels.hysteresis > 0) return 0;
+    double lags = 0;
+    for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
+    return lags / 2;
+}
+
+RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, double held)
     : RelayRun(motion, dead_time, levels,
                {std::vector<double>(static_cast<std::size_t>(motion.states()), 0.0),
                 0,
                 levels.u_plus,
-                {{dead_time, levels.u_plus}}}) {}
+                {{dead_time, levels.u_plus}}}) {
+    held_ = held;
+}
 
 RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, RelayState start)
     : motion_(&motion),
@@ -128,7 +137,7 @@ std::optional<RelayPiece> RelayRun::next() {
     double first = excess(now.y);
     // Without a direct term y is continuous, so every crossing was found inside a step: what is beyond is rounding.
     if (motion_->direct_term() == 0) first = std::min(first, 0.0);
-    if (first > 0) return switch_over(piece);
+    if (first > 0 && t_ >= held_) return switch_over(piece);
 
     bool quiet = false;
     const double elapsed = t_ - changed_at_;
@@ -153,7 +162,7 @@ std::optional<RelayPiece> RelayRun::next() {
         end_ = RelayEnd::escaped;
         return std::nullopt;
     }
-    if (const auto tau = crossing(piece.y, first)) {
+    if (const auto tau = t_ < held_ ? std::nullopt : crossing(piece.y, first)) {
         motion_->advance(motion_->step(*tau), v_, x_);
         piece.h = *tau;
         t_ += *tau;

@@ -49,10 +49,15 @@ enum class RelayEnd {
     exhausted,  ///< the work allowed is over
 };
 
+/// How long u_plus must be held at the start: 0 but for a plant without dead time under a relay without hysteresis. At
+/// rest on its threshold such a relay would switch again and again without any time between; half the plant's lags
+/// set it going.
+double held_start(const LinearPlant& plant, const RelayLevels& levels);
+
 class RelayRun {
 public:
-    /// At rest, u = u_plus from t = 0.
-    RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels);
+    /// At rest, u = u_plus from t = 0; the relay does not switch before `held`.
+    RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, double held = 0);
     RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, RelayState start);
 
     /// The next stretch; empty once `end()` is not `running`.
@@ -81,6 +86,7 @@ private:
     std::vector<double> x_, x_rise_;
     double v_ = 0, u_ = 0;
     std::deque<PendingInput> pending_;
+    double held_ = 0;
     int switches_ = 0, crowded_ = 0;
     std::int64_t steps_ = 0;
     double swing_ = 0;  ///< largest abs y before the fourth switch

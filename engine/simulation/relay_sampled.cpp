@@ -77,9 +77,10 @@ public:
             started = sample.t;
             if (const auto length = pattern(cycles_)) return mean_over(*length);
             if (cycles_.size() < kMostCycles) continue;
-            if (grows()) return no_steady_cycle(plant_, levels_, static_cast<int>(kMostCycles));
+            if (grows()) return no_steady_cycle(plant_, static_cast<int>(kMostCycles));
             return mean_over(kAveraged);
         }
+        if (cycles_.size() >= 4 && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
         return Error{ErrorKind::invalid_argument, "relay/relay_sample_time",
                      "relay_sample_time is " + text(Ts_) + "; the oscillation is not steady after " +
                          std::to_string(kMostSamples) + " samples. Make it longer, or 0 for an event-accurate relay."};
@@ -102,6 +103,7 @@ private:
     }
 
     bool grows() const {
+        if (motion_.bounded()) return false;
         const auto swing = [](const SampledCycle& cycle) { return cycle.top - cycle.bottom; };
         return swing(cycles_.back()) > 1.5 * swing(cycles_[cycles_.size() / 2]);
     }
@@ -119,10 +121,13 @@ private:
         out.y_max = direction_ > 0 ? top : -bottom;
         out.y_min = direction_ > 0 ? bottom : -top;
         std::size_t settling = cycles_.size();
-        const double near = 2 * Ts_ + kSteady * out.Pu();
-        while (settling > 0 && std::abs(cycles_[settling - 1].t_plus - out.t_plus) <= near &&
-               std::abs(cycles_[settling - 1].t_minus - out.t_minus) <= near)
-            --settling;
+        // A mean over cycles that do not repeat: as far as they stray from it, they are steady.
+        const auto stray = [&](const SampledCycle& cycle) {
+            return std::max(std::abs(cycle.t_plus - out.t_plus), std::abs(cycle.t_minus - out.t_minus));
+        };
+        double near = 2 * Ts_ + kSteady * out.Pu();
+        for (std::size_t i = cycles_.size() - count; i < cycles_.size(); ++i) near = std::max(near, stray(cycles_[i]));
+        while (settling > 0 && stray(cycles_[settling - 1]) <= near) --settling;
         out.settling_cycles = static_cast<int>(settling);
         return out;
     }

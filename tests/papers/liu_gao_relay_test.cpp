@@ -130,5 +130,38 @@ TEST(LiuGaoRelay, LeftRectanglesOnASampledRelayGiveThePrintedRows) {
     }
 }
 
+// Example 1 with noise N(0, 0.00045) on what the relay sees. Printed: 14.03, 0.2182, -2.2506, one run. The means and
+// deviations here are those of an independent simulation of many runs.
+TEST(LiuGaoRelay, NoiseMovesTheCycleAsItDoesInTheReference) {
+    constexpr int kSeeds = 30, kPeriods = 10;
+    double Pu = 0, Au = 0, phi = 0, K = 0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        RelaySettings settings = biased();
+        settings.noise_std = std::sqrt(0.00045);
+        settings.relay_sample_time = 0.01;
+        settings.cycles = kPeriods + 3;
+        settings.seed = seed;
+        const auto experiment = simulate_relay(kFirst, settings, {});
+        ASSERT_TRUE(experiment) << experiment.error().message;
+        const RelayRecord& record = experiment->record;
+        const std::size_t first = rise_from_end(record, kPeriods, settings.u_plus);
+        Pu += (record.t.back() - record.t[first]) / kPeriods / kSeeds;
+        const Complex G = fourier_ratio(record, kPeriods, settings.u_plus, false);
+        Au += std::abs(G) / kSeeds;
+        phi += std::arg(G) / kSeeds;
+        double y = 0, u = 0;
+        for (std::size_t i = first; i + 1 < record.t.size(); ++i) {
+            y += record.y[i];
+            u += record.u[i];
+        }
+        K += y / u / kSeeds;
+    }
+    const double wide = 4 / std::sqrt(double{kSeeds});
+    EXPECT_NEAR(Pu, 14.14843, wide * 0.07251334);
+    EXPECT_NEAR(Au, 0.2197189, wide * 0.001074789);
+    EXPECT_NEAR(phi, -2.237351, wide * 0.005949353);
+    EXPECT_NEAR(K, 1, wide * 0.02739656);
+}
+
 }  // namespace
 }  // namespace tunewright

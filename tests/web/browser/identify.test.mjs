@@ -75,6 +75,48 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
   });
 });
 
+test("a relay test shows its limit cycle, the plant's ultimate point, measured points and what warns of them", async () => {
+  await withPage("", {}, async (page) => {
+    // As the service answers it, whatever its figures are.
+    const limit_cycle = {
+      Pu: 14.391,
+      Au: 0.22326,
+      phi_u: -2.21885,
+      periods: 9,
+      shift: { sigma: 0.1, A: 0.17049, phi: -2.01 },
+      fit_rms: 0.0031,
+      describing_function: { Ku: 3.9, Pu: 14.391 },
+    };
+    await page.route("**/v1/identify", async (route) => {
+      const reply = await route.fetch();
+      const answer = await reply.json();
+      answer.model.limit_cycle = limit_cycle;
+      answer.model.ultimate_point = { Ku: 8.123, Pu: 7.654 };
+      answer.model.frequency_points = [{ omega: 0.4366, re: -0.1347, im: 0.178, std: 0.0012 }];
+      answer.model.warnings = [{ code: "phase-crossover-beyond-data", detail: "The loop crosses beyond the record." }];
+      await route.fulfill({ response: reply, json: answer });
+    });
+    const relayTest = readFileSync(path.join(root, "tests/data/records/relay_ex3_unbiased.csv"), "utf8");
+    await dropFile(page, ".drop", "relay.csv", relayTest);
+    await candidatesShown(page);
+    const cycle = page.getByRole("region", { name: "Limit cycle" });
+    const cell = async (label) =>
+      (await cycle.locator("tr").filter({ hasText: label }).first().locator("td").first().innerText()).replace("−", "-");
+    assert.equal(Number(await cell("period of the oscillation")), 14.391);
+    assert.equal(Number(await cell("Au")), 0.2233);
+    assert.equal(Number(await cell("φu")), -2.219);
+    assert.equal(Number(await cell("Periods")), 9);
+    assert.equal(Number(await cell("ultimate gain, of the plant itself")), 8.123);
+    assert.equal(Number(await cell("ultimate period, of the plant itself")), 7.654);
+    assert.equal(Number(await cell("describing function")), 3.9);
+    await cycle.getByText("1 measured point of G(jω)").click();
+    assert.match(await cycle.getByRole("table").nth(1).innerText(), /0\.4366\s+−0\.1347\s+0\.1780\s+0\.0012/);
+    const quality = await page.getByRole("region", { name: "Was the test good enough?" }).innerText();
+    assert.match(quality, /Usable with care: 1 thing to know\.\s+The loop crosses beyond the record\./);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
 test("limits on all that the record leaves possible are asked for by a check box, and the choice stays with the job", async () => {
   await withPage("", {}, async (page) => {
     await dropFile(page, ".drop", "step.csv", stepTest);

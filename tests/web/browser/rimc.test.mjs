@@ -84,6 +84,34 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
   });
 });
 
+test("the full controller stands beside its PID, in figures and in its load response", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    // As the service answers it, whatever its figures are.
+    await page.route("**/v1/jobs/*", async (route) => {
+      const reply = await route.fetch();
+      if (reply.status() !== 200) return route.fulfill({ response: reply });
+      const job = await reply.json();
+      const entry = job.result?.controllers?.[1];
+      if (entry?.rimc) {
+        const { t, y, u } = entry.responses.load;
+        entry.rimc.full_controller = {
+          robustness: { stable: true, Ms: 1.23 },
+          load: { peak: 0.321, IAE: 9.87 },
+          responses: { load: { t, y: y.map((value) => 0.9 * value), u } },
+        };
+      }
+      await route.fulfill({ response: reply, json: job });
+    });
+    await showRimc(page);
+    assert.deepEqual(
+      [await cell(page, "Ms", 1), await cell(page, "Load peak", 1), await cell(page, "Load IAE", 1)],
+      [1.23, 0.321, 9.87],
+    );
+    assert.equal(await drawnTraces(page, "Load step: PID and full controller"), 4);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
 test("a lambda out of reach is refused in the service's words, and the design stays", async () => {
   await withPage(
     "#/new/fopdt?K=1&T=10&L=2",

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
+import type { Entry, Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../web/src/charts/rimc.ts";
 import { withLambda } from "../../../web/src/form/retune.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
@@ -43,8 +43,14 @@ test("beyond the curve nothing is invented: no point, and no chart without a tim
 });
 
 test("figures of the PID stand beside the full controller's, and what has none says why", () => {
-  const full = { robustness: { Ms: 1.5 }, load: { peak: 0.48 } };
-  const rows = rimcRows({ ...rimc, full_controller: full }, units);
+  const full = { robustness: { Ms: 1.5 }, load: { peak: 0.48, IAE: 11.5 } };
+  const entry: Entry = {
+    method: "rimc",
+    rimc: { ...rimc, full_controller: full },
+    performance: { load: { IAE: 12 } },
+  };
+  const rows = rimcRows(entry, units);
+  assert.deepEqual(rimcRows({ method: "robust" }, units), []);
   assert.deepEqual(
     rows.map((row) => [row.label, row.pid, row.full]),
     [
@@ -53,6 +59,7 @@ test("figures of the PID stand beside the full controller's, and what has none s
       ["Load peak (°C/%)", 0.5, 0.48],
       ["Dead time error (min)", null, null],
       ["Unstable below λ (min)", 1, null],
+      ["Load IAE (°C min)", 12, 11.5],
     ],
   );
   assert.equal(rows[3]!.why, "Eq. 29 does not hold for any error.");

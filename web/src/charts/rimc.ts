@@ -1,7 +1,7 @@
 // Revised IMC: what the parameter lambda buys. The load response's peak and Ms over lambda/tau, the present design marked.
-import type { Response, Rimc } from "../api/types.ts";
+import type { Entry, Response, Rimc } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
-import { formatNumber, quotient, withUnit } from "../words/numbers.ts";
+import { formatNumber, product, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
 /** `tau`: of the model that the design rests on. `lambda`: what is marked. Null without a curve. */
@@ -90,7 +90,9 @@ export interface RimcRow {
 }
 
 /** Figures of the PID and of the full controller, side by side. */
-export function rimcRows(rimc: Rimc, units: UnitNames): RimcRow[] {
+export function rimcRows(entry: Entry, units: UnitNames): RimcRow[] {
+  const rimc = entry.rimc;
+  if (!rimc) return [];
   const robustness = rimc.full_controller?.robustness;
   const load = rimc.full_controller?.load;
   const row = (label: string, meaning: string, name: keyof Rimc, full: unknown): RimcRow => ({
@@ -106,6 +108,13 @@ export function rimcRows(rimc: Rimc, units: UnitNames): RimcRow[] {
     row(withUnit("Load peak", quotient(units.y, units.u)), "of y, a unit load step", "disturbance_peak", load?.["peak"]),
     row(withUnit("Dead time error", units.time), "tolerated for sure", "dead_time_error", null),
     row(withUnit("Unstable below λ", units.time), "stability limit", "stability_limit", null),
+    {
+      label: withUnit("Load IAE", product(units.y, units.time)),
+      meaning: "on the plant as given",
+      pid: numberOf(entry.performance?.load?.["IAE"]),
+      full: numberOf(load?.["IAE"]),
+      why: entry.performance?.load?.why_null?.["IAE"] ?? "",
+    },
   ];
 }
 

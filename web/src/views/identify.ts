@@ -100,8 +100,8 @@ export function identifyView(
   });
   const quality = qualityCard();
   const cycle = cycleCard();
-  const side = h("div", { class: "side" }, candidates.element, quality.element, cycle.element);
-  const body = h("div", { class: "identify-body" }, record, side);
+  const side = h("div", { class: "side" }, candidates.element, quality.element);
+  const body = h("div", { class: "identify-body" }, record, side, cycle.element);
   const element = h(
     "main",
     { class: "identify", id: "main" },
@@ -148,7 +148,8 @@ export function identifyView(
       const pointed = (problem.errors ?? []).filter((fault) => fault.pointer !== "/record");
       model = null;
       side.hidden = true;
-      sentence.textContent = "";
+      cycle.show(undefined, undefined, [], units);
+      sentence.textContent = "Choose a part of it that a model can explain, or another model or method above.";
       if (isWhole(asked)) takeWhole(problem.record);
       body.hidden = whole === null;
       draw();

@@ -96,7 +96,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
 
   function showTable(): void {
     const { entry, units } = shown!;
-    const rows = rimcRows(entry.rimc!, units);
+    const rows = rimcRows(entry, units);
     const full = rows.some((row) => row.full !== null && row.label !== rows[0]!.label);
     table.replaceChildren(
       h(

@@ -136,7 +136,7 @@ test("faults that the service finds stand at their fields, several at once", asy
     const { page } = opened;
     await page.goto(service.base);
     await page.getByLabel("L (s)", { exact: true }).fill("-3");
-    await page.getByLabel("Ms", { exact: true }).fill("0.5");
+    await page.getByRole("textbox", { name: "Ms", exact: true }).fill("0.5");
     const answer = page.waitForResponse(
       (response) => response.url().endsWith("/v1/jobs") && response.request().method() === "POST",
     );
@@ -149,7 +149,7 @@ test("faults that the service finds stand at their fields, several at once", asy
       ["L (s)", "/plant/L"],
       ["Ms", "/tune/0/Ms"],
     ]) {
-      const input = page.getByLabel(label, { exact: true });
+      const input = page.getByRole("textbox", { name: label, exact: true });
       assert.equal(await input.getAttribute("aria-invalid"), "true", label);
       assert.equal(
         await page.locator(`#${await input.getAttribute("id")}-error`).innerText(),
@@ -283,8 +283,8 @@ test("an example is shown in the form and sent from there as the same plant and 
 
 test("a job that cannot be done says why, and leads back to its request", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=10", {}, async (page) => {
-    await page.getByLabel("Ms", { exact: true }).fill("1.01");
-    await page.getByLabel("Mt", { exact: true }).fill("1.01");
+    await page.getByRole("textbox", { name: "Ms", exact: true }).fill("1.01");
+    await page.getByRole("textbox", { name: "Mt", exact: true }).fill("1.01");
     await page.getByRole("button", { name: "Tune this model" }).click();
     await page.getByRole("link", { name: "Change the request" }).waitFor();
     const verdict = page.getByRole("region", { name: "Verdict" });

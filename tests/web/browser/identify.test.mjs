@@ -39,12 +39,12 @@ const rows = Array.from({ length: 400 }, (_, t) => {
   return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
 });
 const stepTest = ["t,u,y", ...rows].join("\n");
-const disturbedTest = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.02 * (t - 250)}`))].join("\n");
+const disturbedTest = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.02 * (t - 250)}`))].join(
+  "\n",
+);
 
 const job = async (page) =>
-  (
-    await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)
-  ).json();
+  (await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
 
 test("a dropped record is identified at once, and Use and tune leads to its design", async () => {
   await withPage("", {}, async (page) => {
@@ -101,7 +101,10 @@ test("a relay test shows its limit cycle, the plant's ultimate point, measured p
     await candidatesShown(page);
     const cycle = page.getByRole("region", { name: "Limit cycle" });
     const cell = async (label) =>
-      (await cycle.locator("tr").filter({ hasText: label }).first().locator("td").first().innerText()).replace("−", "-");
+      (await cycle.locator("tr").filter({ hasText: label }).first().locator("td").first().innerText()).replace(
+        "−",
+        "-",
+      );
     assert.equal(Number(await cell("period of the oscillation")), 14.391);
     assert.equal(Number(await cell("Au")), 0.2233);
     assert.equal(Number(await cell("φu")), -2.219);
@@ -152,7 +155,8 @@ test("another candidate is drawn with its own run and tuned as that model", asyn
     const other = model.candidates.findIndex((item) => item.plant.type === "sopdt");
     await page.getByRole("radio").nth(other).check();
     await page.waitForFunction(
-      (old) => [...document.querySelectorAll("section.plot svg.canvas path")].map((p) => p.getAttribute("d")).join() !== old,
+      (old) =>
+        [...document.querySelectorAll("section.plot svg.canvas path")].map((p) => p.getAttribute("d")).join() !== old,
       before,
     );
     await page.getByRole("button", { name: "Use and tune" }).click();

@@ -70,9 +70,7 @@ test("from a model to the relay test on it: record, limit cycle and plan as the 
     assert.match(plan, new RegExp(`period of ${Number(answer.plan.expected_period).toPrecision(3)} s`));
     if (answer.plan.reason) assert.ok(plan.includes(answer.plan.reason));
 
-    const identified = page.waitForResponse(
-      (reply) => reply.url().endsWith("/v1/identify") && reply.status() === 200,
-    );
+    const identified = page.waitForResponse((reply) => reply.url().endsWith("/v1/identify") && reply.status() === 200);
     await page.getByRole("button", { name: "Identify this record" }).click();
     const reply = await identified;
     const sent = reply.request().postDataJSON().record;
@@ -101,7 +99,10 @@ test("the plan's settings are taken over and simulated", async () => {
     const noisy = simulated(page);
     await page.getByRole("button", { name: "Simulate" }).click();
     const { plan } = await (await noisy).json();
-    await page.getByText(`±${Number(plan.hysteresis).toPrecision(3)}`).first().waitFor();
+    await page
+      .getByText(`±${Number(plan.hysteresis).toPrecision(3)}`)
+      .first()
+      .waitFor();
     const again = simulated(page);
     await page.getByRole("button", { name: "Use these settings" }).click();
     const { relay } = (await again).request().postDataJSON();

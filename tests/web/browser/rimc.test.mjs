@@ -49,7 +49,10 @@ test("the chart shows the curve of this plant with the design on it, and its fig
     assert.equal(await cell(page, "Ms"), shown(rimc.Ms));
     assert.equal(await cell(page, "Load peak"), shown(rimc.disturbance_peak));
     assert.equal(await cell(page, "Dead time error"), shown(rimc.dead_time_error));
-    const labels = await page.getByRole("img", { name: "What λ buys: load peak and Ms" }).locator("text").allTextContents();
+    const labels = await page
+      .getByRole("img", { name: "What λ buys: load peak and Ms" })
+      .locator("text")
+      .allTextContents();
     assert.ok(labels.includes(`Ms ${Number(rimc.Ms).toPrecision(3)}`), labels.join());
     // Of another method there is no such card.
     await page.getByRole("button", { name: "robust", exact: true }).click();

@@ -24,7 +24,15 @@ const model: Model = {
   fit_percent: 97.2,
   candidates: [fopdt, ipdt],
   fit: { t: [0, 1, 2], u: [0, 5, 5], y: [0, 0.6, 1], y_model: [0, 0.5, 1] },
-  data_quality: { samples: 3, samples_dropped: 2, sample_time: 1, irregular: false, noise_std: 0.01, quantisation: 0, settled: true },
+  data_quality: {
+    samples: 3,
+    samples_dropped: 2,
+    sample_time: 1,
+    irregular: false,
+    noise_std: 0.01,
+    quantisation: 0,
+    settled: true,
+  },
   warnings: [],
 };
 const request: IdentifyRequest = { units: {}, record: { csv: "t,u,y\n" }, identify: { model: "auto" } };
@@ -112,7 +120,13 @@ test("a good test is said to be good; warnings and a poor fit change that, with 
 });
 
 test("the record is described by its figures, and by those that this page does not know by their names", () => {
-  const data_quality = { ...model.data_quality, drift: 0.02, saturated: false, gaps: ["3 s at 120 s"], relay: { cycles: 9 } };
+  const data_quality = {
+    ...model.data_quality,
+    drift: 0.02,
+    saturated: false,
+    gaps: ["3 s at 120 s"],
+    relay: { cycles: 9 },
+  };
   const words = qualityOf({ ...model, data_quality }, units);
   assert.equal(words.input, "u steps once, at 1 s, from 0 to 5 %.");
   assert.deepEqual(Object.fromEntries(words.rows), {
@@ -133,7 +147,15 @@ test("a limit cycle is given with the plant's ultimate point and the describing 
   const rows = cycleRows(cycle, { Ku: 8.1, Pu: 7.7 }, units);
   assert.deepEqual(
     rows.map((row) => `${row.label} ${row.text}`),
-    ["Pu (s) 14.391", "Au (°C/%) 0.2233", "φu (rad) −2.219", "Periods 9", "Ku (%/°C) 8.100", "Pu at Ku (s) 7.700", "Ku, estimated (%/°C) 3.900"],
+    [
+      "Pu (s) 14.391",
+      "Au (°C/%) 0.2233",
+      "φu (rad) −2.219",
+      "Periods 9",
+      "Ku (%/°C) 8.100",
+      "Pu at Ku (s) 7.700",
+      "Ku, estimated (%/°C) 3.900",
+    ],
   );
   assert.match(rows[2]!.meaning, /−127°/);
 });

@@ -12,7 +12,11 @@ const rimc: Rimc = {
   disturbance_peak: 0.5,
   dead_time_error: null,
   stability_limit: 1,
-  disturbance_peak_curve: { lambda_over_tau: [0.2, 0.4, 0.8, 1.6], DP_over_kp: [0.2, 0.25, 0.5, 0.7], Ms: [null, 2.4, 1.6, 1.3] },
+  disturbance_peak_curve: {
+    lambda_over_tau: [0.2, 0.4, 0.8, 1.6],
+    DP_over_kp: [0.2, 0.25, 0.5, 0.7],
+    Ms: [null, 2.4, 1.6, 1.3],
+  },
   why_null: { dead_time_error: "Eq. 29 does not hold for any error." },
 };
 
@@ -28,7 +32,9 @@ test("the chart marks the design at lambda over tau in both panes, with what it 
     { kind: "point", x: 0.8, y: 1.6, label: "Ms 1.60" },
   ]);
   assert.deepEqual(
-    frame.panes[0]!.marks!.filter((mark) => mark.kind === "upright").map((mark) => mark.kind === "upright" && mark.value),
+    frame.panes[0]!.marks!.filter((mark) => mark.kind === "upright").map(
+      (mark) => mark.kind === "upright" && mark.value,
+    ),
     [0.1, 0.8],
   );
 });
@@ -78,7 +84,10 @@ test("the load responses are drawn together where both are there", () => {
 test("another lambda replaces what stood for it, in its own entry only, and asks for the chart", () => {
   const request: TuningRequest = {
     plant: { type: "fopdt", K: 1, T: 10, L: 2 },
-    tune: [{ method: "robust", Ms: 1.4 }, { method: "rimc", Ms: 1.6, Tf_over_Td: 0.1 }],
+    tune: [
+      { method: "robust", Ms: 1.4 },
+      { method: "rimc", Ms: 1.6, Tf_over_Td: 0.1 },
+    ],
   };
   const result: Result = { controllers: [{ method: "robust" }, { method: "rimc" }, { method: "baseline" }] };
   assert.deepEqual(withLambda(request, result, 1, 7).tune, [

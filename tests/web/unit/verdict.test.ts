@@ -95,16 +95,25 @@ test("a controller that serves many plants says how it fares on all of them", ()
   const good = verdictOf(on({ stable_fraction: 1, worst_Ms: 1.52 }), undefined, {});
   assert.equal(good.level, "good");
   assert.match(good.sentences.join(" "), /It is stable on every plant that this one may be, with Ms 1\.52 at worst\./);
-  const bad = verdictOf(on({ stable_fraction: 0.9996, worst_Ms: null, why_null: { worst_Ms: "Some are unstable." } }), undefined, {});
+  const bad = verdictOf(
+    on({ stable_fraction: 0.9996, worst_Ms: null, why_null: { worst_Ms: "Some are unstable." } }),
+    undefined,
+    {},
+  );
   assert.deepEqual([bad.level, bad.head], ["bad", "Unstable on a part of what the plant may be."]);
   assert.match(bad.sentences.join(" "), /stable on 99\.9 % of the plants/);
   const rows = figureGroups(unitNames(undefined), true).flatMap((group) => group.rows);
   const row = (label: string): FigureRow => rows.find((candidate) => candidate.label === label)!;
   assert.equal(row("Stable plants (%)").value(on({ stable_fraction: 0.5 })).text, "50");
   assert.equal(row("Ms at worst").value(on({ worst_Ms: 1.52 })).text, "1.52");
-  assert.equal(row("Ms at worst").value(on({ why_null: { worst_Ms: "Some are unstable." } })).why, "Some are unstable.");
+  assert.equal(
+    row("Ms at worst").value(on({ why_null: { worst_Ms: "Some are unstable." } })).why,
+    "Some are unstable.",
+  );
   assert.equal(row("Ms at worst").value(entry()).text, "");
-  assert.ok(!figureGroups(unitNames(undefined)).some((group) => group.rows.some((item) => item.label === "Ms at worst")));
+  assert.ok(
+    !figureGroups(unitNames(undefined)).some((group) => group.rows.some((item) => item.label === "Ms at worst")),
+  );
 });
 
 test("no verdict ever says null, NaN or undefined", () => {

@@ -105,7 +105,12 @@ export function rimcRows(entry: Entry, units: UnitNames): RimcRow[] {
   return [
     row(withUnit("λ", units.time), "time constant of the closed loop", "lambda", rimc.lambda),
     row("Ms", "peak of |S|", "Ms", robustness?.Ms),
-    row(withUnit("Load peak", quotient(units.y, units.u)), "of y, a unit load step", "disturbance_peak", load?.["peak"]),
+    row(
+      withUnit("Load peak", quotient(units.y, units.u)),
+      "of y, a unit load step",
+      "disturbance_peak",
+      load?.["peak"],
+    ),
     row(withUnit("Dead time error", units.time), "tolerated for sure", "dead_time_error", null),
     row(withUnit("Unstable below λ", units.time), "stability limit", "stability_limit", null),
     {

@@ -144,8 +144,7 @@ function formulaOf(candidate: Candidate): HTMLElement | null {
  */
 export function parameterTexts(candidate: Candidate, units: UnitNames, duration = Infinity): string[] {
   const errors = candidate.standard_errors ?? {};
-  const known = (name: string): boolean =>
-    !(["L", "T", "T1", "T2"].includes(name) && (errors[name] ?? 0) > duration);
+  const known = (name: string): boolean => !(["L", "T", "T1", "T2"].includes(name) && (errors[name] ?? 0) > duration);
   const texts = Object.entries(candidate.plant).flatMap(([name, value]) => {
     if (typeof value !== "number" || (candidate.plant.type === "ipdt" && name === "T" && value === 0)) return [];
     const unit = parameterUnit(candidate.plant, name, units);

@@ -32,17 +32,34 @@ export interface RelayView extends View {
 
 type SettingName = keyof RelaySettings;
 
-const SETTINGS: { name: SettingName; label: string; hint: string; unit: keyof ReturnType<typeof unitNames> | ""; value: string }[] =
-  [
-    { name: "u_plus", label: "Upper level", hint: "of u, from the operating point", unit: "u", value: "1" },
-    { name: "u_minus", label: "Lower level", hint: "other size than above: a biased test", unit: "u", value: "-1" },
-    { name: "hysteresis", label: "Hysteresis", hint: "switches when y leaves it; 3 times the noise", unit: "y", value: "0" },
-    { name: "cycles", label: "Cycles", hint: "recorded from the start", unit: "", value: "6" },
-    { name: "noise_std", label: "Noise of y", hint: "standard deviation; the relay sees it", unit: "y", value: "0" },
-    { name: "relay_sample_time", label: "Relay looks every", hint: "0: switches at the very instant", unit: "time", value: "0" },
-    { name: "record_interval", label: "Record every", hint: "empty: 200 rows a period", unit: "time", value: "" },
-    { name: "seed", label: "Seed", hint: "of the noise", unit: "", value: "0" },
-  ];
+const SETTINGS: {
+  name: SettingName;
+  label: string;
+  hint: string;
+  unit: keyof ReturnType<typeof unitNames> | "";
+  value: string;
+}[] = [
+  { name: "u_plus", label: "Upper level", hint: "of u, from the operating point", unit: "u", value: "1" },
+  { name: "u_minus", label: "Lower level", hint: "other size than above: a biased test", unit: "u", value: "-1" },
+  {
+    name: "hysteresis",
+    label: "Hysteresis",
+    hint: "switches when y leaves it; 3 times the noise",
+    unit: "y",
+    value: "0",
+  },
+  { name: "cycles", label: "Cycles", hint: "recorded from the start", unit: "", value: "6" },
+  { name: "noise_std", label: "Noise of y", hint: "standard deviation; the relay sees it", unit: "y", value: "0" },
+  {
+    name: "relay_sample_time",
+    label: "Relay looks every",
+    hint: "0: switches at the very instant",
+    unit: "time",
+    value: "0",
+  },
+  { name: "record_interval", label: "Record every", hint: "empty: 200 rows a period", unit: "time", value: "" },
+  { name: "seed", label: "Seed", hint: "of the noise", unit: "", value: "0" },
+];
 
 export function relayView(announce: (sentence: string) => void, events: RelayEvents): RelayView {
   const errors = new FormErrors();
@@ -160,7 +177,8 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     for (const { name, field } of settings) {
       const value = (plan as Record<string, unknown>)[name];
       // The relay of the plan writes its record as often as the plan says, unless it looks at y more rarely.
-      if (typeof value === "number" && name !== "record_interval") field.input.value = String(Number(value.toPrecision(4)));
+      if (typeof value === "number" && name !== "record_interval")
+        field.input.value = String(Number(value.toPrecision(4)));
     }
     simulate();
   }

@@ -26,7 +26,11 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
   const title = h("h2", { id: uniqueId("rimc") }, "Revised IMC: speed against robustness");
   const table = h("div", {});
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
-  const drawButton = h("button", { type: "button", onclick: () => void release(shown!.entry.rimc!.lambda) }, "Draw the chart");
+  const drawButton = h(
+    "button",
+    { type: "button", onclick: () => void release(shown!.entry.rimc!.lambda) },
+    "Draw the chart",
+  );
   const charts = h("div", { class: "plots" });
   const lambda = slider(
     {
@@ -43,7 +47,13 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
   const element = h(
     "section",
     { class: "card rimc", "aria-labelledby": title.id, hidden: true },
-    h("div", { class: "rimc-head" }, title, h("div", { class: "rimc-controls" }, lambda.element, drawButton, trouble), table),
+    h(
+      "div",
+      { class: "rimc-head" },
+      title,
+      h("div", { class: "rimc-controls" }, lambda.element, drawButton, trouble),
+      table,
+    ),
     charts,
   );
 
@@ -121,7 +131,12 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
             h(
               "tr",
               {},
-              h("th", { scope: "row", class: "explained" }, row.label, h("span", {}, row.pid === null ? row.why || row.meaning : row.meaning)),
+              h(
+                "th",
+                { scope: "row", class: "explained" },
+                row.label,
+                h("span", {}, row.pid === null ? row.why || row.meaning : row.meaning),
+              ),
               h("td", {}, row.pid === null ? DASH : formatNumber(row.pid)),
               full ? h("td", {}, row.full === null ? "" : formatNumber(row.full)) : null,
             ),

@@ -24,7 +24,8 @@ export function cycleRows(cycle: LimitCycle, ultimate: UltimatePoint | null | un
     { label: "Periods", meaning: "whole steady periods", text: String(cycle.periods) },
   ];
   const add = (label: string, meaning: string, value: number | null | undefined, digits = 4): void => {
-    if (typeof value === "number" && Number.isFinite(value)) rows.push({ label, meaning, text: formatNumber(value, digits) });
+    if (typeof value === "number" && Number.isFinite(value))
+      rows.push({ label, meaning, text: formatNumber(value, digits) });
   };
   add(withUnit("Ku", inverse), "ultimate gain, of the plant itself", ultimate?.Ku);
   if (ultimate && differs(ultimate.Pu, cycle.Pu))

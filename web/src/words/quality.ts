@@ -61,7 +61,8 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
   const noise = number("noise_std");
   if (noise !== null) rows.push([withUnit("Noise of y", units.y), noise === 0 ? "none" : noiseWords(noise, model)]);
   const grid = number("quantisation");
-  if (grid !== null) rows.push([withUnit("Smallest step of y", units.y), grid === 0 ? "none found" : formatNumber(grid)]);
+  if (grid !== null)
+    rows.push([withUnit("Smallest step of y", units.y), grid === 0 ? "none found" : formatNumber(grid)]);
   const steps = number("steps");
   if (steps !== null) rows.push(["Changes of u", String(steps)]);
   if (typeof quality["settled"] === "boolean") rows.push(["y came to rest", quality["settled"] ? "yes" : "no"]);
@@ -84,7 +85,9 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
 function noiseWords(noise: number, model: Model): string {
   const values = (model.fit?.y ?? []).filter((value): value is number => typeof value === "number");
   const movement = values.length > 0 ? maximum(values) - minimum(values) : 0;
-  return movement > 0 ? `${formatNumber(noise, 2)}, ${formatNumber((100 * noise) / movement, 2)} %` : formatNumber(noise, 2);
+  return movement > 0
+    ? `${formatNumber(noise, 2)}, ${formatNumber((100 * noise) / movement, 2)} %`
+    : formatNumber(noise, 2);
 }
 
 /** A figure that was added to the contract after this page was written. */
@@ -109,7 +112,8 @@ function inputWords(model: Model, units: UnitNames): string {
   const { t = [], u = [] } = model.fit ?? {};
   const changes: number[] = [];
   for (let index = 1; index < u.length; index += 1)
-    if (typeof u[index] === "number" && typeof u[index - 1] === "number" && u[index] !== u[index - 1]) changes.push(index);
+    if (typeof u[index] === "number" && typeof u[index - 1] === "number" && u[index] !== u[index - 1])
+      changes.push(index);
   const values = u.filter((value): value is number => typeof value === "number");
   if (values.length === 0) return "";
   const unit = units.u ? ` ${units.u}` : "";

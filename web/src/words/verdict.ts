@@ -80,7 +80,9 @@ function regionSentences(entry: Entry): string[] {
     return [
       `It is stable on every plant that this one may be${typeof worst === "number" ? `, with Ms ${formatNumber(worst)} at worst` : ""}.`,
     ];
-  return [`It is stable on ${percent(stable)} % of the plants that this one may be. Record a better test, or lower Ms.`];
+  return [
+    `It is stable on ${percent(stable)} % of the plants that this one may be. Record a better test, or lower Ms.`,
+  ];
 }
 
 /** Never 100 for less than all, never 0 for more than nothing. */

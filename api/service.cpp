@@ -30,7 +30,7 @@ void add_reading(const ReadRecord& read, DataQuality& quality) {
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
     if (read.dropped > 0)
-        quality.notes.push_back(std::to_string(read.dropped) + " lines without a number in t, u or y were dropped.");
+        quality.notes.push_back(std::to_string(read.dropped) + " line(s) of the csv without a time, or with neither u nor y, were left out.");
 }
 
 // The engine speaks of "controller/..."; the request has a list of them.

@@ -145,13 +145,15 @@ const Description<GivenRecord>& record_contract() {
                    {.unit = "time"})
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
-            .field("csv", &GivenRecord::csv, maybe(text(std::size_t{8} << 20)),
-                   "CSV text instead of the arrays: separator , ; or tab, decimal point or comma, a heading line, "
-                   "numbers or ISO time stamps. Lines with a blank cell are dropped and counted.")
+            .field("csv", &GivenRecord::csv, maybe(text(kLongestCsv)),
+                   "CSV text instead of the arrays: separated by , ; tab | or blanks, decimal point or comma, times as "
+                   "numbers "
+                   "or stamps, with or without headings and units. A blank u is held, a line without y counts for u.")
             .field("columns", &GivenRecord::columns, maybe(object(columns_contract())), "Columns of the csv.")
             .field("kind", &GivenRecord::kind,
                    choice<RecordKind>({{"auto", RecordKind::automatic},
                                        {"step", RecordKind::step},
+                                       {"several_steps", RecordKind::several_steps},
                                        {"relay", RecordKind::relay},
                                        {"general", RecordKind::general}}),
                    "What the test was.")
@@ -202,8 +204,14 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         choose_part(given, out, reader);
         return out;
     }
-    const CsvOptions options{given.columns.value_or(ColumnChoices{}), units.time_or_default(), units.time.has_value(),
-                             given.dt, kMostSamples};
+    CsvOptions options;
+    options.columns = given.columns.value_or(ColumnChoices{});
+    options.time_unit = units.time_or_default();
+    options.time_unit_given = units.time.has_value();
+    options.dt = given.dt;
+    options.unit_u = units.u.value_or("");
+    options.unit_y = units.y.value_or("");
+    options.most_samples = kMostSamples;
     auto read = read_csv_record(*given.csv, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
         for (const CsvFault& fault : *faults) {
@@ -220,6 +228,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.t = std::move(record.t);
     out.record.u = std::move(record.u);
     out.record.y = std::move(record.y);
+    out.record.line = std::move(record.lines);
     out.dropped = record.dropped;
     out.notes = std::move(record.notes);
     choose_part(given, out, reader);

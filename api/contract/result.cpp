@@ -1,6 +1,7 @@
 #include "api/contract/result.h"
 
 #include "api/contract/controller.h"
+#include "api/contract/data_quality.h"
 #include "api/contract/evaluation.h"
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
@@ -166,34 +167,6 @@ const Description<FitTrace>& fit_contract() {
             .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
             .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
             .field("y_model", &FitTrace::y_model, trace(), "Simulated.", {.unit = "y"});
-        return d;
-    }();
-    return description;
-}
-
-const Description<DataQuality>& quality_contract() {
-    static const auto description = [] {
-        using Q = DataQuality;
-        Description<Q> d("DataQuality", "What was found in the record and what was done about it.");
-        const auto count = [] { return only_answered(integer(0, 1 << 30)); };
-        const auto size = [] { return only_answered(number()); };
-        const auto truth = [] { return only_answered(boolean()); };
-        d.field("kind", &Q::kind,
-                only_answered(choice<RecordKind>({{"step", RecordKind::step},
-                                                  {"several_steps", RecordKind::several_steps},
-                                                  {"relay", RecordKind::relay},
-                                                  {"general", RecordKind::general}})),
-                "What the test was, as given or found.")
-            .field("samples", &Q::samples, count(), "Samples used.")
-            .field("samples_dropped", &Q::samples_dropped, count(),
-                   "Samples left out: blank cells, repeated or backward times.")
-            .field("sample_time", &Q::sample_time, size(), "Median spacing.", {.unit = "time"})
-            .field("irregular", &Q::irregular, truth(), "Whether the spacing varies.")
-            .field("noise_std", &Q::noise_std, size(), "High-frequency part of y, standard deviation.", {.unit = "y"})
-            .field("quantisation", &Q::quantisation, size(), "Step of y's grid; 0: none found.", {.unit = "y"})
-            .field("steps", &Q::steps, count(), "Changes of u.")
-            .field("settled", &Q::settled, truth(), "Whether y came to rest.")
-            .field("notes", &Q::notes, list_of(words()), "Sentences.");
         return d;
     }();
     return description;

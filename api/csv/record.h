@@ -21,13 +21,15 @@ struct CsvOptions {
     std::string time_unit = "s";  ///< of the answer
     bool time_unit_given =
         false;  ///< false: the unit in the time heading is believed and converted from only if it is not s
-    std::optional<double> dt;  ///< spacing for files without a time column, in time_unit
-    std::size_t most_samples = 200'000;
+    std::optional<double> dt;              ///< spacing for files without a time column, in time_unit
+    std::string unit_u = {}, unit_y = {};  ///< as the user names them; "" if not
+    std::size_t most_samples = 2'000'000;
 };
 
 struct CsvRecord {
-    std::vector<double> t, u, y;
-    int dropped = 0;                 ///< lines left out: a cell of t, u or y is blank, NaN, ...
+    std::vector<double> t, u, y;     ///< u and y are NaN where a cell is blank, "Bad", ...; never both
+    std::vector<int> lines;          ///< of each sample in the file, from 1
+    int dropped = 0;                 ///< lines left out: without a time, or with neither u nor y
     std::vector<std::string> notes;  ///< what was found by itself, one sentence each
 };
 
@@ -37,9 +39,11 @@ struct CsvFault {
     std::string message;
 };
 
-/// Columns that are not chosen are found where the headings are plain (t, time, ...; u, op, mv, ...; y, pv, ...), by
-/// name without case or unit ("PV [degC]"). Time stamps become seconds since the first and then `time_unit`. At most
-/// ten faults.
-std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view text, const CsvOptions& options);
+/// `bytes` in any usual encoding (encoding.h), with any usual separator and sign of decimals (table.h, cell.h), times
+/// as numbers or stamps (time_stamp.h), columns as chosen, or found (columns.h). Times become `time_unit`: stamps
+/// since the first one; numbers from the unit of their heading. Times that count milliseconds or less since 1970, and
+/// spreadsheets' days under a heading such as "Date", are known by their size. A clock set back by an hour, and one
+/// without a date that passes midnight, go on. At most ten faults, each with its line.
+std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view bytes, const CsvOptions& options);
 
 }  // namespace tunewright::api

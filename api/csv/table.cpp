@@ -2,58 +2,35 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <cmath>
-#include <optional>
+#include <map>
 
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
 namespace {
 
+constexpr int kLooked = 200;
+
 // Lines up to the end; \n, \r\n and \r end one.
 std::optional<std::string_view> next_line(std::string_view text, std::size_t& at) {
     if (at >= text.size()) return std::nullopt;
-    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    const std::size_t newline = std::min(text.find('\n', at), text.size());
+    const std::size_t end = std::min(
+        text.substr(at, newline - at).find('\r') == text.npos ? newline : at + text.substr(at, newline - at).find('\r'),
+        text.size());
     const std::string_view line = text.substr(at, end - at);
     at = end + 1;
     if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++at;
     return line;
 }
 
-std::size_t count_outside_quotes(std::string_view line, char separator) {
-    std::size_t count = 0;
-    bool quoted = false;
-    for (const char c : line) {
-        if (c == '"') quoted = !quoted;
-        if (c == separator && !quoted) ++count;
-    }
-    return count;
-}
-
-// A tab or semicolon in every one of the first lines is never there by chance; a comma may be a decimal sign.
-char find_separator(std::string_view text) {
-    constexpr int kLooked = 5;
-    for (const char separator : {'\t', ';'}) {
-        std::size_t at = 0;
-        int lines = 0, with = 0;
-        while (lines < kLooked) {
-            const auto line = next_line(text, at);
-            if (!line) break;
-            const std::string_view content = trimmed(*line);
-            if (content.empty() || content.front() == '#') continue;
-            ++lines;
-            if (count_outside_quotes(content, separator) > 0) ++with;
-        }
-        if (lines > 0 && with == lines) return separator;
-    }
-    return ',';
+bool is_comment(std::string_view content) {
+    return content.front() == '#' || content.substr(0, 2) == "//" || content.substr(0, 2) == "\"#";
 }
 
 std::string_view blanks_removed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\r')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\r')) text.remove_suffix(1);
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
     return text;
 }
 
@@ -70,8 +47,24 @@ std::string_view unquote(std::string_view cell, std::deque<std::string>& storage
     return trimmed(storage.back());
 }
 
+void split_at_blanks(std::string_view line, std::vector<std::string_view>& cells, std::deque<std::string>& storage) {
+    for (std::size_t at = 0; at < line.size();) {
+        if (line[at] == ' ' || line[at] == '\t') {
+            ++at;
+            continue;
+        }
+        std::size_t end = line[at] == '"' ? line.find('"', at + 1) : line.find_first_of(" \t", at);
+        if (end != line.npos && line[at] == '"') ++end;
+        end = std::min(end, line.size());
+        cells.push_back(unquote(line.substr(at, end - at), storage));
+        at = end;
+    }
+}
+
 void split(std::string_view line, char separator, std::vector<std::string_view>& cells,
            std::deque<std::string>& storage) {
+    cells.clear();
+    if (separator == ' ') return split_at_blanks(line, cells, storage);
     std::size_t start = 0;
     bool quoted = false;
     for (std::size_t i = 0; i <= line.size(); ++i) {
@@ -83,87 +76,208 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
     }
 }
 
-bool holds_data(std::string_view cell) {
-    double number = 0;
-    return read_cell_number(cell, number) || read_time_stamp(cell).has_value();
+/// A line above or among the first of the data, with its place in the text.
+struct Head {
+    int number = 0;
+    std::size_t at = 0;
+    std::string_view content;
+    bool comment = false;
+};
+
+std::vector<Head> first_lines(std::string_view text) {
+    std::vector<Head> lines;
+    std::size_t at = 0, start = 0;
+    for (int number = 1; static_cast<int>(lines.size()) < kLooked; ++number) {
+        start = at;
+        const auto line = next_line(text, at);
+        if (!line) break;
+        const std::string_view content = trimmed(*line);
+        if (content.empty()) continue;
+        lines.push_back({number, start, *line, is_comment(content)});
+    }
+    return lines;
 }
 
-// Headings: no cell is a number or a time, and at least one is a text that is not a mark for "missing".
-bool is_text_line(const std::vector<std::string_view>& cells) {
+// The separator that splits most lines into equally many cells, more than one; those that are never there by chance
+// come first.
+char find_separator(const std::vector<Head>& lines) {
+    char best = ',';
+    double best_share = 0;
+    std::deque<std::string> storage;
+    std::vector<std::string_view> cells;
+    for (const char separator : {'\t', ';', '|', ',', ' '}) {
+        std::map<std::size_t, int> counts;
+        int all = 0;
+        for (const Head& line : lines) {
+            if (line.comment) continue;
+            split(line.content, separator, cells, storage);
+            ++counts[cells.size()];
+            ++all;
+        }
+        counts.erase(1);
+        counts.erase(0);
+        int most = 0;
+        for (const auto& [count, times] : counts) most = std::max(most, times);
+        const double share = all > 0 ? static_cast<double>(most) / all : 0;
+        constexpr double kPlain = 0.8, kBetter = 0.05;
+        if (share >= kPlain) return separator;
+        if (share > best_share + kBetter) {
+            best = separator;
+            best_share = share;
+        }
+    }
+    return best;
+}
+
+std::size_t filled(const std::vector<std::string_view>& cells) {
+    std::size_t count = cells.size();
+    while (count > 0 && cells[count - 1].empty()) --count;
+    return count;
+}
+
+std::size_t usual_width(const std::vector<CsvLine>& lines) {
+    std::map<std::size_t, int> counts;
+    for (const CsvLine& line : lines) ++counts[line.cells.size()];
+    std::size_t width = 0;
+    int most = 0;
+    for (const auto& [count, times] : counts) {
+        if (times < most) continue;
+        width = count;
+        most = times;
+    }
+    return width;
+}
+
+bool holds_data(std::string_view cell) {
+    double number = 0;
+    return read_cell_number(cell, number, DecimalSign::either, unit_suffix(cell)) || read_time_stamp(cell).has_value();
+}
+
+bool is_data(const CsvLine& line, std::size_t width) {
+    std::size_t data = 0, missing = 0;
+    for (const std::string_view cell : line.cells) {
+        if (is_missing(cell))
+            ++missing;
+        else if (holds_data(cell))
+            ++data;
+    }
+    const std::size_t count = filled(line.cells);
+    return data > 0 && 2 * (data + missing) >= line.cells.size() && count <= width + 1 && 2 * count >= width;
+}
+
+bool is_text(const CsvLine& line) {
     bool text = false;
-    for (const std::string_view cell : cells) {
+    for (const std::string_view cell : line.cells) {
         if (holds_data(cell)) return false;
         text = text || !is_missing(cell);
     }
     return text;
 }
 
+// The lines of text right above the data that are as wide as it is.
+void find_headings(const std::vector<CsvLine>& above, CsvLayout& layout) {
+    std::size_t first = above.size();
+    while (first > 0) {
+        const CsvLine& line = above[first - 1];
+        const bool wide =
+            line.cells.size() == layout.width || filled(line.cells) == layout.width ||
+            (filled(line.cells) >= 2 && line.cells.size() + 1 >= layout.width && line.cells.size() <= layout.width + 1);
+        if (!wide || !is_text(line)) break;
+        --first;
+    }
+    layout.skipped = static_cast<int>(first);
+    if (first == above.size()) {
+        if (above.empty() || !is_text(above.back()) || filled(above.back().cells) < 2) return;
+        layout.narrow_heading_line = above.back().number;
+        layout.narrow_heading_cells = filled(above.back().cells);
+        return;
+    }
+    layout.heading_line = above[first].number;
+    for (const std::string_view cell : above[first].cells) layout.headings.emplace_back(cell);
+    layout.below.assign(above.begin() + static_cast<std::ptrdiff_t>(first) + 1, above.end());
+}
+
+// "# t,u,y" and "#,Time,PV": the heading line of those who write headings as comments, or number their rows.
+std::optional<CsvLine> commented_headings(const Head& line, CsvLayout& layout) {
+    const std::string_view whole = trimmed(line.content);
+    for (const std::string_view content :
+         {whole, trimmed(whole.substr(std::min(whole.find_first_not_of("#/"), whole.size())))}) {
+        CsvLine cells{line.number, {}};
+        split(content, layout.separator, cells.cells, layout.unquoted);
+        if (layout.width > 1 && cells.cells.size() == layout.width && is_text(cells)) return cells;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
-    return text;
-}
-
-std::string lower_case(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
-
-bool read_cell_number(std::string_view cell, double& value) {
-    if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-    if (cell.empty() || !(std::isdigit(static_cast<unsigned char>(cell.front())) || cell.front() == '-' ||
-                          cell.front() == '.' || cell.front() == ','))
-        return false;
-    char buffer[64];
-    if (const std::size_t comma = cell.find(','); comma != cell.npos) {
-        if (cell.size() > sizeof buffer || cell.find('.') != cell.npos || cell.find(',', comma + 1) != cell.npos)
-            return false;
-        std::copy(cell.begin(), cell.end(), buffer);
-        buffer[comma] = '.';
-        cell = {buffer, cell.size()};
+CsvLayout find_layout(std::string_view text) {
+    CsvLayout layout;
+    std::vector<Head> heads = first_lines(text);
+    constexpr std::string_view kToldPrefix = "sep=";
+    bool told = false;
+    if (!heads.empty() && lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) == 0) {
+        const std::string_view line = heads.front().content;
+        const std::size_t sign = line.find('=') + 1;
+        layout.separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
+        told = true;
+        heads.erase(heads.begin());
     }
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    return error == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
-}
+    // LabVIEW's files end their head with this line.
+    for (std::size_t i = heads.size(); i-- > 0;) {
+        if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
+        heads.erase(heads.begin(), heads.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        break;
+    }
+    if (!told) layout.separator = find_separator(heads);
 
-bool is_missing(std::string_view cell) {
-    if (cell.empty() || cell == "-" || cell == "--" || cell == "?") return true;
-    constexpr std::size_t kLongest = 8;
-    if (cell.size() > kLongest) return false;
-    static constexpr std::array<std::string_view, 10> kMarks = {"nan",  "na",  "n/a",   "null",    "none",
-                                                                "#n/a", "#na", "#num!", "#value!", "nil"};
-    const std::string word = lower_case(cell.front() == '-' ? cell.substr(1) : cell);
-    return std::find(kMarks.begin(), kMarks.end(), word) != kMarks.end();
-}
-
-CsvTable read_table(std::string_view text) {
-    if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
-    CsvTable table;
-    table.separator = find_separator(text);
-    std::size_t at = 0;
-    int number = 0;
-    bool first = true;
-    while (const auto line = next_line(text, at)) {
-        ++number;
-        const std::string_view content = trimmed(*line);
-        if (content.empty() || content.front() == '#') continue;
-        CsvTable::Line next{number, {}};
-        next.cells.reserve(table.headings.size());
-        split(*line, table.separator, next.cells, table.unquoted);
-        if (first && is_text_line(next.cells)) {
-            for (const std::string_view cell : next.cells) table.headings.emplace_back(cell);
-        } else if (table.lines.empty() && table.units.number == 0 && !table.headings.empty() &&
-                   is_text_line(next.cells)) {
-            table.units = std::move(next);
-        } else {
-            table.lines.push_back(std::move(next));
+    std::vector<CsvLine> lines;
+    for (const Head& head : heads) {
+        if (head.comment) continue;
+        lines.push_back({head.number, {}});
+        split(head.content, layout.separator, lines.back().cells, layout.unquoted);
+    }
+    layout.lines_of_text = static_cast<int>(lines.size());
+    layout.width = usual_width(lines);
+    const auto data =
+        std::find_if(lines.begin(), lines.end(), [&](const CsvLine& line) { return is_data(line, layout.width); });
+    find_headings({lines.begin(), data}, layout);
+    if (data != lines.end()) {
+        layout.data_line = data->number;
+        const auto head =
+            std::find_if(heads.begin(), heads.end(), [&](const Head& h) { return h.number == data->number; });
+        layout.data_at = head->at;
+        if (layout.headings.empty() && head != heads.begin() && (head - 1)->comment) {
+            if (auto found = commented_headings(*(head - 1), layout)) find_headings({*std::move(found)}, layout);
         }
-        first = false;
     }
-    return table;
+    if (!layout.headings.empty()) layout.width = layout.headings.size();
+
+    DecimalSignFinder finder;
+    for (auto line = data; line != lines.end(); ++line) {
+        for (const std::string_view cell : line->cells) finder.look_at(cell);
+    }
+    layout.sign = finder.found();
+    return layout;
+}
+
+CsvLines::CsvLines(std::string_view text, const CsvLayout& layout)
+    : text_(layout.data_line == 0 ? std::string_view() : text),
+      separator_(layout.separator),
+      at_(layout.data_at),
+      number_(layout.data_line - 1) {}
+
+bool CsvLines::next(CsvLine& line) {
+    unquoted_.clear();
+    while (const auto content = next_line(text_, at_)) {
+        ++number_;
+        std::size_t first = content->find_first_not_of(" \t");
+        if (first == content->npos || is_comment(content->substr(first))) continue;
+        line.number = number_;
+        split(*content, separator_, line.cells, unquoted_);
+        return true;
+    }
+    return false;
 }
 
 }  // namespace tunewright::api

@@ -1,44 +1,58 @@
-// CSV text as lines of cells: separator, quotes, headings. Knows nothing of records.
+// CSV text as lines of cells: separator, quotes, preamble, headings. Knows nothing of records.
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "api/csv/cell.h"
+
 namespace tunewright::api {
 
-struct CsvTable {
-    struct Line {
-        int number = 0;                       ///< in the file, from 1
-        std::vector<std::string_view> cells;  ///< trimmed, without quotes
-    };
-
-    char separator = ',';
-    std::vector<std::string> headings;  ///< empty if the first line holds data
-    Line units;                         ///< the line below the headings, where it holds no data; number 0: none
-    std::vector<Line> lines;
-    std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
-
-    CsvTable() = default;
-    CsvTable(const CsvTable&) = delete;  // cells look into `unquoted`
-    CsvTable& operator=(const CsvTable&) = delete;
-    CsvTable(CsvTable&&) = default;
-    CsvTable& operator=(CsvTable&&) = default;
+struct CsvLine {
+    int number = 0;                       ///< in the file, from 1
+    std::vector<std::string_view> cells;  ///< trimmed, without quotes
 };
 
-/// Separators , ; and tab, found by the first lines; blank lines and lines that start with # are skipped; a byte order
-/// mark is too. The cells look into `text`, which must outlive the table. Cells in quotes may hold separators, but no
-/// line breaks.
-CsvTable read_table(std::string_view text);
+/// What the first lines say about the file.
+struct CsvLayout {
+    char separator = ',';               ///< ' ' for runs of blanks
+    std::vector<std::string> headings;  ///< empty if the file has none
+    std::vector<CsvLine> below;         ///< lines of units or descriptions between the headings and the data
+    int heading_line = 0;               ///< 0: none
+    std::size_t data_at = 0;            ///< offset of the first line of data
+    int data_line = 0;                  ///< its number; 0: there is none
+    std::size_t width = 0;              ///< cells of a line
+    int lines_of_text = 0;              ///< looked at that are neither comment nor blank
+    int narrow_heading_line = 0;        ///< a line of text right above the data that is not as wide; 0: none
+    std::size_t narrow_heading_cells = 0;
+    int skipped = 0;  ///< lines before the headings that are neither comment nor blank
+    DecimalSign sign = DecimalSign::either;
+    std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
+};
 
-/// A number with decimal point or comma; false for any other text (blank, NaN and Infinity included).
-bool read_cell_number(std::string_view cell, double& value);
+/// Separators , ; tab | and blanks, found by the first 200 lines, or told by a first line such as sep=;. Blank lines,
+/// comments (# and //) and what a logger writes above the headings are skipped.
+/// The headings are the first line of text as wide as the data, in the lines right above it; a comment of that width
+/// is a heading line too. `text` must outlive what is returned.
+CsvLayout find_layout(std::string_view text);
 
-/// Blank, NaN, NA, null, - and what spreadsheets write for an error: a sample that is not there.
-bool is_missing(std::string_view cell);
+/// The lines of data, one after another, without keeping them.
+class CsvLines {
+public:
+    CsvLines(std::string_view text, const CsvLayout& layout);
 
-std::string_view trimmed(std::string_view text);
-std::string lower_case(std::string_view text);
+    /// False at the end. The cells are valid until the next call. Blank lines and comments are skipped.
+    bool next(CsvLine& line);
+
+private:
+    std::string_view text_;
+    char separator_;
+    std::size_t at_;
+    int number_;
+    std::deque<std::string> unquoted_;
+};
 
 }  // namespace tunewright::api

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "engine/identification/record_rows.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
@@ -27,69 +28,22 @@ std::optional<Error> check_columns(const Record& r) {
     return std::nullopt;
 }
 
-/// Rows in time order, still in the user's units.
-struct Rows {
-    std::vector<double> t, y;
-    std::vector<double> change_time, change_level;
-    double u_rest = 0;
-    bool started = false;
-    int backward = 0, first_backward = -1;
-};
-
-void add_change(Rows& rows, double t, double u) {
-    const double now = rows.change_level.empty() ? rows.u_rest : rows.change_level.back();
-    if (u == now) return;
-    if (!rows.change_time.empty() && rows.change_time.back() == t) {
-        rows.change_level.back() = u;
-        const std::size_t n = rows.change_level.size();
-        const double before = n > 1 ? rows.change_level[n - 2] : rows.u_rest;
-        if (u == before) rows.change_time.pop_back(), rows.change_level.pop_back();
-        return;
-    }
-    rows.change_time.push_back(t);
-    rows.change_level.push_back(u);
-}
-
-Rows collect_rows(const Record& r, CleanRecord& clean) {
-    Rows rows;
-    double latest = 0;
-    for (std::size_t i = 0; i < r.t.size(); ++i) {
-        if (!std::isfinite(r.t[i]) || !std::isfinite(r.u[i])) {
-            ++clean.dropped;
-            continue;
-        }
-        if (rows.started && r.t[i] < latest) {
-            if (rows.backward++ == 0) rows.first_backward = static_cast<int>(i);
-            ++clean.dropped;
-            continue;
-        }
-        if (!rows.started) rows.u_rest = r.u0.value_or(r.u[i]);
-        rows.started = true;
-        latest = r.t[i];
-        add_change(rows, r.t[i], r.u[i]);
-        if (std::isfinite(r.y[i])) {
-            rows.t.push_back(r.t[i]);
-            rows.y.push_back(r.y[i]);
-        } else {
-            ++clean.u_only;
-            ++clean.dropped;
-        }
-    }
-    return rows;
-}
-
-std::optional<Error> check_rows(const Record& r, const Rows& rows) {
+std::optional<Error> check_rows(const Record& r, const Rows& rows, const Cleaning& done) {
     const int n = static_cast<int>(rows.t.size());
-    if (rows.backward > 0.1 * static_cast<double>(r.t.size())) {
+    if (done.backward > 0.1 * static_cast<double>(r.t.size())) {
         return Error{ErrorKind::invalid_argument, "record/t",
-                     "Times run backward in " + std::to_string(rows.backward) + " of " + std::to_string(r.t.size()) +
-                         " rows (first at row " + std::to_string(rows.first_backward) +
+                     "Times run backward in " + std::to_string(done.backward) + " of " + std::to_string(r.t.size()) +
+                         " rows (first at " + row_text(done, done.first_backward) +
                          "); sort the record by time or give one test alone."};
     }
     if (n < kFewestSamples) {
-        return not_identifiable("record", "The record has " + std::to_string(n) + " usable samples; at least " +
-                                              std::to_string(kFewestSamples) +
-                                              " are needed, and 50 or more over the response are better.");
+        return not_identifiable(
+            "record", "The record has " + std::to_string(n) + " usable samples" +
+                          (r.t.size() > static_cast<std::size_t>(n)
+                               ? " in " + std::to_string(r.t.size()) + " rows (the others have no y, no u or no time)"
+                               : std::string()) +
+                          "; at least " + std::to_string(kFewestSamples) +
+                          " are needed, and 50 or more over the response are better.");
     }
     if (rows.t.back() <= rows.t.front())
         return not_identifiable("record/t", "All samples have the same time; record the test with its time stamps.");
@@ -171,11 +125,19 @@ void add_transients(const CleanRecord& r, int each, std::vector<int>& chosen) {
 
 }  // namespace
 
+std::string row_text(const Cleaning& cleaning, int row) {
+    return (cleaning.from_file ? "line " : "row ") + std::to_string(row);
+}
+
 Expected<CleanRecord> clean_record(const Record& record) {
     if (auto error = check_columns(record)) return *error;
     CleanRecord clean;
-    const Rows rows = collect_rows(record, clean);
-    if (auto error = check_rows(record, rows)) return *error;
+    Rows rows = collect_rows(record, clean.cleaning);
+    drop_false_readings(rows, clean.cleaning);
+    if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
+    const Cleaning& done = clean.cleaning;
+    clean.u_only = done.missing_y + static_cast<int>(done.spikes.size());
+    clean.dropped = clean.u_only + done.without_time + done.backward + done.early_stamps;
     scale_rows(rows, clean);
     const RecordScale& s = clean.scale;
     if (!std::isfinite(s.t_scale) || !std::isfinite(s.y_scale) || !std::isfinite(s.u_scale) || s.t_scale <= 0 ||

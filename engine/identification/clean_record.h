@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/expected.h"
@@ -16,6 +17,24 @@ struct RecordScale {
     double y_origin = 0, y_scale = 1;
 };
 
+/// What was done to the rows, by their numbers: lines of the file, or indices from 0 where there is none.
+struct Cleaning {
+    bool from_file = false;
+    int without_time = 0;                   ///< left out: no time, or no u yet
+    int backward = 0, first_backward = 0;   ///< left out: a time before the rows above
+    int early_stamps = 0, first_early = 0;  ///< left out: a time far ahead, from which the next rows run backward
+    bool reversed = false;                  ///< the rows ran from the newest to the oldest
+    int repeated = 0, first_repeated = 0;   ///< rows with the time of the row above
+    bool spread = false;                    ///< and they were spread over the time until the next: a coarse clock
+    int missing_u = 0;                      ///< u was held
+    int missing_y = 0;                      ///< u of the row was used
+    double hole_from = 0, hole_to = 0;      ///< the longest time without y because of that, record's unit
+    std::vector<int> spikes;                ///< left out: readings of y that are false plainly (false_readings.h)
+};
+
+/// "line 12" or "row 12".
+std::string row_text(const Cleaning& cleaning, int row);
+
 /// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time
 /// ascends strictly, from 0. Sample times ascend from 0, equal times may repeat (each row's y is data). |v| <= 1, y
 /// spans 1, the record lasts 1.
@@ -26,8 +45,9 @@ struct CleanRecord {
     bool u0_given = false;                    ///< then the level of rest is known, also for integrating plants
     RecordKind kind = RecordKind::automatic;  ///< as given
     RecordScale scale;
-    int dropped = 0;  ///< rows left out
-    int u_only = 0;   ///< rows whose y is no number: their u still counts
+    Cleaning cleaning;
+    int dropped = 0;  ///< rows of which no y is used
+    int u_only = 0;   ///< of them, rows whose u counts
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }
@@ -37,8 +57,10 @@ struct CleanRecord {
 
 inline constexpr int kFewestSamples = 8;
 
-/// Drops rows that are no numbers or run backward in time, merges rows of equal time (the last u counts, every y is
-/// data) and scales. Errors: invalid_argument for columns of unequal length, a non-finite u0 or y0, or times mostly out
+/// Puts rows in order: a record from newest to oldest is turned round, a row whose time is before the rows above or far
+/// ahead of those below is left out, rows of equal time are kept (the last u counts, every y is data) or, where a third
+/// of all are such, spread until the next time. A missing u is held, a missing or plainly false y left out. Then it
+/// scales. Errors: invalid_argument for columns of unequal length, a non-finite u0 or y0, or times mostly out
 /// of order; not_identifiable for fewer than 8 usable samples, a constant u, a constant y, or a record without
 /// duration.
 Expected<CleanRecord> clean_record(const Record& record);

@@ -138,6 +138,8 @@ IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const
         model.fit = trace_of(record, fits[i]);
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
+        for (Warning& warning : record_warnings(record, model.data_quality))
+            model.warnings.push_back(std::move(warning));
         if (fits[i].form.start != Start::at_rest) {
             const double level = level_of_rest(fits[i]) * record.scale.u_scale + record.scale.u_rest;
             model.data_quality.notes.push_back("The record does not start at rest: y rests at u = " +

@@ -43,17 +43,52 @@ struct FitTrace {
     std::vector<double> t, u, y, y_model;
 };
 
-/// What was found in the record and what was done about it. Named figures, sentences beside them.
+/// Stretches of a record without samples, or without y: how many, the longest, and the time at which it begins.
+struct MissingPart {
+    int count = 0;
+    double longest = 0, at = 0;
+};
+
+/// The samples before the first change of u.
+struct PreTest {
+    int samples = 0;
+    double duration = 0;
+    double drift = 0;     ///< slope of y, per time
+    bool at_rest = true;  ///< y moves by less than 3 % of its range, or no more than its noise explains
+};
+
+/// Flat tops of y: what a sensor or a valve at its end leaves.
+struct Saturation {
+    double level = 0;
+    double fraction = 0;  ///< of the samples
+};
+
+/// Readings that no process makes; left out.
+struct FalseReadings {
+    int count = 0;
+    std::vector<int> rows;  ///< the first 20, as the notes count rows
+};
+
+/// What was found in the record and what was done about it. Named figures, sentences beside them. In the record's
+/// units.
 struct DataQuality {
     RecordKind kind = RecordKind::automatic;  ///< as given, or found; never automatic in an answer
     int samples = 0;
     double sample_time = 0;  ///< median spacing
     bool irregular = false;
-    double noise_std = 0;     ///< of y, high-frequency part
-    double quantisation = 0;  ///< step of y's grid, 0 if none found
-    int steps = 0;            ///< changes of u
+    double noise_std = 0;       ///< of y, high-frequency part
+    double quantisation = 0;    ///< step of y's grid, 0 if none found
+    int steps = 0;              ///< moves of u
+    std::optional<int> cycles;  ///< of a relay test: complete periods of u
     bool settled = false;
-    int samples_dropped = 0;  ///< backward times, non-numbers
+    int samples_dropped = 0;  ///< rows of which no y is used
+    double u0 = 0, y0 = 0;    ///< operating point: given, or before the first change of u
+    std::optional<PreTest> pretest;
+    std::optional<MissingPart> gaps;     ///< spacings of more than five times the usual one
+    std::optional<MissingPart> missing;  ///< rows without y; `longest` is the longest time from one y to the next
+    int repeated_times = 0, backward_times = 0;
+    std::vector<Saturation> saturation;
+    std::optional<FalseReadings> outliers;
     std::vector<std::string> notes;
 };
 

@@ -18,6 +18,7 @@ struct Record {
     std::vector<double> y;  ///< measurement
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
+    std::vector<int> line;         ///< of each sample in the file that it comes from, for sentences; empty: no file
 };
 
 }  // namespace tunewright

@@ -208,11 +208,11 @@ INSTANTIATE_TEST_SUITE_P(
                    with_record(R"({"dt": 1, "u": [0, 1], "y": [0)" +
                                [] {
                                    std::string zeros;
-                                   for (int i = 0; i < 200'000; ++i) zeros += ",0";
+                                   for (int i = 0; i < 2'000'000; ++i) zeros += ",0";
                                    return zeros;
                                }() +
                                "]}"),
-                   422, "/record/y", "200001 numbers; it must have 2 to 200000"},
+                   422, "/record/y", "2000001 numbers; it must have 2 to 2000000"},
         BadRequest{"PartThatEndsBeforeItStarts",
                    with_record(R"({"dt": 1, "u": [0, 1, 1], "y": [0, 0, 1], "from": 2, "to": 1})"), 422, "/record/to",
                    "to is 1 and from 2; the part that is used must end after it starts"},

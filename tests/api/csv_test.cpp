@@ -120,10 +120,21 @@ TEST(Csv, TimeStampsNeedAUnitTheyCanBeConvertedTo) {
                 HasSubstr("\"shifts\"; it must be a unit"));
 }
 
-TEST(Csv, IncompleteLinesAreDroppedAndCounted) {
-    const CsvRecord record = read("t,u,y\n0,1,2\n1,,2\n2,1,NaN\n3,1\n\n# a remark\n4,1,#N/A\n5,1,7\n");
+TEST(Csv, LinesWithoutATimeOrAnyValueAreDroppedAndCounted) {
+    const CsvRecord record = read("t,u,y\n0,1,2\n,1,2\n2,,NaN\n3\n\n# a remark\nnull,1,#N/A\n5,1,7\n");
     EXPECT_THAT(record.t, ElementsAre(0, 5));
+    EXPECT_THAT(record.lines, ElementsAre(2, 9));
     EXPECT_EQ(record.dropped, 4);
+}
+
+TEST(Csv, AnEmptyCellKeepsTheOther) {
+    const CsvRecord record = read("t,u,y\n0,1,2\n1,,3\n2,4,Bad\n3,4,I/O Timeout\n4,5,6\n");
+    EXPECT_THAT(record.t, ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_TRUE(std::isnan(record.u[1]));
+    EXPECT_TRUE(std::isnan(record.y[2]) && std::isnan(record.y[3]));
+    EXPECT_EQ(record.u[2], 4);
+    EXPECT_EQ(record.dropped, 0);
+    EXPECT_THAT(record.notes, testing::Contains(HasSubstr("\"Bad\" and the like are read as no value")));
 }
 
 TEST(Csv, ColumnsMayBeNumbersWhereThereAreNoHeadings) {
@@ -150,13 +161,13 @@ TEST(Csv, NamesAreFoundWithoutCaseButNotGuessedAmongSeveral) {
 }
 
 TEST(Csv, FaultsNameLineColumnAndText) {
-    EXPECT_THAT(fault("t,u,y\n0,1,2\n\n1,Bad Input,2\n").message,
-                HasSubstr("Line 4, column \"u\": \"Bad Input\" is not a number."));
+    EXPECT_THAT(fault("t,u,y\n0,1,2\n\n1,sticks,2\n").message,
+                HasSubstr("Line 4, column \"u\": \"sticks\" is not a number."));
     EXPECT_THAT(fault("t,u,y\n0,1,2,5\n").message, HasSubstr("Line 2 has 4 cells and the first line 3"));
     EXPECT_THAT(fault("t,u,y\n0,1,inf\n").message, HasSubstr("\"inf\" is not a number"));
     EXPECT_THAT(fault("t,u,y\n0,1,1e999\n").message, HasSubstr("is not a number"));
     EXPECT_THAT(fault("").message, HasSubstr("csv is empty"));
-    EXPECT_THAT(fault("t,u,y\n0,,1\n").message, HasSubstr("no complete sample"));
+    EXPECT_THAT(fault("t,u,y\n,1,1\n").message, HasSubstr("no complete sample"));
 }
 
 TEST(Csv, OneColumnCannotBeTwoThings) {

@@ -162,8 +162,13 @@ TEST(Identify, BackwardTimesAndMissingNumbersAreDroppedAndCounted) {
     record.y[10] = std::numeric_limits<double>::quiet_NaN();  // the row of the step: its u must count
     record.u[90] = std::numeric_limits<double>::quiet_NaN();
     const IdentifiedModel model = identified(record, ModelChoice::fopdt);
-    EXPECT_EQ(model.data_quality.samples_dropped, 3);
-    EXPECT_EQ(model.data_quality.samples, 197);
+    // The row whose u is missing keeps its y.
+    EXPECT_EQ(model.data_quality.samples_dropped, 2);
+    EXPECT_EQ(model.data_quality.samples, 198);
+    EXPECT_EQ(model.data_quality.backward_times, 1);
+    ASSERT_TRUE(model.data_quality.missing);
+    EXPECT_EQ(model.data_quality.missing->count, 1);
+    EXPECT_DOUBLE_EQ(model.data_quality.missing->longest, 1);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, 1.3, 1e-5);
 }
 
@@ -345,12 +350,25 @@ TEST(Identify, ColumnsOfUnequalLengthAreAnInvalidArgument) {
     EXPECT_THAT(error.message, HasSubstr("100, 100 and 99 values"));
 }
 
-TEST(Identify, RecordSortedBackwardIsAnInvalidArgument) {
-    Record record = simulate(even_times(100, 1), 0, 0, {{10, 1}}, first_order(1, 12, 3));
-    std::reverse(record.t.begin(), record.t.end());
+TEST(Identify, RecordFromNewestToOldestIsTurnedRoundAndSaid) {
+    const Record record = simulate(even_times(200, 0.5), 0, 0, {{5, 1}}, first_order(2, 8, 1.3));
+    Record backward = record;
+    for (auto* column : {&backward.t, &backward.u, &backward.y}) std::reverse(column->begin(), column->end());
+    const IdentifiedModel model = identified(backward, ModelChoice::fopdt);
+    EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 1e-6);
+    EXPECT_NEAR(plant_as<Fopdt>(model).L, 1.3, 1e-5);
+    EXPECT_TRUE(warns(model, "reversed-time"));
+}
+
+TEST(Identify, ARecordPastedTwiceIsAnInvalidArgument) {
+    Record record = simulate(even_times(200, 0.5), 0, 0, {{5, 1}}, first_order(2, 8, 1.3));
+    for (auto* column : {&record.t, &record.u, &record.y}) {
+        const std::vector<double> once = *column;
+        column->insert(column->end(), once.begin(), once.end());
+    }
     const Error error = refusal(record);
     EXPECT_EQ(error.kind, ErrorKind::invalid_argument);
-    EXPECT_THAT(error.message, HasSubstr("sort the record by time"));
+    EXPECT_THAT(error.message, HasSubstr("Times run backward in 199 of 400 rows (first at row 200)"));
 }
 
 TEST(Identify, RelayFormulasAloneAreUnsupported) {

@@ -1,0 +1,164 @@
+#include "api/csv/cell.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kLongestNumber = 64;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string_view without_sign(std::string_view cell) {
+    if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
+    return cell;
+}
+
+// "1,234", "12.345.678": one to three digits, then groups of three; not "0,123".
+bool is_grouped(std::string_view cell, char group) {
+    cell = without_sign(cell);
+    const std::size_t first = cell.find(group);
+    if (first == cell.npos || first == 0 || first > 3 || cell.front() == '0') return false;
+    if (!std::all_of(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(first), is_digit)) return false;
+    for (std::size_t at = first; at < cell.size(); at += 4) {
+        if (cell[at] != group || at + 4 > cell.size()) return false;
+        if (!is_digit(cell[at + 1]) || !is_digit(cell[at + 2]) || !is_digit(cell[at + 3])) return false;
+    }
+    return true;
+}
+
+bool parse(std::string_view text, double& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+}
+
+// Thousands apart by a blank, a no-break space (also the narrow one) or an apostrophe.
+std::string without_blanks_between_digits(std::string_view cell) {
+    std::string out;
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+        std::size_t length = 0;
+        if (cell[i] == ' ' || cell[i] == '\'') length = 1;
+        if (cell.substr(i, 2) == "\xC2\xA0") length = 2;
+        if (cell.substr(i, 3) == "\xE2\x80\xAF" || cell.substr(i, 3) == "\xE2\x80\x99") length = 3;
+        const bool between = length > 0 && !out.empty() && is_digit(out.back()) && i + length < cell.size() &&
+                             is_digit(cell[i + length]);
+        if (!between) {
+            out += cell[i];
+            continue;
+        }
+        std::size_t digits = 0;
+        while (i + length + digits < cell.size() && is_digit(cell[i + length + digits])) ++digits;
+        if (digits != 3) return std::string(cell);
+        i += length - 1;
+    }
+    return out;
+}
+
+// `text` has a comma or several points: the decimal sign becomes a point and the other sign goes.
+bool parse_signs(std::string text, DecimalSign sign, double& value) {
+    const auto points = std::count(text.begin(), text.end(), '.'), commas = std::count(text.begin(), text.end(), ',');
+    char decimal = commas > 0 ? ',' : '.';
+    if (points > 0 && commas > 0) {
+        decimal = text.rfind(',') > text.rfind('.') ? ',' : '.';
+    } else if (points + commas > 1 || (sign == DecimalSign::point && commas == 1) ||
+               (sign == DecimalSign::comma && points == 1)) {
+        const char group = commas > 0 ? ',' : '.';
+        if (is_grouped(text, group)) decimal = group == ',' ? '.' : ',';
+    }
+    const char group = decimal == ',' ? '.' : ',';
+    if (std::count(text.begin(), text.end(), decimal) > 1) return false;
+    const std::size_t end = std::min(text.find(decimal), text.find_first_of("eE"));
+    if (text.find(group) != text.npos && !is_grouped(text.substr(0, end), group)) return false;
+    std::erase(text, group);
+    std::replace(text.begin(), text.end(), ',', '.');
+    return parse(text, value);
+}
+
+}  // namespace
+
+void DecimalSignFinder::look_at(std::string_view cell) {
+    double value = 0;
+    if (cell.find_first_of(".,") == cell.npos || !read_cell_number(cell, value, DecimalSign::either, unit_suffix(cell)))
+        return;
+    const bool points = cell.find('.') != cell.npos, commas = cell.find(',') != cell.npos;
+    if (points && commas) {
+        (cell.rfind(',') > cell.rfind('.') ? comma_ : point_) = true;
+    } else if (points) {
+        const bool grouped = is_grouped(cell, '.');
+        if (!grouped) point_ = true;
+        if (grouped && std::count(cell.begin(), cell.end(), '.') > 1) comma_ = true;
+    } else {
+        const bool grouped = is_grouped(cell, ',');
+        if (!grouped) comma_ = true;
+        if (grouped && std::count(cell.begin(), cell.end(), ',') > 1) point_ = true;
+    }
+}
+
+DecimalSign DecimalSignFinder::found() const {
+    if (point_ == comma_) return DecimalSign::either;
+    return point_ ? DecimalSign::point : DecimalSign::comma;
+}
+
+bool read_cell_number(std::string_view cell, double& value, DecimalSign sign, std::string_view suffix) {
+    if (!suffix.empty() && cell.size() > suffix.size() && cell.ends_with(suffix)) {
+        cell.remove_suffix(suffix.size());
+        cell = trimmed(cell);
+    }
+    if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+    if (cell.empty() || !(is_digit(cell.front()) || cell.front() == '-' || cell.front() == '.' || cell.front() == ','))
+        return false;
+    const bool comma = cell.find(',') != cell.npos;
+    if (!comma && sign != DecimalSign::comma && parse(cell, value)) return true;
+    if (cell.size() > kLongestNumber) return false;
+    if (!comma && cell.find_first_of(". '\xC2\xE2") == cell.npos) return parse(cell, value);
+    return parse_signs(without_blanks_between_digits(cell), sign, value);
+}
+
+std::string_view unit_suffix(std::string_view cell) {
+    if (cell.empty() || !(is_digit(without_sign(cell).substr(0, 1).empty() ? ' ' : without_sign(cell).front())))
+        return {};
+    const std::size_t last = cell.find_last_of("0123456789.");
+    std::string_view suffix = trimmed(cell.substr(last + 1));
+    constexpr std::size_t kLongest = 12;
+    if (suffix.empty() || suffix.size() > kLongest || suffix.find_first_of(":+-/\\,") == 0) return {};
+    double value = 0;
+    return read_cell_number(cell, value, DecimalSign::either, suffix) ? suffix : std::string_view();
+}
+
+bool is_missing(std::string_view cell) {
+    if (cell.empty()) return true;
+    if (is_digit(cell.front()) || (cell.front() == '-' && cell.size() > 1 && is_digit(cell[1]))) return false;
+    constexpr std::size_t kLongest = 20;
+    if (cell.size() > kLongest) return false;
+    static constexpr std::array<std::string_view, 52> kMarks = {
+        "-",           "--",          "---",           "?",        "*",         ".",
+        "nan",         "1.#qnan",     "1.#ind",        "na",       "n/a",       "null",
+        "(null)",      "none",        "nil",           "\\n",      "#n/a",      "#na",
+        "#nv",         "#num!",       "#zahl!",        "#value!",  "#wert!",    "#ref!",
+        "#bezug!",     "#div/0!",     "#name?",        "#valeur!", "bad",       "bad input",
+        "bad value",   "bad data",    "bad quality",   "no data",  "no value",  "no sample",
+        "nodata",      "i/o timeout", "io timeout",    "timeout",  "comm fail", "comm error",
+        "pt created",  "shutdown",    "not connected", "stale",    "invalid",   "error",
+        "calc failed", "scan off",    "unknown",       "configure"};
+    std::string word = lower_case(cell);
+    if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word[1]))) word.erase(0, 1);
+    return std::find(kMarks.begin(), kMarks.end(), word) != kMarks.end();
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
+    return text;
+}
+
+std::string lower_case(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return out;
+}
+
+}  // namespace tunewright::api

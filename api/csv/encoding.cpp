@@ -1,0 +1,110 @@
+#include "api/csv/encoding.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace tunewright::api {
+namespace {
+
+void append(std::string& out, std::uint32_t code) {
+    const auto byte = [&](std::uint32_t value) { out += static_cast<char>(static_cast<unsigned char>(value)); };
+    if (code < 0x80) return byte(code);
+    if (code < 0x800) {
+        byte(0xC0 | (code >> 6));
+    } else if (code < 0x10000) {
+        byte(0xE0 | (code >> 12));
+        byte(0x80 | ((code >> 6) & 0x3F));
+    } else {
+        byte(0xF0 | (code >> 18));
+        byte(0x80 | ((code >> 12) & 0x3F));
+        byte(0x80 | ((code >> 6) & 0x3F));
+    }
+    byte(0x80 | (code & 0x3F));
+}
+
+// The length of the UTF-8 sequence at `at`; 0 if it is none.
+std::size_t sequence(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char lead = byte(at);
+    const std::size_t length = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3 : 4;
+    if (length == 1) return 1;
+    if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(at + i) & 0xC0) != 0x80) return 0;
+    }
+    if ((lead == 0xE0 && byte(at + 1) < 0xA0) || (lead == 0xED && byte(at + 1) > 0x9F) ||
+        (lead == 0xF0 && byte(at + 1) < 0x90) || (lead == 0xF4 && byte(at + 1) > 0x8F))
+        return 0;
+    return length;
+}
+
+bool is_utf8(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = sequence(text, at);
+        if (length == 0) return false;
+        at += length;
+    }
+    return true;
+}
+
+std::string from_utf16(std::string_view bytes, bool big_endian) {
+    std::string out;
+    out.reserve(bytes.size());
+    const auto unit = [&](std::size_t i) {
+        const auto first = static_cast<unsigned char>(bytes[i]), second = static_cast<unsigned char>(bytes[i + 1]);
+        return static_cast<std::uint32_t>(big_endian ? first << 8 | second : second << 8 | first);
+    };
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+        std::uint32_t code = unit(i);
+        const bool high = code >= 0xD800 && code < 0xDC00;
+        if (high && i + 3 < bytes.size() && (unit(i + 2) & 0xFC00) == 0xDC00) {
+            code = 0x10000 + ((code - 0xD800) << 10) + (unit(i + 2) - 0xDC00);
+            i += 2;
+        } else if (code >= 0xD800 && code < 0xE000) {
+            code = 0xFFFD;
+        }
+        append(out, code);
+    }
+    return out;
+}
+
+// What Windows-1252 has where Latin-1 has control characters.
+constexpr std::array<std::uint16_t, 32> kWindows = {0x20AC, 0xFFFD, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
+                                                    0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0xFFFD, 0x017D, 0xFFFD,
+                                                    0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
+                                                    0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0xFFFD, 0x017E, 0x0178};
+
+std::string from_windows(std::string_view bytes) {
+    std::string out;
+    out.reserve(bytes.size() + bytes.size() / 16);
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        append(out, byte >= 0x80 && byte < 0xA0 ? kWindows[byte - 0x80U] : byte);
+    }
+    return out;
+}
+
+// Texts of a record are mostly ASCII: as UTF-16, half their bytes are zero.
+bool zeros_at(std::string_view bytes, std::size_t parity) {
+    const std::size_t looked = std::min<std::size_t>(bytes.size() & ~std::size_t{1}, 200);
+    std::size_t zeros = 0;
+    for (std::size_t i = parity; i < looked; i += 2) zeros += bytes[i] == '\0' ? 1 : 0;
+    return looked >= 8 && zeros * 10 >= looked * 4;
+}
+
+}  // namespace
+
+std::string_view utf8_text(std::string_view bytes, std::string& storage) {
+    if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);
+    const bool little = bytes.substr(0, 2) == "\xFF\xFE", big = bytes.substr(0, 2) == "\xFE\xFF";
+    if (little || big || zeros_at(bytes, 0) || zeros_at(bytes, 1)) {
+        storage = from_utf16(bytes.substr(little || big ? 2 : 0), big || (!little && zeros_at(bytes, 0)));
+        return storage;
+    }
+    if (is_utf8(bytes)) return bytes;
+    storage = from_windows(bytes);
+    return storage;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,163 @@
+#include "api/csv/time_column.h"
+
+#include <cmath>
+
+namespace tunewright::api {
+namespace {
+
+constexpr double kDay = 86400, kHour = 3600;
+
+}  // namespace
+
+TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+                       const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults)
+    : stamps_(profile.stamps > profile.numbers), sign_(layout.sign), suffix_(profile.suffix) {
+    if (!stamps_) {
+        find_unit(text, layout, columns, profile, options);
+        return;
+    }
+    const auto answer = seconds_per(options.time_unit);
+    if (!answer) {
+        faults.push_back({"csv", "The times are time stamps, and units.time is " + quoted(options.time_unit) +
+                                     "; it must be a unit that they can be converted to: ms, s, min, h or d."});
+        return;
+    }
+    factor_ = 1 / *answer;
+    find_order(text, layout, columns);
+}
+
+// Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
+void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns) {
+    CsvLines lines(text, layout);
+    CsvLine line;
+    double way[2] = {}, last[2] = {};
+    bool matters = false, any = false;
+    constexpr int kLooked = 2000;
+    const std::size_t at = *columns.at[kTimeRole];
+    for (int n = 0; lines.next(line) && (matters || n < kLooked); ++n) {
+        if (at >= line.cells.size()) continue;
+        const auto day = read_time_stamp(line.cells[at], DateOrder::day_first);
+        const auto month = read_time_stamp(line.cells[at], DateOrder::month_first);
+        if (!day || !month) continue;
+        matters = matters || day->order_matters;
+        const double now[2] = {day->seconds, month->seconds};
+        for (int k = 0; k < 2; ++k) {
+            if (any) way[k] += std::abs(now[k] - last[k]);
+            last[k] = now[k];
+        }
+        any = true;
+    }
+    order_ = way[1] < way[0] ? DateOrder::month_first : DateOrder::day_first;
+    if (matters && way[0] != way[1]) {
+        notes_.push_back(std::string("Dates are read with the ") + (order_ == DateOrder::day_first ? "day" : "month") +
+                         " first: so the times run on, the other way they would jump.");
+    }
+}
+
+// Counters since 1970 in milliseconds or less are far beyond any other use of numbers; spreadsheets count days.
+std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const CsvLayout& layout,
+                                                    std::size_t column) const {
+    CsvLines lines(text, layout);
+    CsvLine line;
+    std::optional<double> first, last;
+    double steps = 0;
+    constexpr int kLooked = 200;
+    for (int n = 0; n < kLooked && lines.next(line); ++n) {
+        double value = 0;
+        if (column >= line.cells.size() || !read_cell_number(line.cells[column], value, sign_, suffix_)) continue;
+        if (!first) first = value;
+        if (last) steps += 1;
+        last = value;
+    }
+    if (!first || steps < 1) return std::nullopt;
+    constexpr double kFrom = 3e8, kTo = 5e9;  // seconds since 1970: 1979 to 2128
+    for (const auto& [unit, scale] : {std::pair{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}) {
+        if (*first > kFrom * scale && *first < kTo * scale) return unit;
+    }
+    const std::string name = column < layout.headings.size() ? split_heading(layout.headings[column]).name : "";
+    const bool dated = name.find("date") != name.npos || name.find("stamp") != name.npos ||
+                       name.find("datum") != name.npos || name.find("zeitstempel") != name.npos;
+    const double mean_step = std::abs(*last - *first) / steps;
+    if (dated && *first > 20000 && *first < 80000 && mean_step < 0.05 && mean_step > 0) return "d";
+    return std::nullopt;
+}
+
+void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+                           const ColumnProfile& profile, const CsvOptions& options) {
+    const std::size_t column = *columns.at[kTimeRole];
+    std::string unit;
+    if (column < layout.headings.size()) unit = split_heading(layout.headings[column]).unit;
+    for (const CsvLine& below : layout.below) {
+        if (!seconds_per(unit) && column < below.cells.size()) unit = std::string(below.cells[column]);
+        if (!seconds_per(unit) && unit.size() > 2 && (unit.front() == '[' || unit.front() == '('))
+            unit = unit.substr(1, unit.size() - 2);
+    }
+    if (!seconds_per(unit) && column < layout.headings.size() &&
+        match(split_heading(layout.headings[column]), kTimeRole)) {
+        const std::string name = split_heading(layout.headings[column]).name;
+        if (name == "seconds" || name == "sec" || name == "ms" || name == "minutes") unit = name;
+    }
+    if (!seconds_per(unit)) unit = profile.suffix;
+    bool by_size = false;
+    if (!seconds_per(unit)) {
+        if (const auto found = unit_by_size(text, layout, column)) {
+            unit = *found;
+            by_size = from_zero_ = true;
+        }
+    }
+    const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
+    if (!given || !answer) return;
+    if (by_size)
+        notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
+                         ", by their size; they are taken from the first one on.");
+    if (*given == *answer) return;
+    factor_ = *given / *answer;
+    notes_.push_back("Times are converted from " + unit + " to " + options.time_unit +
+                     (options.time_unit_given ? "." : "; set units.time to keep them."));
+}
+
+std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {
+    auto now = read_time_stamp(cell, order);
+    if (!now || clock.empty()) return now;
+    const auto of_day = read_time_stamp(clock, order);
+    if (!of_day || of_day->has_date) return std::nullopt;
+    now->seconds += of_day->seconds;
+    now->has_clock = true;
+    now->has_zone = of_day->has_zone;
+    return now;
+}
+
+double TimeColumn::continued(const TimeStamp& stamp, int line) {
+    double seconds = stamp.seconds + set_back_;
+    if (last_ && seconds < *last_) {
+        const double back = *last_ - seconds;
+        constexpr double kMost = 120;
+        if (!stamp.has_date && back > kDay / 2) {
+            set_back_ += kDay;
+            seconds += kDay;
+        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMost) {
+            set_back_ += kHour;
+            seconds += kHour;
+            notes_.push_back("The clock goes back by an hour at line " + std::to_string(line) +
+                             ", as at the end of summer time; the times go on.");
+        }
+    }
+    last_ = seconds;
+    return seconds;
+}
+
+bool TimeColumn::read(std::string_view cell, std::string_view clock, int line, double& time) {
+    double value = 0;
+    if (stamps_) {
+        const auto now = stamp(cell, clock, order_);
+        if (!now) return false;
+        value = continued(*now, line);
+    } else if (!read_cell_number(cell, value, sign_, suffix_)) {
+        return false;
+    }
+    if (!first_) first_ = value;
+    time = (stamps_ || from_zero_ ? value - *first_ : value) * factor_;
+    return true;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,47 @@
+// The time column of a file as numbers in the unit of the answer.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/csv/columns.h"
+#include "api/csv/time_stamp.h"
+
+namespace tunewright::api {
+
+/// Reads one cell after another, in the order of the file.
+class TimeColumn {
+public:
+    /// Looks through the file for what a single cell leaves open: stamps or numbers, unit, day or month first. Adds
+    /// its faults; notes tell what was assumed.
+    TimeColumn(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+               const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults);
+
+    /// False where the cell is no time. `clock` is the cell of the second column, where there is one.
+    bool read(std::string_view cell, std::string_view clock, int line, double& time);
+
+    bool stamps() const { return stamps_; }
+    std::vector<std::string> take_notes() { return std::move(notes_); }
+
+private:
+    void find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns);
+    void find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+                   const ColumnProfile& profile, const CsvOptions& options);
+    std::optional<std::string> unit_by_size(std::string_view text, const CsvLayout& layout, std::size_t column) const;
+    std::optional<TimeStamp> stamp(std::string_view cell, std::string_view clock, DateOrder order) const;
+    double continued(const TimeStamp& stamp, int line);
+
+    bool stamps_ = false;
+    DateOrder order_ = DateOrder::day_first;
+    DecimalSign sign_;
+    std::string suffix_;
+    double factor_ = 1;
+    bool from_zero_ = false;
+    double set_back_ = 0;
+    std::optional<double> first_, last_;
+    std::vector<std::string> notes_;
+};
+
+}  // namespace tunewright::api

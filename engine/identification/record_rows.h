@@ -1,0 +1,22 @@
+// The rows of a record in time order, still in the user's units.
+#pragma once
+
+#include "engine/identification/clean_record.h"
+
+namespace tunewright {
+
+struct Rows {
+    std::vector<double> t, y;
+    std::vector<int> number;  ///< of each sample: its line, or its index
+    std::vector<double> change_time, change_level;
+    double u_rest = 0;
+    bool started = false;
+};
+
+/// As clean_record says, without the spikes. Columns are of equal length.
+Rows collect_rows(const Record& record, Cleaning& cleaning);
+
+/// Takes the readings out that are plainly false.
+void drop_false_readings(Rows& rows, Cleaning& cleaning);
+
+}  // namespace tunewright

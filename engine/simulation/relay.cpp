@@ -61,8 +61,7 @@ std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRela
     const double fitting =
         settings.cycles * steady.Pu() / (static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles);
     return refuse("record_interval", "record_interval is " + text(spacing) + "; " + std::to_string(settings.cycles) +
-                                         " cycles of about " + text(steady.Pu()) + " would make " +
-                                         text(rows) +
+                                         " cycles of about " + text(steady.Pu()) + " would make " + text(rows) +
                                          " rows, and at most 100000 are recorded. Ask for fewer cycles, or rows at "
                                          "least " +
                                          text(1.01 * fitting) + " apart.");

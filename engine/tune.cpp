@@ -194,7 +194,7 @@ TuningEntry Run::entry(const Planned& planned, const TuningProblem& problem, dou
     }
     entry.reduced_model = tuned->reduced_model;
     entry.surface = tuned->surface;
-    if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc);
+    if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem.plant, problem.linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, tuned->controller, tuned->warnings);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;

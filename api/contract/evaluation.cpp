@@ -83,22 +83,6 @@ const Description<SetpointPerformance>& setpoint_contract() {
     return description;
 }
 
-const Description<LoadPerformance>& load_contract() {
-    static const auto description = [] {
-        using P = LoadPerformance;
-        Description<P> d("LoadPerformance", "Of the response to the load step at the plant's input.");
-        d.field("IAE", &P::IAE, figure(), "Integral of |y|.", {.unit = "y time"})
-            .field("ISE", &P::ISE, figure(), "Integral of y^2.", {.unit = "y^2 time"})
-            .field("ITAE", &P::ITAE, figure(), "Integral of t |y|.", {.unit = "y time^2"})
-            .field("peak", &P::peak, figure(), "Largest deviation, signed.", {.unit = "y"})
-            .field("recovery_time", &P::recovery_time, figure(), "Last time outside 2 % of the peak.", {.unit = "time"})
-            .field("TV", &P::TV, figure(), "Total variation of u.", {.unit = "u"})
-            .why_null(&P::why_null, kNoFigure);
-        return d;
-    }();
-    return description;
-}
-
 const Description<NoisePerformance>& noise_contract() {
     static const auto description = [] {
         using P = NoisePerformance;
@@ -169,6 +153,22 @@ const Description<Robustness>& robustness_contract() {
             .field("tolerates", {}, write_tolerates, tolerates_schema,
                    "Model errors that leave the loop stable, one at a time.")
             .why_null(&R::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<LoadPerformance>& load_contract() {
+    static const auto description = [] {
+        using P = LoadPerformance;
+        Description<P> d("LoadPerformance", "Of the response to the load step at the plant's input.");
+        d.field("IAE", &P::IAE, figure(), "Integral of |y|.", {.unit = "y time"})
+            .field("ISE", &P::ISE, figure(), "Integral of y^2.", {.unit = "y^2 time"})
+            .field("ITAE", &P::ITAE, figure(), "Integral of t |y|.", {.unit = "y time^2"})
+            .field("peak", &P::peak, figure(), "Largest deviation, signed.", {.unit = "y"})
+            .field("recovery_time", &P::recovery_time, figure(), "Last time outside 2 % of the peak.", {.unit = "time"})
+            .field("TV", &P::TV, figure(), "Total variation of u.", {.unit = "u"})
+            .why_null(&P::why_null, kNoFigure);
         return d;
     }();
     return description;

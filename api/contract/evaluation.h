@@ -8,6 +8,7 @@ namespace tunewright::api {
 
 const Description<Robustness>& robustness_contract();
 const Description<Performance>& performance_contract();
+const Description<LoadPerformance>& load_contract();
 const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
 const Description<Verification>& verification_contract();

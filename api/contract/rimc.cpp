@@ -1,5 +1,7 @@
 #include "api/contract/rimc.h"
 
+#include "api/contract/evaluation.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -16,6 +18,34 @@ const Description<DisturbancePeakCurve>& curve_contract() {
         return d;
     }();
     return description;
+}
+
+const Description<FullController>& full_controller_contract() {
+    static const auto description = [] {
+        using F = FullController;
+        Description<F> d(
+            "FullController",
+            "The controller of Eq. 23, with the model's dead time inside, on the plant as given: what the PID "
+            "approximates.");
+        d.field("robustness", &F::robustness, answer(robustness_contract()), "Peaks and margins.")
+            .field("load", &F::load, answer(load_contract()), "Of the response to the load step.")
+            .field("responses", &F::responses, maybe(answer(responses_contract())),
+                   "Traces over time; left out with points 0 and for unstable loops.");
+        return d;
+    }();
+    return description;
+}
+
+// An object or null, which why_null explains.
+Codec<std::optional<FullController>> full_controller() {
+    const auto inner = answer(full_controller_contract());
+    Codec<std::optional<FullController>> codec;
+    codec.write = [write = inner.write](const auto& value, Writer& out) { value ? write(*value, out) : out.null(); };
+    codec.schema = [schema = inner.schema](SchemaBook& book) {
+        return Json{{"oneOf", {schema(book), Json{{"type", "null"}}}}};
+    };
+    codec.undefined = [](const auto& value) { return !value.has_value(); };
+    return codec;
 }
 
 }  // namespace
@@ -35,6 +65,7 @@ const Description<RimcEntry>& rimc_contract() {
                    {.unit = "time"})
             .field("stability_limit", &R::stability_limit, figure(), "lambda below which the loop is unstable.",
                    {.unit = "time"})
+            .field("full_controller", &R::full_controller, full_controller(), "Beside the PID.")
             .field("disturbance_peak_curve", &R::disturbance_peak_curve, maybe(answer(curve_contract())),
                    "With the option curve.")
             .why_null(&R::why_null, "Not defined for this design.");

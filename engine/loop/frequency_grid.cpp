@@ -85,18 +85,23 @@ bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
 LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
     const Range range = range_of(loop);
     const double L = loop.plant().dead_time();
-    LoopGrid grid;
-    grid.resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, range.low) : range.high;
-
     const std::vector<double> base = base_frequencies(loop, range, density);
+    const double resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, range.low) : base.back();
+    return refined_grid([&](double omega) { return loop.at(omega); }, base, resolved_to, step);
+}
+
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
+                      double step) {
+    LoopGrid grid;
+    grid.resolved_to = resolved_to;
     grid.omega.push_back(base[0]);
-    grid.point.push_back(loop.at(base[0]));
+    grid.point.push_back(at(base[0]));
     // Between two base points: a stack of pending right ends, halved (in log omega) until neighbours are close.
     std::vector<double> pending;
     std::vector<LoopPoint> pending_point;
     for (std::size_t i = 1; i < base.size(); ++i) {
         pending.assign(1, base[i]);
-        pending_point.assign(1, loop.at(base[i]));
+        pending_point.assign(1, at(base[i]));
         while (!pending.empty()) {
             const double left = grid.omega.back(), right = pending.back();
             const bool may_refine = right <= grid.resolved_to && right > left * (1 + kClosestNeighbours) &&
@@ -104,7 +109,7 @@ LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
             if (may_refine && too_far(grid.point.back(), pending_point.back(), step)) {
                 const double middle = std::sqrt(left * right);
                 pending.push_back(middle);
-                pending_point.push_back(loop.at(middle));
+                pending_point.push_back(at(middle));
                 continue;
             }
             grid.omega.push_back(right);

@@ -73,28 +73,33 @@ void note_limits(Margins& margins, const Loop& loop) {
 
 }  // namespace
 
-Margins find_margins(const Loop& loop, const LoopGrid& grid) {
+Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid) {
     Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};
     const auto imaginary = [&](double omega) {
-        const auto L = loop.open_loop({0, omega});
+        const auto L = open_loop(omega);
         return L.imag() / std::abs(L);
     };
-    const auto log_gain = [&](double omega) { return std::log(std::abs(loop.open_loop({0, omega}))); };
+    const auto log_gain = [&](double omega) { return std::log(std::abs(open_loop(omega))); };
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        const bool resolved = loop.plant().dead_time() == 0 || right <= grid.resolved_to;
+        const bool resolved = right <= grid.resolved_to;
         if (!std::isfinite(std::abs(a)) || !std::isfinite(std::abs(b))) continue;
         if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
             const double omega = crossing(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b));
-            note_real_crossing(margins, loop.open_loop({0, omega}).real(), omega);
+            note_real_crossing(margins, open_loop(omega).real(), omega);
         }
         if (!resolved && 1 / std::abs(b) > 1) note_real_crossing(margins, -std::abs(b), right);
         if ((std::abs(a) < 1) != (std::abs(b) < 1)) {
             const double omega = crossing(log_gain, left, right, std::log(std::abs(a)), std::log(std::abs(b)));
-            note_unit_crossing(margins, loop.open_loop({0, omega}), omega);
+            note_unit_crossing(margins, open_loop(omega), omega);
         }
     }
+    return margins;
+}
+
+Margins find_margins(const Loop& loop, const LoopGrid& grid) {
+    Margins margins = find_interior_margins([&](double omega) { return loop.open_loop({0, omega}); }, grid);
     note_limits(margins, loop);
     return margins;
 }

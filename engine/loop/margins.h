@@ -1,6 +1,8 @@
 // Gain, phase and delay margins over all crossings.
 #pragma once
 
+#include <functional>
+
 #include "engine/loop/frequency_grid.h"
 
 namespace tunewright {
@@ -18,5 +20,8 @@ struct Margins {
 };
 
 Margins find_margins(const Loop& loop, const LoopGrid& grid);
+
+/// Of any loop, from its gain as a function of omega: crossings within the grid, without the limits at its ends.
+Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid);
 
 }  // namespace tunewright

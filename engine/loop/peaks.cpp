@@ -8,6 +8,7 @@
 namespace tunewright {
 namespace {
 
+using LoopFunction = std::function<LoopPoint(double)>;
 using Magnitude = double (*)(const LoopPoint&);
 
 double magnitude_S(const LoopPoint& p) { return std::abs(p.S); }
@@ -16,14 +17,14 @@ double magnitude_CS(const LoopPoint& p) { return std::abs(p.CS); }
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
 
-Peak interior_peak(const Loop& loop, const LoopGrid& grid, Magnitude magnitude) {
+Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magnitude) {
     const std::size_t n = grid.omega.size();
     std::vector<double> value(n);
     for (std::size_t i = 0; i < n; ++i) value[i] = magnitude(grid.point[i]);
     const auto largest = std::max_element(value.begin(), value.end());
     Peak best{*largest, grid.omega[static_cast<std::size_t>(largest - value.begin())]};
     const double threshold = kWorthRefining * *largest;
-    const auto f = [&](double omega) { return magnitude(loop.at(omega)); };
+    const auto f = [&](double omega) { return magnitude(at(omega)); };
     for (std::size_t i = 1; i + 1 < n; ++i) {
         if (value[i] < threshold || value[i] < value[i - 1] || value[i] < value[i + 1]) continue;
         const Peak peak = maximise(f, grid.omega[i - 1], grid.omega[i], grid.omega[i + 1]);
@@ -142,11 +143,13 @@ LoopGrid make_peak_grid(const Loop& loop) {
     return grid;
 }
 
+Peaks find_interior_peaks(const LoopFunction& at, const LoopGrid& grid) {
+    return {interior_peak(at, grid, magnitude_S), interior_peak(at, grid, magnitude_T),
+            interior_peak(at, grid, magnitude_CS)};
+}
+
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {
-    Peaks peaks;
-    peaks.S = interior_peak(loop, grid, magnitude_S);
-    peaks.T = interior_peak(loop, grid, magnitude_T);
-    peaks.CS = interior_peak(loop, grid, magnitude_CS);
+    Peaks peaks = find_interior_peaks([&](double omega) { return loop.at(omega); }, grid);
     raise_by_fast_turning(loop, grid, peaks);
     raise_by_limits(loop, peaks);
     return peaks;

@@ -247,6 +247,35 @@ TEST(Answers, AllAnswersWithOneEntryAMethodThatApplies) {
     EXPECT_GE(result["controllers"].size(), 5u);
 }
 
+TEST(Answers, ARevisedImcEntryCarriesItsFiguresItsCurveAndTheFullController) {
+    const Json result = run(example("revised-imc").dump());
+    expect_valid(result, "TuningResult");
+    const Json& entry = result["controllers"][0];
+    ASSERT_TRUE(entry.contains("rimc")) << entry.dump();
+    const Json& rimc = entry["rimc"];
+    EXPECT_NEAR(rimc["Ms"].get<double>(), 2, 2e-6);
+    for (const char* figure : {"lambda", "disturbance_peak", "dead_time_error", "stability_limit"})
+        EXPECT_GT(rimc[figure].get<double>(), 0) << figure;
+    EXPECT_TRUE(rimc["full_controller"]["robustness"]["stable"].get<bool>());
+    EXPECT_GT(rimc["full_controller"]["load"]["IAE"].get<double>(), 0);
+    EXPECT_EQ(rimc["full_controller"]["responses"]["load"]["t"].size(), 400u);
+    EXPECT_EQ(rimc["disturbance_peak_curve"]["lambda_over_tau"].size(), rimc["disturbance_peak_curve"]["Ms"].size());
+    EXPECT_FALSE(result["controllers"][1].contains("rimc"));
+}
+
+TEST(Answers, ARevisedImcDesignThatIsUnstableOnItsModelSaysWhyItsFiguresAreNull) {
+    const Json result = run(
+        R"({"plant": {"type": "fopdt", "K": 0.98, "T": 21.8291, "L": 2.7993}, "tune": [{"method": "rimc", "lambda": 0.9}], "evaluate": {"points": 0}})");
+    expect_valid(result, "TuningResult");
+    const Json& rimc = result["controllers"][0]["rimc"];
+    for (const char* figure : {"Ms", "disturbance_peak", "dead_time_error"}) {
+        EXPECT_TRUE(rimc[figure].is_null()) << figure;
+        EXPECT_TRUE(rimc["why_null"].contains(figure)) << figure;
+    }
+    EXPECT_EQ(result["controllers"][0]["warnings"][0]["code"], "unstable-model-loop");
+    EXPECT_TRUE(rimc["full_controller"]["robustness"]["stable"].get<bool>());
+}
+
 TEST(Answers, ASurfaceIsWrittenAsAMatrix) {
     const Json result = run(request_with(
         R"("tune": [{"method": "robust", "search": "grid", "surface": true}], "evaluate": {"points": 0})"));

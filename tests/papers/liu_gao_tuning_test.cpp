@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/evaluate.h"
-#include "engine/tuning/method.h"
+#include "engine/tune.h"
 #include "tests/test_data.h"
 
 namespace tunewright {
@@ -109,6 +109,19 @@ TEST(LiuGao, Figure2ComesOutForThePid) {
             ASSERT_TRUE(peak.has_value()) << row;
             EXPECT_NEAR(*peak / plant.K, expected, tolerance) << row;
         }
+    }
+}
+
+TEST(LiuGao, Figure2ComesOutForTheFullController) {
+    for (const Json& row : reference()["fig2_dp_over_kp"]) {
+        TuningRequest request;
+        request.plant = Fopdt{.K = 1, .T = 1, .L = row["theta_tau"]};
+        request.tune = {{"rimc", {}}};
+        request.tune[0].options.set("lambda", row["lam_tau"].get<double>());
+        request.evaluate.points = 0;
+        const auto result = tune(request, {});
+        ASSERT_TRUE(result.has_value()) << row << result.error().message;
+        EXPECT_NEAR(*result->controllers[0].rimc->full_controller->load.peak, row["dp_exact_controller"], 1e-6) << row;
     }
 }
 

@@ -1,0 +1,41 @@
+// A plant with the full revised IMC controller over frequency. Written by plant, model and Q, never by C itself:
+//
+//   D = 1 + (P - G) Q,   S = (1 - G Q)/D,   T = P Q/D,   C S = Q/D.
+//
+// On the model itself D = 1: T is the design's own.
+#pragma once
+
+#include <functional>
+
+#include "engine/controller/imc_controller.h"
+#include "engine/loop/frequency_grid.h"
+#include "engine/loop/margins.h"
+#include "engine/loop/peaks.h"
+
+namespace tunewright {
+
+class ImcLoop {
+public:
+    /// The plant is strictly proper and its poles lie in the open left half-plane (a reduced plant's do).
+    ImcLoop(const LinearPlant& plant, const ImcController& controller) : plant_(plant), controller_(controller) {}
+
+    LoopPoint at(double omega) const;
+    std::complex<double> characteristic(double omega) const;  ///< D
+
+    /// Plant and Q being stable, the loop is where D does not encircle 0: the change of its argument from 0 to
+    /// infinity, step by step, until it cannot be mistaken.
+    bool stable() const;
+
+    LoopGrid grid() const;
+    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop, both ends included
+    Margins margins(const LoopGrid& grid) const;
+
+private:
+    double lowest_corner() const;
+    double highest_corner() const;
+
+    const LinearPlant& plant_;
+    ImcController controller_;
+};
+
+}  // namespace tunewright

@@ -1,6 +1,7 @@
 #include "api/service.h"
 
 #include "api/contract/controller.h"
+#include "api/contract/record.h"
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
 #include "api/contract/result.h"
@@ -30,7 +31,8 @@ void add_reading(const ReadRecord& read, DataQuality& quality) {
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
     if (read.dropped > 0)
-        quality.notes.push_back(std::to_string(read.dropped) + " line(s) of the csv without a time, or with neither u nor y, were left out.");
+        quality.notes.push_back(std::to_string(read.dropped) +
+                                " line(s) of the csv without a time, or with neither u nor y, were left out.");
 }
 
 // The engine speaks of "controller/..."; the request has a list of them.
@@ -40,6 +42,35 @@ Problem at_controller(const Error& error, std::size_t index) {
     if (placed.where.rfind(kPrefix, 0) == 0)
         placed.where = "controllers/" + std::to_string(index) + placed.where.substr(kPrefix.size());
     return to_problem(placed);
+}
+
+Answer identified(const ReadRecord& read, const IdentifyOptions& options, const RunControl& control) {
+    auto model = identify(read.record, options, control);
+    if (!model) {
+        Problem problem = to_problem(model.error());
+        problem.record = samples_of(read.record);
+        return refusal(problem);
+    }
+    add_reading(read, model->data_quality);
+    Writer out;
+    identify_answer_contract().write({std::move(*model)}, out);
+    return {200, out.take()};
+}
+
+/// The request that the words stand for, with a record of no text yet.
+Json question_json(const CsvQuestion& question) {
+    Json columns = Json::object();
+    for (const auto& [name, choice] : {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}}) {
+        if (choice->empty()) continue;
+        const bool number = choice->size() <= 3 && choice->find_first_not_of("0123456789") == std::string::npos;
+        columns[name] = number ? Json(std::stoi(*choice)) : Json(*choice);
+    }
+    Json record{{"csv", ""}};
+    if (!columns.empty()) record["columns"] = std::move(columns);
+    if (!question.kind.empty()) record["kind"] = question.kind;
+    if (!question.dt.empty()) record["dt"] = Json::parse(question.dt, nullptr, false);
+    if (record.contains("dt") && record["dt"].is_discarded()) record["dt"] = question.dt;
+    return record;
 }
 
 }  // namespace
@@ -136,16 +167,7 @@ Answer identify_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<IdentifyRequest>(decoded);
 
-    auto model = identify(request.read.record, request.identify, control);
-    if (!model) {
-        Problem problem = to_problem(model.error());
-        problem.record = samples_of(request.read.record);
-        return refusal(problem);
-    }
-    add_reading(request.read, model->data_quality);
-    Writer out;
-    identify_answer_contract().write({std::move(*model)}, out);
-    return {200, out.take()};
+    return identified(request.read, request.identify, control);
 }
 
 Answer relay_call(std::string_view body, const RunControl& control) {
@@ -160,6 +182,36 @@ Answer relay_call(std::string_view body, const RunControl& control) {
     Writer out;
     relay_answer_contract().write(*experiment, out);
     return {200, out.take()};
+}
+
+Answer identify_csv(std::string csv, const CsvQuestion& question, const RunControl& control) {
+    Reader reader;
+    GivenRecord given;
+    Units units;
+    IdentifyOptions options;
+    {
+        const Reader::At at(reader, "record");
+        record_contract().read(question_json(question), given, reader);
+    }
+    {
+        const Reader::At at(reader, "units");
+        units_contract().read(question.time_unit.empty() ? Json::object() : Json{{"time", question.time_unit}}, units,
+                              reader);
+    }
+    {
+        const Reader::At at(reader, "identify");
+        identify_contract().read(question.model.empty() ? Json::object() : Json{{"model", question.model}}, options,
+                                 reader);
+    }
+    if (auto problem = reader.problem()) return refusal(*problem);
+    given.csv = std::move(csv);
+    ReadRecord read;
+    {
+        const Reader::At at(reader, "record");
+        read = resolve(std::move(given), units, reader);
+    }
+    if (auto problem = reader.problem()) return refusal(*problem);
+    return identified(read, options, control);
 }
 
 }  // namespace tunewright::api

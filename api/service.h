@@ -41,7 +41,16 @@ std::string progress_json(const Progress& progress);
 
 Answer evaluate_call(std::string_view body, const RunControl& control);  ///< POST /v1/evaluate
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
-Answer relay_call(std::string_view body, const RunControl& control);     ///< POST /v1/experiments/relay
+
+/// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
+struct CsvQuestion {
+    std::string t, u, y;  ///< headings, or numbers from 1
+    std::string dt, time_unit, kind, model;
+};
+
+/// The same for a CSV file as it is, in any encoding, without a request around it.
+Answer identify_csv(std::string csv, const CsvQuestion& question, const RunControl& control);
+Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
 
 std::string methods_json();               ///< GET /v1/methods
 Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none

@@ -10,6 +10,7 @@ struct Config {
     std::string store = "sqlite:tunewright.db";
     std::size_t workers = 0;  ///< 0: as many as there are cores
     std::size_t queue_limit = 10'000;
+    std::size_t body_limit_mib = 8;    ///< of one request
     std::string web;                   ///< "": `web` beside the folder of the binary
     std::string log_format = "plain";  ///< or json
     std::string log_level = "info";    ///< debug, info, warn, error

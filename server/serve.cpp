@@ -68,7 +68,7 @@ public:
           router_(pool_),
           page_(config.web.empty() ? default_web_folder() : config.web),
           server_(
-              limits(),
+              limits(config),
               [this](http::Request request, http::Reply reply) { route(std::move(request), std::move(reply)); },
               [this](int status, const std::string& detail, const std::string& from) {
                   return refusal(status, detail, from);
@@ -118,9 +118,11 @@ private:
         return made;
     }
 
-    static http::Limits limits() {
+    static http::Limits limits(const Config& config) {
         http::Limits made;
         made.connections = connection_limit();
+        made.body = config.body_limit_mib << 20;
+        made.buffered = std::max(made.buffered, 2 * made.body);
         return made;
     }
 

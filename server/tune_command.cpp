@@ -1,13 +1,12 @@
 #include "server/tune_command.h"
 
 #include <chrono>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 
 #include "api/service.h"
 #include "server/http/problems.h"
+#include "server/input_file.h"
 #include "server/jobs/timer.h"
 
 namespace tunewright::server {
@@ -24,22 +23,11 @@ double monotonic_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool read_all(const std::string& file, std::string& text) {
-    if (file == "-") {
-        text.assign(std::istreambuf_iterator<char>(std::cin), {});
-        return true;
-    }
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return false;
-    text.assign(std::istreambuf_iterator<char>(stream), {});
-    return !stream.bad();
-}
-
 }  // namespace
 
 int tune(const std::string& file) {
     std::string text;
-    if (!read_all(file, text)) return fail(http::problem(404, "The file " + file + " cannot be read."));
+    if (!read_input(file, text)) return fail(http::problem(404, "The file " + file + " cannot be read."));
     const auto prepared = api::prepare_job(text);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return fail(*problem);
     const auto& job = std::get<api::PreparedJob>(prepared);

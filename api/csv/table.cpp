@@ -161,8 +161,8 @@ bool is_data(const CsvLine& line, std::size_t width) {
         else if (holds_data(cell))
             ++data;
     }
-    const std::size_t count = filled(line.cells);
-    return data > 0 && 2 * (data + missing) >= line.cells.size() && count <= width + 1 && 2 * count >= width;
+    return data > 0 && 2 * (data + missing) >= line.cells.size() && line.cells.size() >= width &&
+           filled(line.cells) <= width + 1;
 }
 
 bool is_text(const CsvLine& line) {

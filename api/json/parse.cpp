@@ -183,16 +183,6 @@ void write_canonical(const Json& value, Writer& out) {
 }  // namespace
 
 std::variant<Json, Problem> parse(std::string_view text) {
-    if (text.size() > kMaxBodyBytes) {
-        return Problem{413,
-                       "too-large",
-                       "The body is too large",
-                       "The body has " + std::to_string(text.size()) + " bytes; at most " +
-                           std::to_string(kMaxBodyBytes) +
-                           " are accepted. Thin out the record: a few thousand samples identify as well.",
-                       {},
-                       {}};
-    }
     TreeBuilder builder(text);
     if (Json::sax_parse(text.begin(), text.end(), &builder)) return builder.take();
     return builder.problem().value_or(not_json("The body cannot be read as JSON."));

@@ -9,13 +9,12 @@
 
 namespace tunewright::api {
 
-constexpr std::size_t kMaxBodyBytes = 8u << 20;  ///< of a request; the server refuses earlier, the command line here
-constexpr std::size_t kMaxDepth = 32;            ///< of nested objects and arrays; the contract needs 6
-constexpr std::size_t kMaxMembers = 1000;        ///< of one object; the contract needs about 20
+constexpr std::size_t kMaxDepth = 32;      ///< of nested objects and arrays; the contract needs 6
+constexpr std::size_t kMaxMembers = 1000;  ///< of one object; the contract needs about 20
 
-/// The value that `text` spells. Problems: 413 longer than kMaxBodyBytes; 400 not JSON (with line and column);
-/// 422 a member written twice, a number beyond double, nested deeper than kMaxDepth, more than kMaxMembers in one
-/// object.
+/// The value that `text` spells; how long it may be is the transport's business. Problems: 400 not JSON (with line and
+/// column); 422 a member written twice, a number beyond double, nested deeper than kMaxDepth, more than kMaxMembers in
+/// one object.
 std::variant<Json, Problem> parse(std::string_view text);
 
 /// `text` without the white space between its tokens. `text` must be JSON.

@@ -200,6 +200,7 @@ const std::vector<Export> kExports = {
      {2, 3},
      {1, 1.5}},
     {"trailing_separators", "t,u,y,,\n0,1,2,,\n1,1,3,,\n", {0, 1}, {1, 1}, {2, 3}},
+    {"first_line_without_values", "t,u,y\n0,,\n1,1,2\n2,1,3\n", {1, 2}, {1, 1}, {2, 3}},
     {"old_line_ends", "t,u,y\r0,1,2\r1,1,3\r", {0, 1}, {1, 1}, {2, 3}},
     {"serial_log_without_time", "u,y\n0,20.5\n50,20.6\n", {0, 0.25}, {0, 50}, {20.5, 20.6}, spacing(0.25)},
     {"chosen_among_many",

@@ -18,7 +18,7 @@ def run(*arguments, text=None, environment=None):
 class CommandLineTest(unittest.TestCase):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"^tunewright \d+\.\d+\.\d+\n$")
-        for option in ("--listen", "--store", "--workers", "--queue-limit", "--web"):
+        for option in ("--listen", "--store", "--workers", "--queue-limit", "--body-limit", "--web"):
             self.assertIn(option, run("serve", "--help").stdout)
 
     def test_tune_writes_the_result_and_ends_with_0(self):
@@ -75,6 +75,19 @@ class CommandLineTest(unittest.TestCase):
             done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + path)
             self.assertEqual(done.returncode, 4)
             self.assertIn("not a database", done.stderr)
+
+    def test_the_limit_on_a_body_is_set_by_its_option(self):
+        padded = json.dumps(QUICK).encode() + b" " * (9 << 20)
+        with Service() as service:
+            self.assertEqual(service.post("/v1/jobs", padded).status, 413)
+        with Service("--body-limit", "16") as service:
+            self.assertEqual(service.post("/v1/jobs", padded).status, 202)
+
+    def test_identify_reads_a_file_as_exported(self):
+        record = os.path.join(os.path.dirname(__file__), "..", "data", "records", "tclab-step.csv")
+        done = run("identify", record, "--u", "Q1", "--y", "T1", "--time-unit", "min")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertGreater(json.loads(done.stdout)["model"]["fit_percent"], 97)
 
     def test_wrong_options_are_told(self):
         for arguments in (("--listen", "nowhere"), ("--listen", "127.0.0.1:99999"), ("--store", "mysql:x"),

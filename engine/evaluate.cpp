@@ -5,6 +5,7 @@
 
 #include "engine/family_figures.h"
 #include "engine/frequency_traces.h"
+#include "engine/loop/measured_loop.h"
 #include "engine/number_text.h"
 #include "engine/performance_figures.h"
 #include "engine/robustness_figures.h"
@@ -15,6 +16,8 @@
 namespace tunewright {
 namespace {
 
+constexpr const char* kNoTime =
+    "The plant is known by points of its frequency response alone, which have no response over time.";
 constexpr double kFinalTolerance = 1e-4;  // interpolation within a step, relative to the local deviation
 constexpr double kSettledForFigures = 1e-6;
 
@@ -152,7 +155,35 @@ void add_region(Evaluation& evaluation, const PlantFamily& family) {
 }  // namespace
 
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
-    return evaluate(family_of(plant), controller, options);
+    const auto* points = std::get_if<FrequencyResponse>(&plant);
+    if (points == nullptr) {
+        const auto* set = std::get_if<PlantSet>(&plant);
+        return evaluate(set ? family_of(*set) : family_of(std::get<Plant>(plant)), controller, options);
+    }
+    const auto measured = MeasuredPlant::make(*points);
+    if (!measured) return measured.error();
+    return evaluate(*measured, controller, options);
+}
+
+Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller,
+                              const EvaluateOptions& options) {
+    if (auto error = check_options(options)) return *error;
+    const auto loop = MeasuredLoop::make(plant, gains(controller));
+    if (!loop) return at_field(loop.error(), "controller");
+    if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
+
+    Evaluation evaluation;
+    evaluation.controller = controller;
+    evaluation.equivalents = equivalents_of(controller);
+    evaluation.performance = no_performance(kNoTime);
+    if (options.noise) evaluation.performance.noise = NoisePerformance{{}, {}, {{"u_std", kNoTime}, {"gain", kNoTime}}};
+    const StabilityCount count = loop->count_unstable_poles();
+    if (count.stable())
+        evaluation.robustness = robustness_of(loop->peaks(), loop->margins());
+    else
+        mark_unstable(evaluation, count);
+    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, options.points);
+    return evaluation;
 }
 
 Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options) {

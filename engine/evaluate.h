@@ -118,8 +118,10 @@ struct Evaluation {
 
 /// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...",
 /// "evaluate/..."). An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
-/// All figures are the nominal plant's; `region` says how the others fare.
+/// All figures are the nominal plant's; `region` says how the others fare. Of a frequency response everything in time
+/// is empty; unsupported where its band ends too early to judge the loop.
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options);
 Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options);
+Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller, const EvaluateOptions& options);
 
 }  // namespace tunewright

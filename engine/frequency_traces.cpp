@@ -46,11 +46,7 @@ std::vector<Sample> smoothed(const Loop& loop, std::vector<Sample> samples, std:
     return samples;
 }
 
-}  // namespace
-
-FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points) {
-    const auto most = static_cast<std::size_t>(points);
-    const std::vector<Sample> samples = smoothed(loop, visible(grid), most);
+FrequencyTraces traces_of(const std::vector<Sample>& samples, std::size_t most) {
     const std::size_t stride = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
     FrequencyTraces traces;
     double phase = 0, previous = 0;
@@ -69,6 +65,19 @@ FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int poi
         traces.CS_abs.push_back(std::abs(p.CS));
     }
     return traces;
+}
+
+}  // namespace
+
+FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points) {
+    const auto most = static_cast<std::size_t>(points);
+    return traces_of(smoothed(loop, visible(grid), most), most);
+}
+
+FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points) {
+    std::vector<Sample> samples;
+    for (const double omega : loop.omega()) samples.push_back({omega, loop.at(omega)});
+    return traces_of(samples, static_cast<std::size_t>(points));
 }
 
 }  // namespace tunewright

@@ -97,7 +97,10 @@ public:
 
 private:
     std::optional<Error> find_plant();
-    TuningEntry entry(const Planned& planned, const TuningProblem& problem, double from, double to);
+    std::optional<Error> take_plant(const PlantModel& plant);
+    std::optional<Error> state_problem();
+    Expected<TunedController> tuned_with(const Planned& planned, const RunControl& control) const;
+    TuningEntry entry(const Planned& planned, double from, double to);
     TuningEntry baseline() const;
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const;
     Error placed(Error error, const std::string& where) const;
@@ -112,6 +115,8 @@ private:
     PlantFamily family_;               // what every controller is judged on
     std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
+    std::optional<TuningProblem> problem_;   // what methods work on, unless
+    std::optional<MeasuredPlant> measured_;  // the plant is known by points alone
     std::optional<BestSoFar> best_;
     TuningResult result_;
 };
@@ -133,20 +138,31 @@ RunControl Run::share(double from, double to) const {
     return part;
 }
 
+std::optional<Error> Run::take_plant(const PlantModel& plant) {
+    if (const auto* points = std::get_if<FrequencyResponse>(&plant)) {
+        auto measured = MeasuredPlant::make(*points);
+        if (!measured) return measured.error();
+        measured_ = std::move(*measured);
+        return std::nullopt;
+    }
+    const auto* set = std::get_if<PlantSet>(&plant);
+    family_ = set ? family_of(*set) : family_of(std::get<Plant>(plant));
+    if (!family_.single()) held_ = family_;
+    return std::nullopt;
+}
+
 std::optional<Error> Run::find_plant() {
     if (request_.plant.has_value() == request_.record.has_value())
         return Error{ErrorKind::invalid_argument, "",
                      request_.plant ? "Both plant and record are given; give one of them."
                                     : "Neither plant nor record is given; give one of them."};
     if (request_.plant) {
-        family_ = family_of(*request_.plant);
-        if (!family_.single()) held_ = family_;
-        return std::nullopt;
+        return take_plant(*request_.plant);
     }
     report(0, "identify", "Fitting models to the record.");
     auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
     if (!model) return model.error();
-    family_ = {{PlantRegion::of_ranges(model->plant)}};
+    family_ = family_of(model->plant);
     if (auto region = identified_region(*model))
         family_ = *region;
     else if (request_.over_identified_region)
@@ -170,7 +186,8 @@ Error Run::placed(Error error, const std::string& where) const {
 }
 
 void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const {
-    auto evaluation = evaluate(family_, controller, request_.evaluate);
+    auto evaluation = measured_ ? evaluate(*measured_, controller, request_.evaluate)
+                                : evaluate(family_, controller, request_.evaluate);
     if (!evaluation) {
         entry.error = evaluation.error();
         return;
@@ -180,14 +197,31 @@ void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::v
     entry.evaluation = std::move(*evaluation);
 }
 
-TuningEntry Run::entry(const Planned& planned, const TuningProblem& problem, double from, double to) {
+std::optional<Error> Run::state_problem() {
+    const Plant& nominal = family_.nominal();
+    auto linear = LinearPlant::make(nominal);
+    if (!linear) return placed(linear.error(), "");
+    problem_ = TuningProblem{nominal, std::move(*linear), dead_time_std_, held_};
+    return std::nullopt;
+}
+
+Expected<TunedController> Run::tuned_with(const Planned& planned, const RunControl& control) const {
+    const TuningMethod& method = *planned.method;
+    if (!measured_) return method.tune(*problem_, planned.options, control);
+    if (method.tune_on_points) return method.tune_on_points(*measured_, planned.options, control);
+    return Error{ErrorKind::unsupported, "",
+                 "The method " + method.id +
+                     " needs a model of the plant; points of a frequency response serve the method robust."};
+}
+
+TuningEntry Run::entry(const Planned& planned, double from, double to) {
     TuningEntry entry;
     entry.method = planned.method->id;
     entry.title = planned.method->title;
     entry.source = planned.method->source;
     entry.options = planned.options;
     const double started = now_ms();
-    auto tuned = planned.method->tune(problem, planned.options, share(from, to));
+    auto tuned = tuned_with(planned, share(from, to));
     if (!tuned) {
         entry.error = placed(tuned.error(), planned.where);
         return entry;
@@ -237,10 +271,8 @@ Expected<TuningResult> Run::result() {
     const auto planned = plan(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
-    const Plant& nominal = family_.nominal();
-    const auto linear = LinearPlant::make(nominal);
-    if (!linear) return placed(linear.error(), "");
-    const TuningProblem problem{nominal, *linear, dead_time_std_, held_};
+    if (!measured_)
+        if (const auto error = state_problem()) return *error;
 
     const double start = result_.model ? kIdentifyShare : 0,
                  share_of_one = (1 - start) / static_cast<double>(planned->size());
@@ -253,7 +285,7 @@ Expected<TuningResult> Run::result() {
         }
         const double from = start + share_of_one * static_cast<double>(i);
         report(from, "tune", "Tuning with " + next.method->title + ".");
-        TuningEntry entry = this->entry(next, problem, from, from + share_of_one);
+        TuningEntry entry = this->entry(next, from, from + share_of_one);
         if (entry.error && entry.error->kind == ErrorKind::cancelled) {
             result_.partial = true;
             break;

@@ -97,6 +97,7 @@ std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
         if (auto linear = check_linear(*plant, reader)) plants.push_back(std::move(*linear));
         return plants;
     }
+    if (std::holds_alternative<FrequencyResponse>(model)) return plants;
     const auto& members = std::get<PlantSet>(model).plants;
     const Reader::At list(reader, "plants");
     for (std::size_t i = 0; i < members.size(); ++i) {

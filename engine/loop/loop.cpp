@@ -20,9 +20,36 @@ int filter_order(FilterType type) {
     return 0;
 }
 
+struct ControllerFraction {
+    Complex numerator, denominator;
+};
+
+ControllerFraction controller_fraction(const ParallelPid& gains, Complex s) {
+    const double Tf = gains.filter.Tf;
+    Complex numerator, denominator = 1;
+    switch (gains.filter.type) {
+        case FilterType::none: numerator = gains.Kp + gains.Kd * s; break;
+        case FilterType::derivative:
+            denominator = 1.0 + Tf * s;
+            numerator = gains.Kp * denominator + gains.Kd * s;
+            break;
+        case FilterType::measurement_first_order:
+            numerator = gains.Kp + gains.Kd * s;
+            denominator = 1.0 + Tf * s;
+            break;
+        case FilterType::measurement_second_order:
+            numerator = gains.Kp + gains.Kd * s;
+            denominator = 1.0 + Tf * s * (1.0 + 0.5 * Tf * s);
+            break;
+    }
+    if (gains.Ki == 0) return {numerator, denominator};
+    const Complex integral_path = gains.filter.type == FilterType::derivative ? denominator : Complex(1);
+    return {numerator * s + gains.Ki * integral_path, denominator * s};
+}
+
 }  // namespace
 
-Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
+std::optional<Error> check_controller(const ParallelPid& gains) {
     for (const double value : {gains.Kp, gains.Ki, gains.Kd, gains.b, gains.c, gains.filter.Tf})
         if (!std::isfinite(value)) return invalid("Every controller parameter must be a finite number.");
     if (gains.Kp == 0 && gains.Ki == 0 && gains.Kd == 0)
@@ -33,6 +60,11 @@ Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
         return Error{ErrorKind::invalid_argument, "controller/c",
                      "c is not 0, so a set-point step is differentiated: that needs the filter type \"derivative\". "
                      "Use c = 0 or that filter."};
+    return std::nullopt;
+}
+
+Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
+    if (auto error = check_controller(gains)) return *error;
     const Loop loop(plant, gains);
     const double q = loop.signed_high_frequency_gain();
     if (!std::isfinite(q))
@@ -45,33 +77,12 @@ Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
     return loop;
 }
 
-Loop::ControllerFraction Loop::controller_fraction(Complex s) const {
-    const double Tf = gains_.filter.Tf;
-    Complex numerator, denominator = 1;
-    switch (gains_.filter.type) {
-        case FilterType::none: numerator = gains_.Kp + gains_.Kd * s; break;
-        case FilterType::derivative:
-            denominator = 1.0 + Tf * s;
-            numerator = gains_.Kp * denominator + gains_.Kd * s;
-            break;
-        case FilterType::measurement_first_order:
-            numerator = gains_.Kp + gains_.Kd * s;
-            denominator = 1.0 + Tf * s;
-            break;
-        case FilterType::measurement_second_order:
-            numerator = gains_.Kp + gains_.Kd * s;
-            denominator = 1.0 + Tf * s * (1.0 + 0.5 * Tf * s);
-            break;
-    }
-    if (gains_.Ki == 0) return {numerator, denominator};
-    const Complex integral_path = gains_.filter.type == FilterType::derivative ? denominator : Complex(1);
-    return {numerator * s + gains_.Ki * integral_path, denominator * s};
-}
-
-Complex Loop::controller(Complex s) const {
-    const auto c = controller_fraction(s);
+Complex controller_response(const ParallelPid& gains, Complex s) {
+    const auto c = controller_fraction(gains, s);
     return c.numerator / c.denominator;
 }
+
+Complex Loop::controller(Complex s) const { return controller_response(gains_, s); }
 
 Complex Loop::open_loop(Complex s) const {
     const auto l = fraction(s);
@@ -79,7 +90,7 @@ Complex Loop::open_loop(Complex s) const {
 }
 
 Loop::Fraction Loop::fraction(Complex s) const {
-    const auto c = controller_fraction(s);
+    const auto c = controller_fraction(gains_, s);
     Complex numerator = plant_->gain() * c.numerator, denominator = c.denominator;
     for (int i = 0; i < plant_->integrators(); ++i) denominator *= s;
     for (int i = 0; i < -plant_->integrators(); ++i) numerator *= s;
@@ -102,7 +113,7 @@ LoopPoint Loop::at(double omega) const {
     point.S = denominator / sum;
     point.T = numerator / sum;
     // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
-    const auto c = controller_fraction(s);
+    const auto c = controller_fraction(gains_, s);
     Complex plant_denominator = 1;
     for (int i = 0; i < plant_->integrators(); ++i) plant_denominator *= s;
     for (const auto pole : plant_->poles()) plant_denominator *= s - pole;

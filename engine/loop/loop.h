@@ -6,6 +6,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
@@ -17,6 +18,13 @@ namespace tunewright {
 struct LoopPoint {
     std::complex<double> L, S, T, CS;
 };
+
+/// What no loop may have, whatever the plant: numbers that are not finite, Tf <= 0 with a filter, all gains 0, a
+/// derivative of r without filter.
+std::optional<Error> check_controller(const ParallelPid& gains);
+
+/// C(s) of the filtered controller, set-point weights apart.
+std::complex<double> controller_response(const ParallelPid& gains, std::complex<double> s);
 
 class Loop {
 public:
@@ -48,10 +56,6 @@ public:
 
 private:
     Loop(const LinearPlant& plant, const ParallelPid& gains) : plant_(&plant), gains_(gains) {}
-    struct ControllerFraction {
-        std::complex<double> numerator, denominator;
-    };
-    ControllerFraction controller_fraction(std::complex<double> s) const;
     int controller_excess() const;                  // degree of denominator minus numerator
     double controller_leading_coefficient() const;  // of numerator over denominator
 

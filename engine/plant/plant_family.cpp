@@ -1,20 +1,13 @@
 #include "engine/plant/plant_family.h"
 
 namespace tunewright {
-namespace {
 
-PlantFamily family_around(const Plant& plant) { return {{PlantRegion::of_ranges(plant)}}; }
+PlantFamily family_of(const Plant& plant) { return {{PlantRegion::of_ranges(plant)}}; }
 
-PlantFamily family_around(const PlantSet& set) {
+PlantFamily family_of(const PlantSet& set) {
     PlantFamily family;
     for (const auto& plant : set.plants) family.regions.push_back(PlantRegion::of_ranges(plant));
     return family;
-}
-
-}  // namespace
-
-PlantFamily family_of(const PlantModel& model) {
-    return std::visit([](const auto& given) { return family_around(given); }, model);
 }
 
 std::vector<Plant> members_beside_nominal(const PlantFamily& family) {

@@ -17,7 +17,8 @@ struct PlantFamily {
     bool single() const { return regions.size() == 1 && regions.front().dimension() == 0; }
 };
 
-PlantFamily family_of(const PlantModel& model);
+PlantFamily family_of(const Plant& plant);
+PlantFamily family_of(const PlantSet& set);
 
 /// The plants at the ends of every region, the nominal plant itself left out.
 std::vector<Plant> members_beside_nominal(const PlantFamily& family);

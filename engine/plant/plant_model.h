@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/plant/frequency_response.h"
 #include "engine/plant/plant.h"
 
 namespace tunewright {
@@ -13,6 +14,6 @@ struct PlantSet {
     std::vector<Plant> plants;
 };
 
-using PlantModel = std::variant<Plant, PlantSet>;
+using PlantModel = std::variant<Plant, PlantSet, FrequencyResponse>;
 
 }  // namespace tunewright

@@ -7,6 +7,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
+#include "engine/plant/frequency_response.h"
 #include "engine/plant/linear_plant.h"
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
@@ -51,6 +52,9 @@ struct TuningMethod {
     std::string validity;  ///< the range the source claims
     std::vector<OptionDescription> options;
     Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
+    /// For a plant known by measured points of its frequency response; null: the method needs a model.
+    Expected<TunedController> (*tune_on_points)(const MeasuredPlant&, const MethodOptions&,
+                                                const RunControl&) = nullptr;
 };
 
 /// Every method, in the order in which they are listed. The one place that names them all.

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <utility>
 
-#include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
 #include "engine/tuning/amigo.h"
 #include "engine/tuning/robust/family.h"
-#include "engine/tuning/robust/fast_search.h"
 #include "engine/tuning/robust/feasibility.h"
-#include "engine/tuning/robust/plane_search.h"
-#include "engine/tuning/robust/scan.h"
+#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {
 namespace {
@@ -20,9 +15,6 @@ namespace {
 using namespace robust;
 
 constexpr int kMostRounds = 10;  // of adding the worst plant found inside a region
-constexpr double kAllowedExcess =
-    2e-5;  // relative, of Ms and Mt on the independent grid: above it nothing is returned as a success
-
 std::string shown(double value) {
     std::ostringstream out;
     out.precision(4);
@@ -37,15 +29,22 @@ Objective objective_named(const std::string& name) {
     return Objective::load_iae;
 }
 
+/// The filter that the options give, if they do.
+Expected<std::optional<FilterRule>> explicit_filter(const MethodOptions& options, bool pid) {
+    if (const auto Tf = options.number("filter/Tf")) return std::optional(FilterRule{.Tf = *Tf, .Tf_over_Td = {}});
+    const auto ratio = options.number("filter/Tf_over_Td");
+    if (!ratio) return std::optional<FilterRule>();
+    if (!pid)
+        return Error{ErrorKind::invalid_argument, "filter/Tf_over_Td",
+                     "A PI controller has no Td; give the filter as Tf."};
+    return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = *ratio});
+}
+
 /// The contract's filter rule. Error: a plant with neither dead time nor lags has no natural filter time.
 Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptions& options, bool pid) {
-    if (const auto Tf = options.number("filter/Tf")) return FilterRule{.Tf = *Tf, .Tf_over_Td = std::nullopt};
-    if (const auto ratio = options.number("filter/Tf_over_Td")) {
-        if (!pid)
-            return Error{ErrorKind::invalid_argument, "filter/Tf_over_Td",
-                         "A PI controller has no Td; give the filter as Tf."};
-        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = *ratio};
-    }
+    const auto given = explicit_filter(options, pid);
+    if (!given) return given.error();
+    if (*given) return **given;
     if (!pid) return FilterRule{};
     const LinearPlant& plant = problem.linear;
     const bool dead_time = plant.dead_time() > problem.dead_time_std.value_or(0);
@@ -65,11 +64,12 @@ double first_sign(const LinearPlant& plant) {
     return plant.unstable_poles() % 2 == 0 ? sign : -sign;
 }
 
-Problem make_problem(const TuningProblem& tuning, const MethodOptions& options, const FilterRule& filter, bool pid) {
+bool pid_wanted(const MethodOptions& options) { return options.text("controller").value_or("PID") == "PID"; }
+
+/// All but the plant and the sign of Kp.
+Problem make_problem(const MethodOptions& options, const FilterRule& filter) {
     Problem problem;
-    problem.plant = &tuning.linear;
-    problem.pid = pid;
-    problem.sign = first_sign(tuning.linear);
+    problem.pid = pid_wanted(options);
     problem.filter = filter;
     problem.limits.Ms = options.number("Ms").value_or(1.4);
     problem.limits.Mt = options.number("Mt").value_or(1.4);
@@ -80,49 +80,6 @@ Problem make_problem(const TuningProblem& tuning, const MethodOptions& options, 
     return problem;
 }
 
-/// The largest relative excess over a limit, on a grid that the search never saw.
-double measured_excess(const Problem& problem, const Point& x) {
-    double worst = -1;
-    for (std::size_t i = 0; i < problem.plants(); ++i)
-        worst = std::max(worst, excess_on(problem.plant_at(i), problem, x, {.step = 0.06, .density = 53}));
-    return worst;
-}
-
-Problem tightened(Problem problem, double relative) {
-    problem.limits.Ms = 1 + (problem.limits.Ms - 1) * (1 - relative);
-    problem.limits.Mt = 1 + (problem.limits.Mt - 1) * (1 - relative);
-    if (problem.limits.Mks) *problem.limits.Mks *= 1 - relative;
-    return problem;
-}
-
-class ProgressReport {
-public:
-    ProgressReport(const Problem& problem, const RunControl& control) : problem_(problem), control_(control) {}
-
-    bool operator()(const Point& x, double log_cost) {
-        ++steps_;
-        if (control_.progress) {
-            Progress progress;
-            progress.fraction = 1 - std::pow(0.9, steps_);
-            progress.stage = "tune";
-            progress.message = "robust design: " + std::to_string(steps_) + " improvements so far.";
-            BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
-            if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
-            progress.best = best;
-            control_.progress(progress);
-        }
-        return !control_.stop.stop_requested();
-    }
-
-private:
-    const Problem& problem_;
-    const RunControl& control_;
-    int steps_ = 0;
-};
-
-/// Where the plane searches begin, as (Ti, Td).
-using PlaneStart = std::optional<std::pair<double, double>>;
-
 /// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty where they do not apply.
 PlaneStart amigo_start(const TuningProblem& tuning, bool pid) {
     MethodOptions options;
@@ -130,104 +87,6 @@ PlaneStart amigo_start(const TuningProblem& tuning, bool pid) {
     const auto tuned = amigo_method().tune(tuning, options, {});
     if (!tuned) return std::nullopt;
     return std::pair{tuned->controller.Ti, tuned->controller.Td};
-}
-
-std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
-                            CostSurface* surface, const Report& report) {
-    if (kind == "fast" && surface == nullptr) return fast_search(sweep, problem, report);
-    if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
-        const auto points = scan(sweep);
-        if (points.empty()) return std::nullopt;
-        start = {std::exp(points.front().x[1]), problem.pid ? std::exp(points.front().x[2]) : 0};
-    }
-    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, start->first, start->second, report);
-    auto gridded = grid_search(sweep, problem, start->first, start->second, surface, report);
-    return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
-}
-
-/// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
-bool has_reference_optima(Problem& problem, const Sweep& sweep) {
-    if (problem.objective != Objective::weighted) return true;
-    for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
-        Problem alone = problem;
-        alone.objective = part;
-        const auto found = fast_search(sweep, alone, {});
-        if (!found) return false;
-        (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
-    }
-    return true;
-}
-
-/// Where the scan saw nothing: the feasible set may be a small one around the least peak, or belong to the other sign
-/// of Kp.
-std::optional<Found> search_from_least_peak(Problem& problem, const Report& report) {
-    for (int attempt = 0; attempt < 2; ++attempt, problem.sign = -problem.sign) {
-        const auto least = least_common_peak(problem);
-        if (!least) continue;
-        const Sweep sweep(problem, reference_frequency(problem));
-        const auto start = feasible_near(sweep, least->x);
-        if (!start) return std::nullopt;
-        const SqpResult result = minimise(sweep, problem, *start, {}, report);
-        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false};
-        return std::nullopt;
-    }
-    return std::nullopt;
-}
-
-/// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
-std::optional<Found> search_again(const Sweep& sweep, const Problem& problem, const Point& before,
-                                  const Report& report) {
-    const auto start = feasible_near(sweep, before);
-    if (!start) return std::nullopt;
-    bool stopped = false;
-    const Report watch = [&](const Point& x, double cost) {
-        stopped = report && !report(x, cost);
-        return !stopped;
-    };
-    const SqpResult result = minimise(sweep, problem, *start, {}, watch);
-    if (!std::isfinite(result.log_cost)) return std::nullopt;
-    return Found{result.x, result.log_cost, stopped};
-}
-
-/// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
-/// is.
-std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
-    for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
-        problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
-        if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
-    }
-    return std::nullopt;
-}
-
-std::string on_plants(const Problem& problem) {
-    return problem.others.empty() ? " on this plant"
-                                  : " on all " + std::to_string(problem.plants()) + " plants looked at";
-}
-
-Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& least) {
-    const std::string name = problem.pid ? "PID" : "PI";
-    if (!least)
-        return {ErrorKind::unstable_plant, "",
-                "No " + name + " controller was found that stabilises " +
-                    (problem.others.empty() ? "this plant" : "all of these plants") +
-                    (problem.pid ? ". " : "; a PID might. ") +
-                    "Check the signs and the unit of the dead time, or shorten the dead time."};
-    const auto workable = workable_limit(problem, *least);
-    if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
-        return {ErrorKind::no_feasible_controller, "Mks",
-                "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
-                    " together with the other limits. Raise Mks or leave it out."};
-    if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
-        return {ErrorKind::numerical_failure, "",
-                "Controllers within the limits exist, but none whose response could be computed. Check the units of "
-                "the time constants and the dead time: "
-                "they lie very far apart."};
-    return {ErrorKind::no_feasible_controller, "",
-            "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
-                " and Mt <= " + shown(problem.limits.Mt) + on_plants(problem) +
-                (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
-                ". The smallest common limit that works is Ms = Mt = " + shown(workable.value_or(least->M * 1.01)) +
-                "; use that or more."};
 }
 
 /// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
@@ -241,40 +100,6 @@ std::optional<Error> check_Mks(const Problem& problem) {
                  "Mks is " + shown(*problem.limits.Mks) +
                      ", but holding the output against a load takes |C S| = 1/|P(0)| = " + shown(least) +
                      " already at rest. Give a limit well above that."};
-}
-
-/// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
-/// ones. `before`: the design that some new plants have proved too bold.
-Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
-                                CostSurface* surface, const RunControl& control, const Point* before) {
-    const double reference = reference_frequency(problem);
-    ProgressReport progress(problem, control);
-    const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
-    const Sweep sweep(problem, reference);
-    std::optional<Found> found;
-    if (has_reference_optima(problem, sweep)) {
-        if (before != nullptr) found = search_again(sweep, problem, *before, report);
-        if (!found) found = search(kind, sweep, problem, start, surface, report);
-    }
-    if (control.stop.stop_requested() && !found)
-        return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
-    if (!found) found = search_from_least_peak(problem, report);
-    if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
-    double tighter = 0;
-    for (int round = 0; round < 4; ++round) {
-        const double excess = measured_excess(problem, found->x);
-        if (excess <= 0.5 * kAllowedExcess) return *found;
-        if (!std::isfinite(excess) || round == 3) break;
-        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
-        const Problem narrowed = tightened(problem, std::min(tighter, 0.5));
-        const Sweep narrow_sweep(narrowed, reference);
-        const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
-        found->x = again.x;
-        found->log_cost = again.log_cost;
-    }
-    return Error{ErrorKind::numerical_failure, "",
-                 "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
-                 "Try another search or a filter with a longer Tf."};
 }
 
 Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& problem, const Point& x) {
@@ -296,14 +121,16 @@ void add_warnings(TunedController& result, const Problem& problem, const Point& 
 
 Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
                                       const RunControl& control) {
-    const bool pid = options.text("controller").value_or("PID") == "PID";
+    const bool pid = pid_wanted(options);
     if (tuning.linear.integrators() < 0)
         return Error{ErrorKind::unstable_plant, "",
                      "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
                      "controller without integral action."};
     const auto filter = filter_rule(tuning, options, pid);
     if (!filter) return filter.error();
-    Problem problem = make_problem(tuning, options, *filter, pid);
+    Problem problem = make_problem(options, *filter);
+    problem.plant = &tuning.linear;
+    problem.sign = first_sign(tuning.linear);
     auto others = other_members(tuning, first_sign);
     if (!others) return others.error();
     problem.others = *others;
@@ -335,6 +162,38 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     result.controller = controller_at(problem, found->x);
     result.partial = found->stopped;
     if (with_surface) result.surface = surface;
+    add_warnings(result, problem, found->x);
+    return result;
+}
+
+/// Points have no response over time, so the integrated error Ti/Kp stands for the integral of |e|.
+Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const MethodOptions& options,
+                                         const RunControl& control) {
+    if (!plant.phase_crossover())
+        return Error{ErrorKind::unsupported, "plant/omega",
+                     "The measured band ends at omega " + shown(plant.high()) +
+                         ", before the plant's phase has fallen through -180 degrees, so nothing in it bounds the "
+                         "gain. Measure higher frequencies."};
+    const auto filter = explicit_filter(options, pid_wanted(options));
+    if (!filter) return filter.error();
+    const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+    Problem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
+    problem.measured = &plant;
+    problem.sign = plant.gain_sign();
+    problem.objective = Objective::load_ie;
+    CostSurface surface;
+    const bool with_surface = options.boolean("surface").value_or(false);
+    const auto found = verified_search(options.text("search").value_or("fast"), problem, std::nullopt,
+                                       with_surface ? &surface : nullptr, control, nullptr);
+    if (!found) return found.error();
+    TunedController result;
+    result.controller = controller_at(problem, found->x);
+    result.partial = found->stopped;
+    if (with_surface) result.surface = surface;
+    if (options.text("objective").value_or("load_ie") != "load_ie")
+        result.warnings.push_back({"objective-replaced",
+                                   "A frequency response has no response over time: Kp/Ti is maximised instead of the "
+                                   "objective asked for."});
     add_warnings(result, problem, found->x);
     return result;
 }
@@ -408,6 +267,7 @@ TuningMethod robust_method() {
         "on Mks";
     method.options = option_descriptions();
     method.tune = tune_robust;
+    method.tune_on_points = tune_on_points;
     return method;
 }
 

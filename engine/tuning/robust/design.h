@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/controller/pid.h"
+#include "engine/plant/frequency_response.h"
 #include "engine/plant/linear_plant.h"
 
 namespace tunewright::robust {
@@ -31,8 +32,9 @@ struct Limits {
 using Point = std::array<double, 3>;
 
 struct Problem {
-    const LinearPlant* plant = nullptr;   ///< nominal: the cost is its own
-    std::span<const LinearPlant> others;  ///< stability and the limits must hold on these too
+    const LinearPlant* plant = nullptr;       ///< nominal: the cost is its own
+    std::span<const LinearPlant> others;      ///< stability and the limits must hold on these too
+    const MeasuredPlant* measured = nullptr;  ///< in their place: measured points, with objective load_ie
     bool pid = true;
     double sign = 1;  ///< of Kp
     FilterRule filter;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/loop/worst_member.h"
@@ -17,6 +18,12 @@ Error both_signs() {
     return {ErrorKind::no_feasible_controller, "",
             "The plants need gains of both signs, which no controller has. Narrow the uncertainty; for a recorded "
             "test: the record leaves even the sign of the plant's gain open, so repeat the test with a larger step."};
+}
+
+double excess_of(const Peaks& peaks, const Limits& limits) {
+    double worst = std::max(peaks.S.value / limits.Ms, peaks.T.value / limits.Mt);
+    if (limits.Mks) worst = std::max(worst, peaks.CS.value / *limits.Mks);
+    return worst - 1;
 }
 
 }  // namespace
@@ -36,10 +43,14 @@ Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, do
 double excess_on(const LinearPlant& plant, const Problem& problem, const Point& x, const GridFineness& fineness) {
     const auto loop = Loop::make(plant, to_parallel(controller_at(problem, x)));
     if (!loop || !count_unstable_poles(*loop).stable()) return std::numeric_limits<double>::infinity();
-    const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop, fineness.step, fineness.density));
-    double worst = std::max(peaks.S.value / problem.limits.Ms, peaks.T.value / problem.limits.Mt);
-    if (problem.limits.Mks) worst = std::max(worst, peaks.CS.value / *problem.limits.Mks);
-    return worst - 1;
+    return excess_of(find_peaks(*loop, make_loop_grid(*loop, fineness.step, fineness.density)), problem.limits);
+}
+
+double excess_on_points(const Problem& problem, const Point& x) {
+    const auto loop = MeasuredLoop::make(*problem.measured, to_parallel(controller_at(problem, x)));
+    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable())
+        return std::numeric_limits<double>::infinity();
+    return excess_of(loop->peaks(), problem.limits);
 }
 
 std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,

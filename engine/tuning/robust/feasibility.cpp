@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/tuning/local_minimum.h"
@@ -15,10 +16,18 @@ namespace {
 constexpr double kLongestTi = 200, kShortestTd = 1e-3;  // times the period over 2 pi at the reference frequency
 constexpr double kUnstable = 20;                        // ln of the larger peak, where the loop is unstable
 
+double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
+    const auto loop = MeasuredLoop::make(plant, gains);
+    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return kUnstable;
+    const Peaks peaks = loop->peaks();
+    return std::log(std::max(peaks.S.value, peaks.T.value));
+}
+
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
 double larger_peak(const Problem& problem, const std::vector<double>& x) {
     const ParallelPid gains = to_parallel(controller_at(problem, {x[0], x[1], x.size() > 2 ? x[2] : 0}));
+    if (problem.measured) return larger_measured_peak(*problem.measured, gains);
     double largest = 0;
     for (std::size_t i = 0; i < problem.plants(); ++i) {
         const auto loop = Loop::make(problem.plant_at(i), gains);

@@ -29,6 +29,7 @@ bool stable_at_low_gain(const LinearPlant& plant, double sign) {
 }
 
 bool first_gap_is_stable(const Problem& problem) {
+    if (problem.measured) return false;
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (!stable_at_low_gain(problem.plant_at(i), problem.sign)) return false;
     return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/loop/measured_loop.h"
 #include "engine/loop/stability.h"
 #include "engine/tuning/robust/quadratic_program.h"
 
@@ -74,6 +75,10 @@ Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
 
 bool is_stable(const Problem& problem, const Point& x) {
     const ParallelPid gains = to_parallel(controller_at(problem, x));
+    if (problem.measured) {
+        const auto loop = MeasuredLoop::make(*problem.measured, gains);
+        return loop && !loop->band_too_short() && loop->count_unstable_poles().stable();
+    }
     for (std::size_t i = 0; i < problem.plants(); ++i) {
         const auto loop = Loop::make(problem.plant_at(i), gains);
         if (!loop || !count_unstable_poles(*loop).stable()) return false;

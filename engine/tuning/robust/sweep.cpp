@@ -59,7 +59,9 @@ double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits&
 }  // namespace
 
 Sweep::Sweep(const Problem& problem, double reference) : problem_(problem), reference_(reference) {
-    for (std::size_t i = 0; i < problem.plants(); ++i) curves_.push_back(curve_of(i));
+    if (problem.measured) curves_.push_back(measured_curve());
+    for (std::size_t i = 0; !problem.measured && i < problem.plants(); ++i) curves_.push_back(curve_of(i));
+    for (Curve& curve : curves_) complete(curve);
     // The smallest circle around both: from -Mt/(Mt - 1) to -1 + 1/Ms on the real axis.
     const double left = -problem.limits.Mt / (problem.limits.Mt - 1), right = -1 + 1 / problem.limits.Ms;
     circle_centre_ = 0.5 * (left + right);
@@ -75,15 +77,38 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     curve.omega = frequencies(problem_, plant, reference_, curve.resolved_to);
     // On an undamped pole P is infinite; its neighbours tell the same.
     std::erase_if(curve.omega, [&](double w) { return !std::isfinite(std::abs(plant.at({0, w}))); });
+    return curve;
+}
+
+/// The band alone. What follows its end is bounded by the end's |L| at the worst phase, as where a dead time turns
+/// fast.
+Sweep::Curve Sweep::measured_curve() const {
+    Curve curve;
+    curve.resolved_to = problem_.measured->high();
+    const double ratio = std::pow(10, 1.0 / kPointsPerDecade);
+    for (const double measured : problem_.measured->omega()) {
+        const double before = curve.omega.empty() ? measured : curve.omega.back();
+        const int parts = std::max(1, static_cast<int>(std::ceil(std::log(measured / before) / std::log(ratio))));
+        for (int k = curve.omega.empty() ? parts : 1; k < parts; ++k)
+            curve.omega.push_back(before * std::pow(measured / before, double(k) / parts));
+        curve.omega.push_back(measured);
+    }
+    return curve;
+}
+
+Complex Sweep::plant_at(const Curve& curve, double omega) const {
+    return curve.plant ? curve.plant->at({0, omega}) : problem_.measured->at(omega);
+}
+
+void Sweep::complete(Curve& curve) const {
     for (const double w : curve.omega) {
-        const Complex P = plant.at({0, w});
+        const Complex P = plant_at(curve, w);
         curve.P_re.push_back(P.real());
         curve.P_im.push_back(P.imag());
     }
     const auto first = std::lower_bound(curve.omega.begin(), curve.omega.end(), curve.resolved_to);
     curve.resolved = static_cast<std::size_t>(first - curve.omega.begin());
     for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());
-    return curve;
 }
 
 Sweep::Shape Sweep::shape(const Point& x) const {
@@ -95,8 +120,8 @@ Sweep::Shape Sweep::shape(const Point& x) const {
 double Sweep::value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const {
     const Complex s(0, omega);
     const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
-    return constraint_value(kind, worst_phase(curve, curve.plant->at(s) * C, omega), C, problem_.limits, circle_centre_,
-                            circle_radius_);
+    return constraint_value(kind, worst_phase(curve, plant_at(curve, omega) * C, omega), C, problem_.limits,
+                            circle_centre_, circle_radius_);
 }
 
 Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
@@ -111,7 +136,7 @@ std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, c
     // d ln C by ln Kp, ln Ti, ln Td.
     std::array<Complex, 3> dC = {1.0, -integral / sum, derivative / sum};
     if (problem_.filter.Tf_over_Td) dC[2] -= c.Tf * s * (1.0 + c.Tf * s) / filter;
-    const Complex L = worst_phase(curve, curve.plant->at(s) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
+    const Complex L = worst_phase(curve, plant_at(curve, omega) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
     std::array<double, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
         switch (kind) {
@@ -169,7 +194,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
 
 void Sweep::add_limits(const Curve& curve, const Shape& c, double threshold, std::vector<ActivePeak>& found) const {
     // Without filter a direct loop gain q remains at infinite frequency.
-    if (c.Tf > 0) return;
+    if (c.Tf > 0 || curve.plant == nullptr) return;
     const int excess = curve.plant->pole_excess() - (problem_.pid ? 1 : 0);
     if (excess > 0) return;
     const double q = curve.plant->gain() * (problem_.pid ? c.Kd : c.Kp);
@@ -291,6 +316,7 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
 }
 
 double reference_frequency(const Problem& problem) {
+    if (problem.measured) return problem.measured->phase_crossover().value_or(problem.measured->high() / 3);
     const LinearPlant& plant = *problem.plant;
     const double L = plant.dead_time();
     double slowest = kInfinity, fastest = 0;

@@ -58,7 +58,7 @@ private:
     };
     /// One plant on its own grid.
     struct Curve {
-        const LinearPlant* plant = nullptr;
+        const LinearPlant* plant = nullptr;  // null: measured points
         std::size_t index = 0;
         double resolved_to = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
                                                                        // grid: worst phase assumed
@@ -67,6 +67,9 @@ private:
         std::vector<double> S, T, CS, circle;  // scratch: one sweep per thread of work
     };
     Curve curve_of(std::size_t index) const;
+    Curve measured_curve() const;
+    void complete(Curve& curve) const;  // what follows from its frequencies
+    std::complex<double> plant_at(const Curve& curve, double omega) const;
     Shape shape(const Point& x) const;
     double value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
     void fill_levels(Curve& curve, const Shape& c) const;

@@ -1,0 +1,55 @@
+// A plant known by measured points of its frequency response alone.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "engine/expected.h"
+
+namespace tunewright {
+
+/// P(j omega) = re + j im at ascending angular frequencies. `unstable_poles` in the open right half-plane and
+/// `integrators` are what the points cannot tell.
+struct FrequencyResponse {
+    std::vector<double> omega, re, im;
+    int unstable_poles = 0;
+    int integrators = 0;
+};
+
+/// The points as a function of frequency: cubic in ln omega for ln |P| and for the unwrapped phase (Hermite, slopes
+/// from the parabola through three neighbours).
+class MeasuredPlant {
+public:
+    /// Errors: invalid_argument with `where` = "plant/<field>": columns of unequal length, fewer than 8 points, omega
+    /// not ascending or not > 0, numbers that are not finite, P = 0; unsupported where the points lie so far apart that
+    /// the phase cannot be followed (2 rad or more between neighbours) before it has fallen through -180 degrees, or
+    /// where the lowest frequency is too high to tell the sign of the static gain (phase nearer to 90 than to 0 or 180
+    /// degrees, integrators taken off).
+    static Expected<MeasuredPlant> make(const FrequencyResponse& points);
+
+    /// Within [low, high]; beyond them the end's value.
+    std::complex<double> at(double omega) const;
+
+    double low() const { return omega_.front(); }
+    double high() const { return omega_.back(); }  ///< where the phase can still be followed
+    const std::vector<double>& omega() const { return omega_; }
+    int unstable_poles() const { return unstable_poles_; }
+    int integrators() const { return integrators_; }
+    double static_sign() const { return static_sign_; }  ///< of lim s^integrators P(s) for s -> 0: 1 or -1
+    /// The sign that Kp must have: static_sign for an even number of unstable poles.
+    double gain_sign() const { return unstable_poles_ % 2 == 0 ? static_sign_ : -static_sign_; }
+    /// The last frequency where the phase, turned by gain_sign, falls through -180 degrees; empty: nowhere in the band.
+    std::optional<double> phase_crossover() const;
+
+private:
+    double interpolate(const std::vector<double>& value, double omega) const;
+
+    std::vector<double> omega_, log_omega_, log_size_, phase_;
+    int unstable_poles_ = 0, integrators_ = 0;
+    double static_sign_ = 1;
+    double turned_ = 0;  // on top of the phase, that of gain_sign P, from -90 degrees an integrator, -180 an unstable
+                         // pole
+};
+
+}  // namespace tunewright

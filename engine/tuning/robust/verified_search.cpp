@@ -1,0 +1,198 @@
+#include "engine/tuning/robust/verified_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/feasibility.h"
+#include "engine/tuning/robust/plane_search.h"
+#include "engine/tuning/robust/scan.h"
+
+namespace tunewright::robust {
+namespace {
+
+constexpr double kAllowedExcess =
+    2e-5;  // relative, of Ms and Mt on the independent grid: above it nothing is returned as a success
+
+std::string shown(double value) {
+    std::ostringstream out;
+    out.precision(4);
+    out << value;
+    return out.str();
+}
+
+/// The largest relative excess over a limit, on a grid that the search never saw.
+double measured_excess(const Problem& problem, const Point& x) {
+    if (problem.measured) return excess_on_points(problem, x);
+    double worst = -1;
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        worst = std::max(worst, excess_on(problem.plant_at(i), problem, x, {.step = 0.06, .density = 53}));
+    return worst;
+}
+
+Problem tightened(Problem problem, double relative) {
+    problem.limits.Ms = 1 + (problem.limits.Ms - 1) * (1 - relative);
+    problem.limits.Mt = 1 + (problem.limits.Mt - 1) * (1 - relative);
+    if (problem.limits.Mks) *problem.limits.Mks *= 1 - relative;
+    return problem;
+}
+
+class ProgressReport {
+public:
+    ProgressReport(const Problem& problem, const RunControl& control) : problem_(problem), control_(control) {}
+
+    bool operator()(const Point& x, double log_cost) {
+        ++steps_;
+        if (control_.progress) {
+            Progress progress;
+            progress.fraction = 1 - std::pow(0.9, steps_);
+            progress.stage = "tune";
+            progress.message = "robust design: " + std::to_string(steps_) + " improvements so far.";
+            BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
+            if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
+            progress.best = best;
+            control_.progress(progress);
+        }
+        return !control_.stop.stop_requested();
+    }
+
+private:
+    const Problem& problem_;
+    const RunControl& control_;
+    int steps_ = 0;
+};
+
+std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
+                            CostSurface* surface, const Report& report) {
+    if (kind == "fast" && surface == nullptr) return fast_search(sweep, problem, report);
+    if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
+        const auto points = scan(sweep);
+        if (points.empty()) return std::nullopt;
+        start = {std::exp(points.front().x[1]), problem.pid ? std::exp(points.front().x[2]) : 0};
+    }
+    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, start->first, start->second, report);
+    auto gridded = grid_search(sweep, problem, start->first, start->second, surface, report);
+    return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
+}
+
+/// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
+bool has_reference_optima(Problem& problem, const Sweep& sweep) {
+    if (problem.objective != Objective::weighted) return true;
+    for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
+        Problem alone = problem;
+        alone.objective = part;
+        const auto found = fast_search(sweep, alone, {});
+        if (!found) return false;
+        (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
+    }
+    return true;
+}
+
+/// Where the scan saw nothing: the feasible set may be a small one around the least peak, or belong to the other sign
+/// of Kp.
+std::optional<Found> search_from_least_peak(Problem& problem, const Report& report) {
+    for (int attempt = 0; attempt < 2; ++attempt, problem.sign = -problem.sign) {
+        const auto least = least_common_peak(problem);
+        if (!least) continue;
+        const Sweep sweep(problem, reference_frequency(problem));
+        const auto start = feasible_near(sweep, least->x);
+        if (!start) return std::nullopt;
+        const SqpResult result = minimise(sweep, problem, *start, {}, report);
+        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false};
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+/// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
+std::optional<Found> search_again(const Sweep& sweep, const Problem& problem, const Point& before,
+                                  const Report& report) {
+    const auto start = feasible_near(sweep, before);
+    if (!start) return std::nullopt;
+    bool stopped = false;
+    const Report watch = [&](const Point& x, double cost) {
+        stopped = report && !report(x, cost);
+        return !stopped;
+    };
+    const SqpResult result = minimise(sweep, problem, *start, {}, watch);
+    if (!std::isfinite(result.log_cost)) return std::nullopt;
+    return Found{result.x, result.log_cost, stopped};
+}
+
+/// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
+/// is.
+std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
+    for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
+        problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
+        if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
+    }
+    return std::nullopt;
+}
+
+std::string on_plants(const Problem& problem) {
+    return problem.others.empty() ? " on this plant"
+                                  : " on all " + std::to_string(problem.plants()) + " plants looked at";
+}
+
+Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& least) {
+    const std::string name = problem.pid ? "PID" : "PI";
+    if (!least)
+        return {ErrorKind::unstable_plant, "",
+                "No " + name + " controller was found that stabilises " +
+                    (problem.others.empty() ? "this plant" : "all of these plants") +
+                    (problem.pid ? ". " : "; a PID might. ") +
+                    "Check the signs and the unit of the dead time, or shorten the dead time."};
+    const auto workable = workable_limit(problem, *least);
+    if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
+        return {ErrorKind::no_feasible_controller, "Mks",
+                "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
+                    " together with the other limits. Raise Mks or leave it out."};
+    if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
+        return {ErrorKind::numerical_failure, "",
+                "Controllers within the limits exist, but none whose response could be computed. Check the units of "
+                "the time constants and the dead time: "
+                "they lie very far apart."};
+    return {ErrorKind::no_feasible_controller, "",
+            "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
+                " and Mt <= " + shown(problem.limits.Mt) + on_plants(problem) +
+                (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
+                ". The smallest common limit that works is Ms = Mt = " + shown(workable.value_or(least->M * 1.01)) +
+                "; use that or more."};
+}
+
+}  // namespace
+
+Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
+                                CostSurface* surface, const RunControl& control, const Point* before) {
+    const double reference = reference_frequency(problem);
+    ProgressReport progress(problem, control);
+    const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
+    const Sweep sweep(problem, reference);
+    std::optional<Found> found;
+    if (has_reference_optima(problem, sweep)) {
+        if (before != nullptr) found = search_again(sweep, problem, *before, report);
+        if (!found) found = search(kind, sweep, problem, start, surface, report);
+    }
+    if (control.stop.stop_requested() && !found)
+        return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
+    if (!found) found = search_from_least_peak(problem, report);
+    if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
+    double tighter = 0;
+    for (int round = 0; round < 4; ++round) {
+        const double excess = measured_excess(problem, found->x);
+        if (excess <= 0.5 * kAllowedExcess) return *found;
+        if (!std::isfinite(excess) || round == 3) break;
+        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
+        const Problem narrowed = tightened(problem, std::min(tighter, 0.5));
+        const Sweep narrow_sweep(narrowed, reference);
+        const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
+        found->x = again.x;
+        found->log_cost = again.log_cost;
+    }
+    return Error{ErrorKind::numerical_failure, "",
+                 "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
+                 "Try another search or a filter with a longer Tf."};
+}
+
+}  // namespace tunewright::robust

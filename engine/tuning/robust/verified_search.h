@@ -1,0 +1,26 @@
+// A robust design's search with everything around it: starts, second looks, the check on a grid of its own, and the
+// sentence where there is no answer.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/expected.h"
+#include "engine/tuning/method.h"
+#include "engine/tuning/robust/fast_search.h"
+
+namespace tunewright::robust {
+
+/// Where the plane searches begin, as (Ti, Td); empty: at the best point of a scan.
+using PlaneStart = std::optional<std::pair<double, double>>;
+
+/// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
+/// ones. `before`: the design that some new plants have proved too bold.
+/// `kind`: fast, nelder_mead or grid. `problem` receives the reference optima of a weighted objective and the sign of
+/// Kp that was found to work. Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
+/// works), numerical_failure.
+Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
+                                CostSurface* surface, const RunControl& control, const Point* before);
+
+}  // namespace tunewright::robust

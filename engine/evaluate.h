@@ -94,14 +94,6 @@ struct Equivalents {
     std::string why_no_series;
 };
 
-/// Of one controller on every plant of a family.
-struct RegionFigures {
-    double stable_fraction = 0;      ///< of the family, 0 to 1
-    std::optional<double> worst_Ms;  ///< empty where not every plant that was looked at is stable
-    Plant worst_plant;               ///< where Ms is largest, or the loop unstable
-    WhyNull why_null;
-};
-
 /// Everything known about one controller on one plant, or on the nominal plant of a family.
 struct Evaluation {
     Controller controller;

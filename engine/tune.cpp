@@ -10,6 +10,7 @@
 namespace tunewright {
 namespace {
 
+constexpr double kNoticeable = 1.01;    // of a limit, before a warning
 constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
@@ -79,6 +80,36 @@ std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms
                         rank_Ms);
     });
     return order;
+}
+
+// What a method lets itself be asked for as Ms, if it does.
+std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& options) {
+    if (const auto given = options.number("Ms")) return given;
+    const auto at = std::ranges::find(method.options, "Ms", &OptionDescription::name);
+    if (at == method.options.end() || !at->default_value) return std::nullopt;
+    const double* value = std::get_if<double>(&*at->default_value);
+    return value ? std::optional(*value) : std::nullopt;
+}
+
+void warn_of_region(Evaluation& evaluation, const Planned& planned, bool identified) {
+    const auto limit = Ms_limit(*planned.method, planned.options);
+    if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
+    const double worst = *evaluation.region->worst_Ms;
+    if (worst <= kNoticeable * *limit) return;
+    evaluation.warnings.push_back(
+        {"above-limit-in-region", "On the worst plant of the region Ms is " + text(worst) + ", above the " +
+                                      text(*limit) + " asked for." +
+                                      (identified ? " uncertainty \"identified\" holds the limit on all of it." : "")});
+}
+
+void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {
+    const auto& crossover = evaluation.robustness.phase_crossover;
+    if (!band || !crossover || *crossover <= band->omega_high) return;
+    evaluation.warnings.push_back(
+        {"beyond-excited-band",
+         "The loop's phase crossover, omega " + text(*crossover) +
+             ", lies beyond the band that the record excited (up to omega " + text(band->omega_high) +
+             "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
 }
 
 // The 95 % confidence region of the chosen model.
@@ -231,7 +262,11 @@ TuningEntry Run::entry(const Planned& planned, double from, double to) {
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem.plant, problem.linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, tuned->controller, tuned->warnings);
-    if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
+    if (entry.evaluation) {
+        warn_of_region(*entry.evaluation, planned, result_.model && !held_);
+        if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
+        entry.evaluation->compute_ms = now_ms() - started;
+    }
     if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
     return entry;
 }
@@ -309,6 +344,8 @@ Expected<TuningResult> Run::result() {
             result_.controllers.push_back(baseline());
     }
     result_.ranking = ranking(result_.controllers, request_.evaluate.rank_Ms);
+    if (result_.model && !result_.ranking.empty())
+        result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
     result_.ranking_by =
         "load IAE among stable entries with Ms <= " + text(request_.evaluate.rank_Ms) + ", then the rest";
     report(1, "tune", "Done.");

@@ -160,6 +160,19 @@ const Description<ParameterCovariance>& covariance_contract() {
     return description;
 }
 
+const Description<ExcitedBand>& band_contract() {
+    static const auto description = [] {
+        Description<ExcitedBand> d("ExcitedBand",
+                                   "Where the answer to u stands out of the noise: the record's own estimate of "
+                                   "P(j omega) has a relative standard error below 100 %.");
+        d.field("omega_low", &ExcitedBand::omega_low, only_answered(number()), "2 pi over the record's length.",
+                {.unit = "rad/time"})
+            .field("omega_high", &ExcitedBand::omega_high, only_answered(number()), "Upper end.", {.unit = "rad/time"});
+        return d;
+    }();
+    return description;
+}
+
 const Description<FitTrace>& fit_contract() {
     static const auto description = [] {
         Description<FitTrace> d("Fit", "The model beside the record, six significant digits.");
@@ -191,6 +204,10 @@ const Description<IdentifiedModel>& model_contract() {
                    "Of the plant, from the record alone.")
             .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
                    "Of the model; left out where no gain makes it oscillate.")
+            .field("excited_band", &M::excited_band, maybe(answer(band_contract())),
+                   "The frequencies that the record tells something about.")
+            .field("region", &M::region, maybe(answer(region_contract())),
+                   "The best-ranked controller on the 95 % confidence region; each entry has its own.")
             .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
             .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
             .field("fit", &M::fit, answer(fit_contract()), "The model beside the record.")

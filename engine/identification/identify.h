@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "engine/expected.h"
+#include "engine/identification/excited_band.h"
 #include "engine/identification/record.h"
-#include "engine/plant/plant.h"
+#include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/simulation/limit_cycle.h"
 #include "engine/warning.h"
@@ -103,6 +104,9 @@ struct IdentifiedModel {
     std::optional<UltimatePoint> ultimate_point;  ///< of the plant; empty where no P gain makes it oscillate
     std::string choice_reason;                    ///< why this structure, one sentence
     FitTrace fit;
+    std::optional<ExcitedBand> excited_band;
+    std::optional<RegionFigures>
+        region;  ///< of the best-ranked controller on the 95 % confidence region; tune() fills it
     DataQuality data_quality;
     std::vector<Warning> warnings;
 };

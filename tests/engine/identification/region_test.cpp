@@ -1,0 +1,110 @@
+// What a record leaves open: the band that it excited, and controllers on its confidence region.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/identification/excited_band.h"
+#include "engine/tune.h"
+
+namespace tunewright {
+namespace {
+
+Excitation step_test(double noise) {
+    Excitation excitation{{}, {}, 0.5, noise};
+    for (int i = 0; i < 400; ++i) {
+        excitation.t.push_back(0.5 * i);
+        excitation.u.push_back(i < 20 ? 0 : 1);
+    }
+    return excitation;
+}
+
+TEST(ExcitedBand, OfAStepIsWhereItsAnswerMeetsTheNoise) {
+    // |P U| = |2/(10 j w + 1)|/w meets sqrt(0.01^2 0.5 199.5) = 0.0999: w = 1.411 by solving 4/((100 w^2 + 1) w^2) =
+    // 0.009975.
+    const auto band = excited_band(step_test(0.01), Fopdt{.K = 2, .T = 10, .L = 3});
+    ASSERT_TRUE(band.has_value());
+    const double alone = std::sqrt((-1 + std::sqrt(1 + 4 * 100 * 4 / 0.009975)) / 200);
+    EXPECT_NEAR(alone, 1.413, 1e-3);
+    // Frequencies within 15 % of an excited one count too; the end is found to 2 %.
+    EXPECT_NEAR(band->omega_high / (1.15 * alone), 0.99, 0.011);
+    EXPECT_NEAR(band->omega_low, 2 * M_PI / 199.5, 1e-12);
+}
+
+TEST(ExcitedBand, MoreNoiseNarrowsItAndSamplingBoundsIt) {
+    const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};
+    double last = INFINITY;
+    for (const double noise : {1e-4, 1e-3, 1e-2, 1e-1}) {
+        const auto band = excited_band(step_test(noise), plant);
+        ASSERT_TRUE(band.has_value());
+        EXPECT_LT(band->omega_high, last);
+        last = band->omega_high;
+    }
+    EXPECT_DOUBLE_EQ(excited_band(step_test(0), plant)->omega_high, M_PI / 0.5);
+    EXPECT_FALSE(excited_band(step_test(1e6), plant).has_value());
+}
+
+Record noisy_step(double noise, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, noise);
+    Record record;
+    for (int i = 0; i < 400; ++i) {
+        const double t = 0.5 * i, since = t - 10 - 3;
+        record.t.push_back(t);
+        record.u.push_back(t < 10 ? 0 : 1);
+        record.y.push_back((since > 0 ? 2 * (1 - std::exp(-since / 10)) : 0) + normal(random));
+    }
+    return record;
+}
+
+TuningResult tuned(double noise, bool over_region) {
+    TuningRequest request;
+    request.record = noisy_step(noise, 1);
+    request.identify.model = ModelChoice::fopdt;
+    request.evaluate.points = 0;
+    request.over_identified_region = over_region;
+    auto result = tune(request, {});
+    EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
+    return result ? std::move(*result) : TuningResult{};
+}
+
+TEST(IdentifiedRegion, RobustHoldsItsLimitOnAllOfItWhereAsked) {
+    const auto plain = tuned(0.1, false);
+    ASSERT_TRUE(plain.model);
+    if (plain.model->covariance.names.empty()) GTEST_SKIP() << "the identification gives no covariance";
+    const auto held = tuned(0.1, true);
+    ASSERT_TRUE(held.model);
+    const auto &nominal = *plain.controllers[0].evaluation, &safe = *held.controllers[0].evaluation;
+    EXPECT_EQ(safe.region->stable_fraction, 1);
+    EXPECT_LE(*safe.region->worst_Ms, 1.4 * (1 + 1e-4));
+    EXPECT_GT(*nominal.region->worst_Ms, 1.42);
+    EXPECT_LT(*safe.robustness.Ms, 1.4);
+    EXPECT_GT(*safe.performance.load.IAE, *nominal.performance.load.IAE);
+    const auto coded = [](const Warning& w) { return w.code == "above-limit-in-region"; };
+    EXPECT_TRUE(std::ranges::any_of(nominal.warnings, coded));
+    EXPECT_FALSE(std::ranges::any_of(safe.warnings, coded));
+    EXPECT_EQ(*plain.model->region->worst_Ms, *nominal.region->worst_Ms);
+    // Points of its own inside the ellipsoid.
+    const auto region =
+        PlantRegion::of_covariance(held.model->plant, held.model->covariance.names, held.model->covariance.matrix);
+    ASSERT_TRUE(region.has_value());
+    EvaluateOptions without_traces;
+    without_traces.points = 0;
+    for (auto z : region->spread(100)) {
+        for (double& x : z) x = -x;
+        const auto inside = evaluate(region->at(z), safe.controller, without_traces);
+        EXPECT_LE(*inside->robustness.Ms, 1.4 * (1 + 1e-4));
+    }
+}
+
+TEST(IdentifiedRegion, ACrossoverBeyondTheExcitedBandIsWarnedOf) {
+    const auto coded = [](const Warning& w) { return w.code == "beyond-excited-band"; };
+    const auto quiet = tuned(0.001, false), loud = tuned(0.3, false);
+    EXPECT_FALSE(std::ranges::any_of(quiet.controllers[0].evaluation->warnings, coded));
+    EXPECT_TRUE(std::ranges::any_of(loud.controllers[0].evaluation->warnings, coded))
+        << loud.model->excited_band->omega_high << " " << *loud.controllers[0].evaluation->robustness.phase_crossover;
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -259,7 +259,7 @@ TuningEntry Run::entry(const Planned& planned, double from, double to) {
     }
     entry.reduced_model = tuned->reduced_model;
     entry.surface = tuned->surface;
-    if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem.plant, problem.linear, request_.evaluate);
+    if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, tuned->controller, tuned->warnings);
     if (entry.evaluation) {
@@ -278,6 +278,7 @@ TuningEntry Run::baseline() const {
     entry.source = "the settings given in the request";
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
+    if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))
         entry.error->where.replace(0, std::string("controller").size(), "baseline");

@@ -22,9 +22,11 @@ struct Change {
 
 std::vector<Change> changes_of(const Excitation& excitation) {
     std::vector<Change> changes;
-    for (std::size_t i = 1; i < excitation.u.size(); ++i) {
-        const double size = excitation.u[i] - excitation.u[i - 1];
+    double before = excitation.u_rest;
+    for (std::size_t i = 0; i < excitation.u.size(); ++i) {
+        const double size = excitation.u[i] - before;
         if (size != 0) changes.push_back({excitation.t[i], size});
+        before = excitation.u[i];
     }
     return changes;
 }

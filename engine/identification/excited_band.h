@@ -14,9 +14,10 @@ struct ExcitedBand {
     double omega_high = 0;  ///< <= pi over the sample time
 };
 
-/// What the band is computed from: u held between the instants t, and y's noise.
+/// What the band is computed from: u held between the instants t, at `u_rest` before the first, and y's noise.
 struct Excitation {
     std::vector<double> t, u;
+    double u_rest = 0;
     double sample_time = 0;  ///< of y, median
     double noise_std = 0;    ///< of y, its rounding and what else no sensor resolves included
 };

@@ -152,11 +152,11 @@ IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const
 }
 
 /// No sensor is taken to resolve less than a thousandth of what y did.
-Excitation excitation_of(const IdentifiedModel& model) {
+Excitation excitation_of(const IdentifiedModel& model, double u_rest) {
     const auto [low, high] = std::minmax_element(model.fit.y.begin(), model.fit.y.end());
     const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
     const double noise = std::max({model.data_quality.noise_std, rounding, 1e-3 * (*high - *low)});
-    return {model.fit.t, model.fit.u, model.data_quality.sample_time, noise};
+    return {model.fit.t, model.fit.u, u_rest, model.data_quality.sample_time, noise};
 }
 
 }  // namespace
@@ -198,7 +198,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
         choice.reason = std::string(name_of(plan.answers.front())) + " was asked for.";
     }
     IdentifiedModel model = assemble(*clean, std::move(fits), criteria, percents, choice);
-    model.excited_band = excited_band(excitation_of(model), model.plant);
+    model.excited_band = excited_band(excitation_of(model, clean->scale.u_rest), model.plant);
     report(control, 1, "model found");
     return model;
 }

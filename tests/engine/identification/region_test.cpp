@@ -12,7 +12,7 @@ namespace tunewright {
 namespace {
 
 Excitation step_test(double noise) {
-    Excitation excitation{{}, {}, 0.5, noise};
+    Excitation excitation{{}, {}, 0, 0.5, noise};
     for (int i = 0; i < 400; ++i) {
         excitation.t.push_back(0.5 * i);
         excitation.u.push_back(i < 20 ? 0 : 1);
@@ -30,6 +30,20 @@ TEST(ExcitedBand, OfAStepIsWhereItsAnswerMeetsTheNoise) {
     // Frequencies within 15 % of an excited one count too; the end is found to 2 %.
     EXPECT_NEAR(band->omega_high / (1.15 * alone), 0.99, 0.011);
     EXPECT_NEAR(band->omega_low, 2 * M_PI / 199.5, 1e-12);
+}
+
+TEST(ExcitedBand, AStepAtTheFirstSampleCountsAsMuch) {
+    const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};
+    Excitation early = step_test(0.01);
+    for (double& u : early.u) u = 5;
+    EXPECT_FALSE([&] {
+        Excitation resting = early;
+        resting.u_rest = 5;
+        return excited_band(resting, plant).has_value();
+    }());
+    early.u_rest = 4;
+    ASSERT_TRUE(excited_band(early, plant).has_value());
+    EXPECT_NEAR(excited_band(early, plant)->omega_high, excited_band(step_test(0.01), plant)->omega_high, 1e-9);
 }
 
 TEST(ExcitedBand, MoreNoiseNarrowsItAndSamplingBoundsIt) {

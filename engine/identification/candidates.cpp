@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "engine/identification/data_quality.h"
@@ -13,25 +14,26 @@ namespace tunewright {
 namespace {
 
 constexpr int kStartsRefined = 3;
-constexpr int kCoarseIterations = 25;
-constexpr int kFinalIterations = 60;
+constexpr int kThinSamples = 240;
+constexpr Effort kCoarse{25, 1e-6};
+constexpr Effort kComparison{60, 1e-7};
+constexpr Effort kFinal{60, 1e-11};
 
-Fit best_from(const CleanRecord& record, const ModelForm& form, const std::vector<Shape>& starts, int iterations,
+Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
               std::stop_token stop) {
     Fit best;
     best.form = form;
     bool first = true;
     for (const Shape& start : starts) {
-        Fit fit = fit_shape(record, form, start, iterations, stop);
+        Fit fit = fit_shape(data, form, start, effort, stop);
         if (first || (fit.determined && (!best.determined || fit.sse < best.sse))) best = std::move(fit);
         first = false;
     }
     return best;
 }
 
-std::vector<Shape> most_promising(const CleanRecord& record, const ModelForm& form, const std::vector<Shape>& starts,
-                                  std::stop_token stop) {
-    const std::vector<double> sums = sums_of_squares(record, form, starts, stop);
+std::vector<Shape> most_promising(const FitContext& context, const ModelForm& form, const std::vector<Shape>& starts) {
+    const std::vector<double> sums = sums_of_squares(context.few(), form, starts, context.stop);
     std::vector<int> order(starts.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sums[a] < sums[b]; });
@@ -42,23 +44,25 @@ std::vector<Shape> most_promising(const CleanRecord& record, const ModelForm& fo
     return best;
 }
 
-Fit fit_form(const CleanRecord& record, const CleanRecord& thin, const ModelForm& form, const std::vector<Fit>& simpler,
-             std::stop_token stop) {
-    std::vector<Shape> starts = scan_shapes(thin, form, kStartsRefined, stop);
+bool same_form(const ModelForm& a, const ModelForm& b) {
+    return a.other_level == b.other_level && a.load == b.load && (a.slope == b.slope || is_integrating(a.structure));
+}
+
+Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
+    std::vector<Shape> starts = scan_shapes(context.few(), form, kStartsRefined, context.stop);
     std::vector<Shape> nested;
     for (const Fit& fit : simpler) {
         const std::vector<Shape> shapes = extend_shape(fit.shape, form.structure);
-        if (!shapes.empty()) nested.push_back(shapes.front());
+        if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
         starts.insert(starts.end(), shapes.begin(), shapes.end());
     }
-    starts = most_promising(thin, form, starts, stop);
-    Fit fit = best_from(thin, form, starts, kCoarseIterations, stop);
-    fit = fit_shape(record, form, fit.shape, kFinalIterations, stop);
+    Fit fit = best_from(context.few(), form, most_promising(context, form, starts), kCoarse, context.stop);
+    fit = fit_shape(context.some(), form, fit.shape, kComparison, context.stop);
     const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
-        return !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
+        return same_form(s.form, form) && !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
     });
     if (worse && !nested.empty()) {
-        Fit again = best_from(record, form, nested, kFinalIterations, stop);
+        Fit again = best_from(context.some(), form, nested, kComparison, context.stop);
         if (again.sse < fit.sse) fit = std::move(again);
     }
     return fit;
@@ -99,15 +103,26 @@ bool seen_at_rest(const CleanRecord& r, double L, double noise) {
     return spread <= std::max(2 * noise, 0.01);
 }
 
+bool starts_in_relay(const FitContext& context) {
+    const CleanRecord& r = context.record;
+    return context.relay && !r.u0_given && r.changes() > 1 &&
+           std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
+}
+
 /// Where the fit from rest leaves more than noise behind, and the user has not said where u was before: the starts that
 /// could explain it. A single change at the first sample is the unseen step itself.
-std::vector<Start> other_starts(const CleanRecord& r, const Fit& from_rest, double noise) {
-    if (r.u0_given) return {};
-    std::vector<Start> starts;
-    if (is_integrating(from_rest.form.structure) && shows_rest(r)) starts.push_back(Start::steady_slope);
-    const bool unexplained =
-        from_rest.sse > 2 * r.samples() * noise * noise && correlation_time(from_rest.residual) > 3;
-    if (unexplained && !(r.changes() == 1 && r.v_time[0] == 0)) starts.push_back(Start::other_level);
+std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
+    const CleanRecord& r = context.record;
+    std::vector<ModelForm> starts;
+    if (r.u0_given) return starts;
+    ModelForm form = from_rest.form;
+    if (is_integrating(form.structure) && !form.slope && shows_rest(r)) {
+        form.slope = true;
+        starts.push_back(form);
+        form = from_rest.form;
+    }
+    form.other_level = true;
+    if (leaves_a_pattern(context, from_rest) && !(r.changes() == 1 && r.v_time[0] == 0)) starts.push_back(form);
     return starts;
 }
 
@@ -117,37 +132,80 @@ constexpr double kVarianceFloor = 1e-14;
 
 }  // namespace
 
-Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure structure,
-                  const std::vector<Fit>& simpler, std::stop_token stop) {
+FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
+    FitContext context;
+    context.noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
+    context.thin = thin_out(record, kThinSamples);
+    context.medium = every_few(record, kMediumSamples);
+    context.record = std::move(record);
+    context.relay = relay;
+    context.stop = stop;
+    return context;
+}
+
+bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
+    const double n = static_cast<double>(fit.residual.size());
+    return fit.sse > 2 * n * context.noise * context.noise && correlation_time(fit.residual) > 3;
+}
+
+Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
+                  const std::vector<Fit>& simpler) {
+    const CleanRecord& record = context.record;
+    ModelForm form{structure, false, disturbances.slope, disturbances.load};
     // A start that the simplest self-regulating structure needed, its extensions need too.
     const auto fopdt =
         std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
-    const bool known_start =
-        fopdt != simpler.end() && fopdt->form.start == Start::other_level && !is_integrating(structure);
-    if (known_start) {
-        Fit fit = fit_form(record, thin, {structure, Start::other_level}, simpler, stop);
+    const bool known_start = fopdt != simpler.end() && fopdt->form.other_level && !is_integrating(structure);
+    if (known_start || (starts_in_relay(context) && !is_integrating(structure))) {
+        ModelForm left = form;
+        left.other_level = true;
+        Fit fit = fit_form(context, left, simpler);
         if (fit.determined && plausible_rest(record, fit)) return fit;
     }
-    Fit best = fit_form(record, thin, {structure, Start::at_rest}, simpler, stop);
+    Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
-    const double noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
-    for (const Start start : other_starts(record, best, noise)) {
-        Fit fit = fit_form(record, thin, {structure, start}, simpler, stop);
+    for (const ModelForm& start : other_starts(context, best)) {
+        Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
-        if (start == Start::other_level && seen_at_rest(record, fit.shape.L(), noise)) continue;
+        if (start.other_level && seen_at_rest(record, fit.shape.L(), context.noise)) continue;
         const double n = effective_samples(fit.residual);
-        const bool better = information_criterion(record, fit, n) + kStrong < information_criterion(record, best, n);
-        if (better) best = std::move(fit);
+        if (information_criterion(fit, n) + kStrong < information_criterion(best, n)) best = std::move(fit);
     }
     return best;
 }
 
-double level_of_rest(const Fit& fit) {
-    return fit.form.start == Start::at_rest ? 0 : -fit.linear[fit.form.start_index()] / fit.linear[0];
+void polish(const FitContext& context, Fit& fit) {
+    Fit again = fit_shape(context.all(), fit.form, fit.shape, kFinal, context.stop);
+    if (again.determined && again.sse <= fit.sse) fit = std::move(again);
 }
 
-double information_criterion(const CleanRecord& record, const Fit& fit, double independent_samples) {
-    const double variance = fit.sse / record.samples() + kVarianceFloor;
+void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
+    if (context.record.samples() == context.medium.samples()) return;
+    double best = std::numeric_limits<double>::max();
+    for (Fit& fit : fits) {
+        const bool determined = fit.determined;
+        fit = project(context.all(), fit.form, fit.shape);
+        fit.determined = fit.determined && determined;
+        if (fit.determined) best = std::min(best, fit.sse);
+    }
+    // What the errors of the parameters from fewer samples can cost, several times over.
+    const double n = context.record.samples();
+    const double noise = best / n + kVarianceFloor;
+    const double reach = 100 * noise * n / context.medium.samples();
+    for (Fit& fit : fits) {
+        if (fit.determined && fit.sse < best * 1.02 + reach)
+            fit = fit_shape(context.all(), fit.form, fit.shape, {20, 1e-6}, context.stop);
+    }
+}
+
+double level_of_rest(const Fit& fit) {
+    if (fit.form.other_level) return -fit.linear[fit.form.level_index()] / fit.linear[0];
+    if (is_integrating(fit.form.structure) && fit.form.slope) return -fit.linear[fit.form.slope_index()] / fit.linear[0];
+    return 0;
+}
+
+double information_criterion(const Fit& fit, double independent_samples) {
+    const double variance = fit.sse / static_cast<double>(fit.residual.size()) + kVarianceFloor;
     return independent_samples * std::log(variance) + fit.form.parameters() * std::log(independent_samples);
 }
 

@@ -10,16 +10,47 @@
 
 namespace tunewright {
 
-/// Fits one structure: scan on the thinned record, refinement of the best starts there, final fit on the whole record.
-/// `simpler` are fits of the structures that it contains; it never ends worse than they do. With no
-/// u0 given, starts other than rest are fitted where the record asks for it, and kept if they lower the criterion
-/// by 10.
-Fit fit_structure(const CleanRecord& record, const CleanRecord& thin, Structure structure,
-                  const std::vector<Fit>& simpler, std::stop_token stop);
+/// What the fits of one record share. `thin` has a few hundred samples for scans, `medium` at most kMediumSamples for
+/// the structures' comparison.
+struct FitContext {
+    CleanRecord record, medium, thin;
+    double noise = 0;            ///< standard deviation of what changes from sample to sample, rounding included
+    bool relay = false;          ///< a relay test
+    std::vector<Anchor> anchors;  ///< that every model is held to
+    std::stop_token stop;
+
+    FitData all() const { return {&record, anchors}; }
+    FitData some() const { return {&medium, anchors}; }
+    FitData few() const { return {&thin, anchors}; }
+};
+
+inline constexpr int kMediumSamples = 1500;
+
+FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop);
+
+/// What else than u moved y, and is looked for in every structure.
+struct Disturbances {
+    bool slope = false, load = false;
+};
+
+/// Fits one structure to the medium record: scan and refinement of the best starts on the thin one, final fit there.
+/// `simpler` are fits of the structures that it contains; it never ends worse than they do. With no u0 given, starts
+/// other than rest are fitted where the record asks for it, and kept if they lower the criterion by 10.
+Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
+                  const std::vector<Fit>& simpler);
+
+/// The same fits on the whole record; those that cannot be chosen any more keep their parameters.
+void finish_fits(const FitContext& context, std::vector<Fit>& fits);
+
+/// The chosen one to its last digit.
+void polish(const FitContext& context, Fit& fit);
+
+/// Whether a fit leaves more than noise behind, and in a pattern.
+bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 
 /// n ln(sse/n) + p ln n (Schwarz 1978) with n the number of independent samples that the residuals are worth, in place
 /// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant.
-double information_criterion(const CleanRecord& record, const Fit& fit, double independent_samples);
+double information_criterion(const Fit& fit, double independent_samples);
 
 struct Choice {
     int index = -1;  ///< into the fits; -1: none is determined
@@ -31,7 +62,7 @@ struct Choice {
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
               double independent_samples);
 
-/// The level of v at which y was at rest before the record; 0 for Start::at_rest.
+/// The level of v at which y was at rest before the record; 0 where the form has no other.
 double level_of_rest(const Fit& fit);
 
 /// 100 (1 - ||residual||/||y - mean(y)||).

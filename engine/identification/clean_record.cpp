@@ -157,6 +157,8 @@ CleanRecord thin_out(const CleanRecord& record, int most) {
     if (record.changes() > kMostBlocks) average_input(record, kMostBlocks, thin);
     const int n = record.samples();
     if (n <= most) return thin;
+    // Where u keeps moving, all of the record is transient.
+    if (record.changes() > 4) return every_few(thin, most);
     std::vector<int> chosen = {0, n - 1};
     for (int i = 0; i < most / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (most / 2)));
     add_transients(record, most / 2 / std::clamp(record.changes(), 1, 4), chosen);
@@ -169,6 +171,20 @@ CleanRecord thin_out(const CleanRecord& record, int most) {
         thin.y.push_back(record.y[i]);
     }
     return thin;
+}
+
+CleanRecord every_few(const CleanRecord& record, int most) {
+    const int n = record.samples(), stride = (n + most - 1) / most;
+    if (stride <= 1) return record;
+    CleanRecord few = record;
+    few.t.clear();
+    few.y.clear();
+    // One stride throughout: evenly spaced samples stay evenly spaced.
+    for (int i = (n - 1) % stride; i < n; i += stride) {
+        few.t.push_back(record.t[static_cast<std::size_t>(i)]);
+        few.y.push_back(record.y[static_cast<std::size_t>(i)]);
+    }
+    return few;
 }
 
 }  // namespace tunewright

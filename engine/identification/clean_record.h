@@ -69,4 +69,7 @@ Expected<CleanRecord> clean_record(const Record& record);
 /// searches. An input of very many changes is averaged over blocks.
 CleanRecord thin_out(const CleanRecord& record, int most);
 
+/// Every second, third, ... sample, so that at most `most` are left, with the input as it is.
+CleanRecord every_few(const CleanRecord& record, int most);
+
 }  // namespace tunewright

@@ -25,7 +25,9 @@ bool self_regulating(const Fit& fit) {
 double remaining_movement(const CleanRecord& r, const Fit& fit) {
     if (!self_regulating(fit)) return 1;
     double offset = fit.linear[fit.form.offset_index()];
-    if (fit.form.start == Start::other_level) offset += fit.linear[fit.form.start_index()];
+    if (fit.form.other_level) offset += fit.linear[fit.form.level_index()];
+    if (fit.form.load) offset += fit.linear[fit.form.load_index()];
+    if (fit.form.slope) offset += fit.linear[fit.form.slope_index()] * r.t.back();
     double moved = 0;
     for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
     const double final_value = fit.linear[0] * r.v_level.back() + offset;
@@ -142,7 +144,7 @@ Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std
     const double remaining = remaining_movement(record, fit);
     diagnosis.settled = remaining < 0.05;
     warn_unsettled(record, fit, remaining, diagnosis.warnings);
-    if (fit.form.start == Start::at_rest) warn_not_at_rest(record, diagnosis.warnings);
+    if (!fit.form.other_level && !fit.form.slope) warn_not_at_rest(record, diagnosis.warnings);
     warn_residuals(record, fit, quality, diagnosis.warnings);
     warn_uncertain(values, standard_errors, diagnosis.warnings);
     warn_sampling(record, fit, quality, diagnosis.warnings);

@@ -2,61 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "engine/identification/candidates.h"
 #include "engine/identification/data_quality.h"
 #include "engine/identification/diagnosis.h"
-#include "engine/identification/uncertainty.h"
+#include "engine/identification/model_answer.h"
+#include "engine/identification/model_search.h"
+#include "engine/identification/record_kind.h"
+#include "engine/identification/relay_fourier.h"
+#include "engine/identification/two_point.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
 namespace {
-
-constexpr int kThinSamples = 240;
-constexpr int kTracePoints = 2000;
-
-/// The structures to fit, simpler ones first, and those that answer the request: the others only give starting values.
-struct Plan {
-    std::vector<Structure> fitted, answers;
-};
-
-Plan plan_for(ModelChoice model, const CleanRecord& record) {
-    using enum Structure;
-    // An unstable plant is recorded under feedback, so u moves often; after one step any curve may look like its
-    // beginning.
-    const bool maybe_unstable = record.changes() > 2;
-    Plan plan;
-    switch (model) {
-        case ModelChoice::fopdt:
-            plan.fitted = {fopdt};
-            if (maybe_unstable) plan.fitted.push_back(unstable);
-            plan.answers = plan.fitted;
-            return plan;
-        case ModelChoice::sopdt: return {{fopdt, sopdt}, {sopdt}};
-        case ModelChoice::sopdt_zero: return {{fopdt, sopdt, sopdt_zero}, {sopdt_zero}};
-        case ModelChoice::ipdt: return {{ipdt}, {ipdt}};
-        case ModelChoice::ipdt_lag: return {{ipdt, ipdt_lag}, {ipdt_lag}};
-        case ModelChoice::automatic: break;
-    }
-    plan.fitted = {ipdt, fopdt, ipdt_lag, sopdt, sopdt_zero};
-    if (maybe_unstable) plan.fitted.push_back(unstable);
-    plan.answers = plan.fitted;
-    return plan;
-}
-
-std::optional<Error> refuse_method(const IdentifyOptions& options) {
-    if (options.method == IdentifyMethod::relay_fourier) {
-        return Error{ErrorKind::unsupported, "identify/method",
-                     "The relay formulas alone (relay_fourier) are not available; use output_error, which fits relay "
-                     "records too."};
-    }
-    if (options.method == IdentifyMethod::two_point) {
-        return Error{ErrorKind::unsupported, "identify/method",
-                     "The two-point construction is not available; use output_error, which uses every sample."};
-    }
-    return std::nullopt;
-}
 
 /// A change of u in the last samples shows nothing of the response.
 std::optional<Error> refuse_late_step(const CleanRecord& r) {
@@ -67,6 +24,18 @@ std::optional<Error> refuse_late_step(const CleanRecord& r) {
         "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
             std::to_string(after) +
             " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
+}
+
+const char* asked_name(ModelChoice model) {
+    switch (model) {
+        case ModelChoice::automatic: break;
+        case ModelChoice::fopdt: return "fopdt";
+        case ModelChoice::sopdt: return "sopdt";
+        case ModelChoice::sopdt_zero: return "sopdt_zero";
+        case ModelChoice::ipdt: return "ipdt";
+        case ModelChoice::ipdt_lag: return "ipdt_lag";
+    }
+    return nullptr;
 }
 
 Error no_response(const CleanRecord& r, double percent, const char* asked) {
@@ -84,122 +53,224 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
                 ". Make a larger step, record until y has settled, and check that u and y belong to the same loop."};
 }
 
-Error cancelled() { return {ErrorKind::cancelled, "", "The identification was cancelled."}; }
-
-void report(const RunControl& control, double fraction, std::string message) {
-    if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
+/// The shift of Eq. 9, dimensionless; 1/Pu unless given.
+Expected<double> shift_of(const IdentifyOptions& options, const CleanRecord& record, const RelayCycle& cycle) {
+    if (!options.shift) return 1 / cycle.period;
+    if (!(*options.shift > 0) || !std::isfinite(*options.shift))
+        return Error{ErrorKind::invalid_argument, "identify/shift", "shift must be a number above 0."};
+    return *options.shift * record.scale.t_scale;
 }
 
-FitTrace trace_of(const CleanRecord& r, const Fit& fit) {
-    FitTrace trace;
-    const int n = r.samples(), points = std::min(n, kTracePoints);
-    int change = 0;
-    double v = 0;
-    for (int k = 0; k < points; ++k) {
-        const int i = points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1));
-        trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
-        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = r.v_level[change];
-        trace.u.push_back(r.scale.u_rest + r.scale.u_scale * v);
-        trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
-        trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * fit.model[i]);
+/// Every model that the formulas give and `asked` admits, the one that repeats y best first.
+std::vector<RelayModel> relay_models(const RelayCycle& cycle, std::complex<double> shifted, double sigma,
+                                     ModelChoice asked) {
+    std::vector<RelayModel> models;
+    auto add = [&](const std::vector<RelayModel>& more) { models.insert(models.end(), more.begin(), more.end()); };
+    const bool any = asked == ModelChoice::automatic;
+    if (any || asked == ModelChoice::fopdt) {
+        const auto by_gain = cycle.biased() ? biased_fopdt(cycle) : std::nullopt;
+        if (by_gain) models.push_back(*by_gain);
+        else add(unbiased_models(cycle, shifted, sigma, Structure::fopdt));
+        if (!by_gain) add(unbiased_models(cycle, shifted, sigma, Structure::unstable));
     }
-    return trace;
+    if (any || asked == ModelChoice::ipdt) {
+        if (const auto model = integrating_model(cycle)) models.push_back(*model);
+    }
+    if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
+    std::stable_sort(models.begin(), models.end(),
+                     [](const auto& a, const auto& b) { return a.fit_rms < b.fit_rms; });
+    // A first-order lag without end repeats an integrator's oscillation as well as the integrator: the simpler counts.
+    for (std::size_t i = 1; any && i < models.size(); ++i) {
+        if (models[i].shape.structure == Structure::ipdt && models[i].fit_rms < 1.05 * models[0].fit_rms + 1e-5)
+            std::swap(models[0], models[i]);
+    }
+    return models;
 }
 
-/// The best-fitting candidate's residual is the nearest to noise: it says how many independent samples there are.
-double independent_samples(const std::vector<Fit>& fits) {
-    const Fit* best = nullptr;
-    for (const Fit& fit : fits) {
-        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+void warn_formula(const CleanRecord& r, const RelayCycle& cycle, const RelayModel& chosen, double noise,
+                  std::vector<Warning>& warnings) {
+    if (cycle.rest.assumed) {
+        warnings.push_back({"rest-assumed", "The record starts under the relay: u is taken to rest at " +
+                                                number_text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) +
+                                                " and y at its first values, " +
+                                                number_text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
+                                                ". Give u0 and y0 if they are known."});
     }
-    return best == nullptr ? 4 : effective_samples(best->residual);
+    if (cycle.biased() && !chosen.by_static_gain && !is_integrating(chosen.shape.structure)) {
+        warnings.push_back({"static-gain-contradiction",
+                            "The mean of y over the mean of u is " +
+                                number_text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
+                                ", which the phase at the oscillation contradicts: a load, a drift or a wrong rest "
+                                "level is in the record. Eq. 13 was used in place of Eq. 14; method output_error fits "
+                                "such disturbances."});
+    }
+    // Periods that differ blur the harmonics of their mean.
+    const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
+                           2 * cycle.period_scatter / cycle.period * cycle.y_half;
+    if (chosen.fit_rms > 0.03 * cycle.y_half + 4 * scatter) {
+        warnings.push_back(
+            {"structure-mismatch",
+             "The model repeats the steady oscillation only within " + number_text(chosen.fit_rms * r.scale.y_scale, 3) +
+                 " (r.m.s., of a half swing of " + number_text(cycle.y_half * r.scale.y_scale, 3) +
+                 "): the plant is not of this structure. Trust the measured frequency point; " +
+                 (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
+                                        : "the gain is not the plant's static gain.")});
+    }
+    if (std::abs(cycle.drift) > 0) {
+        warnings.push_back({"drift", "The mean of y creeps from period to period by " +
+                                         number_text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
+                                         ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
+                                         "output_error fits it."});
+    }
 }
 
-/// Candidates sorted by criterion, and the chosen one's result.
-IdentifiedModel assemble(const CleanRecord& record, std::vector<Fit> fits, const std::vector<double>& criteria,
-                         const std::vector<double>& percents, const Choice& choice) {
-    IdentifiedModel model;
-    model.data_quality = describe_record(record);
-    const double grid = model.data_quality.quantisation / record.scale.y_scale;
-    std::vector<int> order(fits.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return criteria[a] < criteria[b]; });
-    for (int i : order) {
-        if (!fits[i].determined) continue;
-        jacobian(record, fits[i]);
-        FittedPlant fitted = fitted_plant(record, fits[i], grid);
-        model.candidates.push_back(
-            {fitted.plant, percents[i], criteria[i], fitted.standard_errors, trace_of(record, fits[i]).y_model});
-        if (i != choice.index) continue;
-        Diagnosis diagnosis = diagnose(record, fits[i], fitted.values, fitted.standard_errors, model.data_quality);
-        model.plant = fitted.plant;
-        model.fit_percent = percents[i];
-        model.standard_errors = std::move(fitted.standard_errors);
-        model.choice_reason = choice.reason;
-        model.fit = trace_of(record, fits[i]);
-        model.data_quality.settled = diagnosis.settled;
-        model.warnings = std::move(diagnosis.warnings);
-        for (Warning& warning : record_warnings(record, model.data_quality))
-            model.warnings.push_back(std::move(warning));
-        if (fits[i].form.start != Start::at_rest) {
-            const double level = level_of_rest(fits[i]) * record.scale.u_scale + record.scale.u_rest;
-            model.data_quality.notes.push_back("The record does not start at rest: y rests at u = " +
-                                               number_text(level) + ", as estimated from the record (the first u is " +
-                                               number_text(record.scale.u_rest) + "). Give u0 if it is known.");
-        }
+Error no_relay_model(const CleanRecord& r, const RelayCycle& cycle, ModelChoice asked) {
+    std::string why = "No ";
+    why += asked == ModelChoice::ipdt || asked == ModelChoice::ipdt_lag ? "integrating" : "first-order";
+    why += " model with a dead time meets the oscillation (A_u = " +
+           number_text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) + ", phi_u = " +
+           number_text(std::arg(cycle.harmonics.front().G)) + ")";
+    if (cycle.biased()) {
+        why += "; the mean of y over the mean of u is " +
+               number_text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
+               ", which a load or a wrong rest level would explain";
     }
+    return {ErrorKind::not_identifiable, "identify/method", why + ". Use method output_error."};
+}
+
+Expected<IdentifiedModel> by_relay_formulas(const CleanRecord& record, const IdentifyOptions& options) {
+    if (options.model == ModelChoice::sopdt || options.model == ModelChoice::sopdt_zero) {
+        return Error{ErrorKind::unsupported, "identify/model",
+                     "The relay formulas give models fopdt, ipdt and ipdt_lag; use method output_error for a second "
+                     "order."};
+    }
+    const double noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
+    const Expected<RelayCycle> cycle = find_cycle(record, noise);
+    if (!cycle) return cycle.error();
+    const Expected<double> sigma = shift_of(options, record, *cycle);
+    if (!sigma) return sigma.error();
+    const std::complex<double> shifted = shifted_response(record, *cycle, *sigma);
+    const std::vector<RelayModel> models = relay_models(*cycle, shifted, *sigma, options.model);
+    if (models.empty()) return no_relay_model(record, *cycle, options.model);
+    const RelayModel& chosen = models.front();
+    IdentifiedModel model = formula_model(record, chosen.shape, chosen.K, cycle->rest.v);
+    model.choice_reason = std::string(name_of(chosen.shape.structure)) + " by the relay formulas " +
+                          (chosen.by_static_gain                             ? "(11), (12), (14)"
+                           : chosen.shape.structure == Structure::ipdt ? "(4) of an integrator"
+                                                                             : "(11) to (13)") +
+                          ": it repeats the steady oscillation best.";
+    add_cycle(record, *cycle, {*sigma / record.scale.t_scale, shifted}, model);
+    model.limit_cycle->fit_rms = chosen.fit_rms * record.scale.y_scale;
+    warn_formula(record, *cycle, chosen, noise, model.warnings);
     return model;
 }
 
-/// No sensor is taken to resolve less than a thousandth of what y did.
-Excitation excitation_of(const IdentifiedModel& model, double u_rest) {
-    const auto [low, high] = std::minmax_element(model.fit.y.begin(), model.fit.y.end());
-    const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
-    const double noise = std::max({model.data_quality.noise_std, rounding, 1e-3 * (*high - *low)});
-    return {model.fit.t, model.fit.u, u_rest, model.data_quality.sample_time, noise};
+Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const IdentifyOptions& options) {
+    if (options.model != ModelChoice::automatic && options.model != ModelChoice::fopdt) {
+        return Error{ErrorKind::unsupported, "identify/model",
+                     "The two-point construction gives model fopdt; use method output_error for others."};
+    }
+    const Expected<TwoPointModel> found = two_point(record);
+    if (!found) return found.error();
+    IdentifiedModel model = formula_model(record, found->shape, found->K, 0);
+    model.choice_reason = "fopdt through the 28.3 % and 63.2 % points of the step response.";
+    return model;
+}
+
+/// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
+/// gain where the test shows it.
+std::vector<Anchor> anchors_of(const Search& search, const RelayCycle& cycle) {
+    constexpr double kHeldWithin = 3e-4;
+    const Fit& fit = search.chosen();
+    const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
+    const std::complex<double> G = cycle.harmonics.front().G;
+    std::vector<Anchor> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
+    const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
+    const bool shows_gain = cycle.biased() && cycle.drift == 0 && search.disturbances.slope == false &&
+                            search.disturbances.load == false && gain * sign > std::abs(G);
+    if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain))});
+    return anchors;
+}
+
+void warn_mismatch(const RelayCycle& cycle, bool gain_held, double left, std::vector<Warning>& warnings) {
+    std::string detail = "The structure does not fit this plant: it leaves " + number_text(100 * left, 3) +
+                         " % of y's variation beyond noise. The model is held to the response measured at the "
+                         "oscillation";
+    detail += gain_held ? " and to the static gain." : ".";
+    if (!gain_held) {
+        detail += cycle.biased() ? " The static gain is not reliable: a load or an unknown rest level is in the record."
+                                 : " The test has no bias, so the static gain is unknown.";
+    }
+    warnings.push_back({"structure-mismatch", detail});
+}
+
+double steady_misfit(const CleanRecord& r, const RelayCycle& cycle, const Fit& fit) {
+    double squares = 0;
+    int n = 0;
+    for (int i = 0; i < r.samples(); ++i) {
+        if (r.t[i] < cycle.start || r.t[i] > cycle.start + cycle.period * cycle.periods) continue;
+        squares += fit.residual[i] * fit.residual[i];
+        ++n;
+    }
+    return n > 0 ? std::sqrt(squares / n) : 0;
+}
+
+Error cancelled() { return {ErrorKind::cancelled, "", "The identification was cancelled."}; }
+
+Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const IdentifyOptions& options,
+                                          const RunControl& control) {
+    constexpr double kMisfit = 0.02;
+    const RecordKind kind = record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
+    Search search = search_models(record, options.model, kind == RecordKind::relay, control);
+    if (control.stop.stop_requested()) return cancelled();
+    if (search.choice.index < 0 || !responds(record, search.chosen())) {
+        const double best = *std::max_element(search.percents.begin(), search.percents.end());
+        return no_response(record, best, asked_name(options.model));
+    }
+    const double noise = search.context.noise;
+    const auto cycle = kind == RecordKind::relay ? find_cycle(search.context.record, noise)
+                                                 : Expected<RelayCycle>(Error{ErrorKind::unsupported, "", ""});
+    std::vector<Warning> warnings;
+    const double left = misfit(search.context, search.chosen());
+    // Where the rows show u late, the phase that they show at the oscillation is late too.
+    if (cycle && left > kMisfit && cycle->periods > 1 && !search.between_rows) {
+        const std::vector<Anchor> anchors = anchors_of(search, *cycle);
+        hold_to(search, anchors, options.model, control);
+        if (control.stop.stop_requested()) return cancelled();
+        warn_mismatch(*cycle, anchors.size() > 1, left, warnings);
+    }
+    if (options.model != ModelChoice::automatic)
+        search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
+
+    const CleanRecord used = search.context.record;
+    const double steady = cycle ? steady_misfit(used, *cycle, search.chosen()) : 0;
+    IdentifiedModel model = searched_model(std::move(search));
+    model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());
+    if (cycle) {
+        const Expected<double> sigma = shift_of(options, used, *cycle);
+        if (!sigma) return sigma.error();
+        add_cycle(used, *cycle, {*sigma / used.scale.t_scale, shifted_response(used, *cycle, *sigma)}, model);
+        model.limit_cycle->fit_rms = steady * used.scale.y_scale;
+    } else if (kind == RecordKind::relay) {
+        model.warnings.push_back({"no-limit-cycle", cycle.error().message});
+    }
+    return model;
 }
 
 }  // namespace
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
-    if (auto error = refuse_method(options)) return *error;
     const Expected<CleanRecord> clean = clean_record(record);
     if (!clean) return clean.error();
     if (auto error = refuse_late_step(*clean)) return *error;
-    const CleanRecord thin = thin_out(*clean, kThinSamples);
-
-    const bool automatic = options.model == ModelChoice::automatic;
-    const Plan plan = plan_for(options.model, *clean);
-    const std::vector<Structure>& structures = plan.fitted;
-    std::vector<Fit> fits;
-    for (std::size_t i = 0; i < structures.size(); ++i) {
-        if (control.stop.stop_requested()) return cancelled();
-        report(control, static_cast<double>(i) / static_cast<double>(structures.size()),
-               std::string("fitting ") + name_of(structures[i]));
-        fits.push_back(fit_structure(*clean, thin, structures[i], fits, control.stop));
-    }
-    if (control.stop.stop_requested()) return cancelled();
-    std::erase_if(fits, [&](const Fit& fit) {
-        return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
-    });
-
-    const double independent = independent_samples(fits);
-    std::vector<double> criteria, percents;
-    for (const Fit& fit : fits) {
-        criteria.push_back(information_criterion(*clean, fit, independent));
-        percents.push_back(fit_percent(*clean, fit));
-    }
-    Choice choice = choose(fits, criteria, percents, independent);
-    if (choice.index < 0 || !responds(*clean, fits[choice.index])) {
-        return no_response(*clean, *std::max_element(percents.begin(), percents.end()),
-                           automatic ? nullptr : name_of(plan.answers.front()));
-    }
-    if (plan.answers.size() == 1 || (!automatic && fits[choice.index].form.structure == plan.answers.front())) {
-        choice.reason = std::string(name_of(plan.answers.front())) + " was asked for.";
-    }
-    IdentifiedModel model = assemble(*clean, std::move(fits), criteria, percents, choice);
-    model.excited_band = excited_band(excitation_of(model, clean->scale.u_rest), model.plant);
-    report(control, 1, "model found");
+    const bool by_formula = options.method == IdentifyMethod::relay_fourier;
+    Expected<IdentifiedModel> model = by_formula ? by_relay_formulas(*clean, options)
+                                      : options.method == IdentifyMethod::two_point
+                                          ? by_two_points(*clean, options)
+                                          : by_output_error(*clean, options, control);
+    if (!model) return model;
+    add_ultimate_point(*model);
+    if (control.progress) control.progress({1, "identify", "model found", std::nullopt});
     return model;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/identification/response.h"
 
 #include <cmath>
+#include <utility>
 
 namespace tunewright {
 namespace {
@@ -11,17 +12,35 @@ constexpr double kSameStep = 1e-15;
 
 bool same_step(double a, double b) { return std::abs(a - b) <= kSameStep; }
 
+/// The transition over two step lengths: the usual one, and what a change of the input between samples leaves.
+template <class Transition>
+class TwoSteps {
+public:
+    template <class Make>
+    const Transition& over(double dt, const Make& make) {
+        if (same_step(dt, usual_dt_)) return usual_;
+        if (same_step(dt, other_dt_)) {
+            std::swap(usual_dt_, other_dt_);
+            std::swap(usual_, other_);
+            return usual_;
+        }
+        other_dt_ = dt;
+        other_ = make(dt);
+        return other_;
+    }
+
+private:
+    double usual_dt_ = -1, other_dt_ = -1;
+    Transition usual_{}, other_{};
+};
+
 /// T x' + x = v.
 struct Lag {
     double T, x = 0;
-    double dt_known = -1, decay = 1;
+    TwoSteps<double> decay = {};
 
     void advance(double dt, double v) {
-        if (!same_step(dt, dt_known)) {
-            dt_known = dt;
-            decay = std::exp(-dt / T);
-        }
-        x = v + (x - v) * decay;
+        x = v + (x - v) * decay.over(dt, [&](double step) { return std::exp(-step / T); });
     }
     double value() const { return x; }
     double slope(double v) const { return (v - x) / T; }
@@ -41,13 +60,10 @@ struct Integrator {
 /// x' = l, T l' + l = v.
 struct LaggedIntegrator {
     double T, x = 0, l = 0;
-    double dt_known = -1, change = 0;
+    TwoSteps<double> changes = {};
 
     void advance(double dt, double v) {
-        if (!same_step(dt, dt_known)) {
-            dt_known = dt;
-            change = std::expm1(-dt / T);
-        }
+        const double change = changes.over(dt, [&](double step) { return std::expm1(-step / T); });
         x += v * dt - (l - v) * T * change;
         l += (l - v) * change;
     }
@@ -71,10 +87,10 @@ public:
     }
 
     void advance(double dt, double v) {
-        if (!same_step(dt, dt_)) prepare(dt);
+        const Turn& turn = turns_.over(dt, [&](double step) { return turn_over(step); });
         const double e = x_ - v, e1 = x1_;
-        x_ = v + (cosine_ + sigma_ * sine_) * e + sine_ * e1;
-        x1_ = -(sine_ / a2_) * e + (cosine_ - sigma_ * sine_) * e1;
+        x_ = v + turn.xx * e + turn.sine * e1;
+        x1_ = turn.dx * e + turn.dd * e1;
     }
     double value() const { return x_; }
     double slope(double) const { return x1_; }
@@ -83,31 +99,37 @@ public:
 private:
     enum class Kind { real, equal, complex };
 
-    /// e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or their trigonometric twins.
-    void prepare(double dt) {
-        dt_ = dt;
+    /// The transition matrix [xx, sine; dx, dd] of (x - v, x').
+    struct Turn {
+        double xx = 1, sine = 0, dx = 0, dd = 1;
+    };
+
+    /// From e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or their trigonometric twins.
+    Turn turn_over(double dt) const {
+        double cosine = 0, sine = 0;
         if (kind_ == Kind::real) {
             const double apart = 2 * w_ * dt, slow = std::exp(-slow_ * dt);
             const double ratio = apart > 0.3 ? std::exp(-apart) - 1 : std::expm1(-apart);
-            cosine_ = slow * (1 + 0.5 * ratio);
-            sine_ = -slow * ratio / (2 * w_);
+            cosine = slow * (1 + 0.5 * ratio);
+            sine = -slow * ratio / (2 * w_);
         } else if (kind_ == Kind::equal) {
-            cosine_ = std::exp(-sigma_ * dt);
-            sine_ = cosine_ * dt;
+            cosine = std::exp(-sigma_ * dt);
+            sine = cosine * dt;
         } else {
             const double decay = std::exp(-sigma_ * dt);
-            cosine_ = decay * std::cos(w_ * dt);
-            sine_ = decay * std::sin(w_ * dt) / w_;
+            cosine = decay * std::cos(w_ * dt);
+            sine = decay * std::sin(w_ * dt) / w_;
         }
+        return {cosine + sigma_ * sine, sine, -sine / a2_, cosine - sigma_ * sine};
     }
 
     double a1_, a2_, sigma_, w_ = 0, fast_ = 0, slow_ = 0;
     Kind kind_ = Kind::real;
-    double dt_ = -1, cosine_ = 1, sine_ = 0;
+    TwoSteps<Turn> turns_;
     double x_ = 0, x1_ = 0;
 };
 
-template <class System>
+template <int kDerivatives, class System>
 void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
     double now = 0, v = 0;
     std::size_t j = 0;
@@ -122,8 +144,21 @@ void run(std::span<const double> times, const Input& input, double L, System sys
         if (t > now) system.advance(t - now, v);
         now = t;
         out.x[i] = system.value();
-        out.x1[i] = system.slope(v);
-        out.x2[i] = system.curvature(v);
+        if constexpr (kDerivatives > 0) out.x1[i] = system.slope(v);
+        if constexpr (kDerivatives > 1) out.x2[i] = system.curvature(v);
+    }
+}
+
+template <int kDerivatives>
+void run(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& out) {
+    switch (shape.structure) {
+        case Structure::fopdt: return run<kDerivatives>(t, input, shape.L(), Lag{shape.T()}, out);
+        case Structure::unstable: return run<kDerivatives>(t, input, shape.L(), Lag{-shape.T()}, out);
+        case Structure::ipdt: return run<kDerivatives>(t, input, shape.L(), Integrator{}, out);
+        case Structure::ipdt_lag: return run<kDerivatives>(t, input, shape.L(), LaggedIntegrator{shape.T()}, out);
+        case Structure::sopdt:
+        case Structure::sopdt_zero:
+            return run<kDerivatives>(t, input, shape.L(), SecondOrder(shape.a1(), shape.a2()), out);
     }
 }
 
@@ -157,16 +192,26 @@ const char* name_of(Structure structure) {
     return "";
 }
 
-void unit_response(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& response) {
-    for (auto* column : {&response.x, &response.x1, &response.x2}) column->resize(t.size());
+std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
+    const std::complex<double> delay = std::exp(-shape.L() * s);
     switch (shape.structure) {
-        case Structure::fopdt: return run(t, input, shape.L(), Lag{shape.T()}, response);
-        case Structure::unstable: return run(t, input, shape.L(), Lag{-shape.T()}, response);
-        case Structure::ipdt: return run(t, input, shape.L(), Integrator{}, response);
-        case Structure::ipdt_lag: return run(t, input, shape.L(), LaggedIntegrator{shape.T()}, response);
+        case Structure::fopdt: return delay / (1.0 + shape.T() * s);
+        case Structure::unstable: return delay / (1.0 - shape.T() * s);
+        case Structure::ipdt: return delay / s;
+        case Structure::ipdt_lag: return delay / (s * (1.0 + shape.T() * s));
         case Structure::sopdt:
-        case Structure::sopdt_zero: return run(t, input, shape.L(), SecondOrder(shape.a1(), shape.a2()), response);
+        case Structure::sopdt_zero: return delay / (1.0 + s * (shape.a1() + s * shape.a2()));
     }
+    return 0;
+}
+
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+                   UnitResponse& response) {
+    std::vector<double>* columns[] = {&response.x, &response.x1, &response.x2};
+    for (int k = 0; k <= derivatives; ++k) columns[k]->resize(t.size());
+    if (derivatives == 0) return run<0>(t, input, shape, response);
+    if (derivatives == 1) return run<1>(t, input, shape, response);
+    return run<2>(t, input, shape, response);
 }
 
 }  // namespace tunewright

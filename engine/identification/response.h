@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <span>
 #include <vector>
 
@@ -20,12 +21,13 @@ enum class Structure {
 
 /// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
 /// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
-/// smoothly.
+/// smoothly. The last entry is the time at which an unseen load reaches the plant, where one is looked for.
 struct Shape {
     Structure structure = Structure::fopdt;
-    std::array<double, 3> p{};
+    std::array<double, 4> p{};
 
     double L() const { return p[0]; }
+    double load_time() const { return p[3]; }
     double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
     double a1() const;  ///< sopdt, sopdt_zero
     double a2() const;
@@ -37,10 +39,15 @@ bool is_integrating(Structure structure);
 /// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
+inline constexpr int kLoadTime = 3;  ///< its place in Shape::p
+
 /// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
 struct UnitResponse {
     std::vector<double> x, x1, x2;
 };
+
+/// e^(-Ls) over the structure's denominator: the transfer function of `unit_response`.
+std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s);
 
 /// A piecewise constant input: 0 at first, level[j] from time[j] on; times ascend strictly from 0.
 struct Input {
@@ -48,7 +55,9 @@ struct Input {
 };
 
 /// Rest before t = 0. Each interval between samples and delayed changes of v is one step with the exact
-/// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes.
-void unit_response(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& response);
+/// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes. Only
+/// derivatives up to `derivatives` (0 to 2) are filled.
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+                   UnitResponse& response);
 
 }  // namespace tunewright

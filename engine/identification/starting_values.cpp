@@ -27,17 +27,19 @@ std::vector<double> dead_times(const CleanRecord& r, int even) {
     return values;
 }
 
-Shape at(Structure structure, double L, double T, double rho) { return {structure, {L, std::log(T), std::log(rho)}}; }
+Shape at(Structure structure, double L, double T, double rho, double load_time = 0) {
+    return {structure, {L, std::log(T), std::log(rho), load_time}};
+}
 
 /// Every combination of the axes' values, the last axis fastest.
 struct Grid {
-    std::array<int, 3> size{};
+    std::array<int, 4> size{};
     std::vector<Shape> shapes;
 
     /// Whether no neighbour along an axis is lower.
     bool is_local_minimum(const std::vector<double>& values, int index) const {
         int stride = 1, left = index;
-        for (int axis = 2; axis >= 0; --axis) {
+        for (int axis = 3; axis >= 0; --axis) {
             const int place = left % size[axis];
             if (place > 0 && values[index - stride] < values[index]) return false;
             if (place + 1 < size[axis] && values[index + stride] < values[index]) return false;
@@ -48,17 +50,33 @@ struct Grid {
     }
 };
 
-Grid scan_grid(const CleanRecord& r, Structure structure) {
+/// The first move of u, and moments spread over the record: a load may come with the test or at any time.
+std::vector<double> load_times(const CleanRecord& r) {
+    std::vector<double> values = {r.v_time.front()};
+    for (int i = 1; i < 12; ++i) values.push_back(i / 12.0);
+    std::sort(values.begin(), values.end());
+    return values;
+}
+
+Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
+    const Structure structure = form.structure;
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
-    const std::vector<double> L = dead_times(r, shape_size(structure) > 2 ? 8 : 23);
-    std::vector<double> T = {1}, rho = {1};
+    const std::vector<double> L = dead_times(r, form.load || structure == Structure::sopdt_zero ? 0 : shape_size(structure) > 2 ? 8 : 23);
+    std::vector<double> T = {1}, rho = {1}, load = {0};
     if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
     if (structure == Structure::unstable) T = geometric(0.05, 2.0, 12);
     if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};
-    Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size())}, {}};
+    // Its denominator has been looked for with sopdt.
+    if (structure == Structure::sopdt_zero) T = geometric(2 * spacing, 2.0, 5), rho = {0.2, 1.5};
+    if (form.load) load = load_times(r);
+    Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size()),
+               static_cast<int>(load.size())},
+              {}};
     for (double dead_time : L) {
         for (double lag : T) {
-            for (double ratio : rho) grid.shapes.push_back(at(structure, dead_time, lag, ratio));
+            for (double ratio : rho) {
+                for (double time : load) grid.shapes.push_back(at(structure, dead_time, lag, ratio, time));
+            }
         }
     }
     return grid;
@@ -66,9 +84,11 @@ Grid scan_grid(const CleanRecord& r, Structure structure) {
 
 }  // namespace
 
-std::vector<Shape> scan_shapes(const CleanRecord& record, const ModelForm& form, int most, std::stop_token stop) {
-    const Grid grid = scan_grid(record, form.structure);
-    const std::vector<double> sums = sums_of_squares(record, form, grid.shapes, stop);
+std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop) {
+    // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found.
+    if (form.load && shape_size(form.structure) > 2) return {};
+    const Grid grid = scan_grid(*data.record, form);
+    const std::vector<double> sums = sums_of_squares(data, form, grid.shapes, stop);
     std::vector<int> minima;
     for (int i = 0; i < static_cast<int>(sums.size()); ++i) {
         if (grid.is_local_minimum(sums, i)) minima.push_back(i);
@@ -82,12 +102,12 @@ std::vector<Shape> scan_shapes(const CleanRecord& record, const ModelForm& form,
 }
 
 std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
-    const double L = simpler.L();
+    const double L = simpler.L(), load = simpler.load_time();
     const bool wider = structure == Structure::sopdt || structure == Structure::sopdt_zero;
     if (simpler.structure == Structure::fopdt && wider) {
         const double T = simpler.T();
-        return {at(structure, L, T, 1e-3), at(structure, 0.5 * L, T + 0.5 * L, 0.15),
-                at(structure, 0.2 * L, T + 0.8 * L, 0.24)};
+        return {at(structure, L, T, 1e-3, load), at(structure, 0.5 * L, T + 0.5 * L, 0.15, load),
+                at(structure, 0.2 * L, T + 0.8 * L, 0.24, load)};
     }
     if (simpler.structure == Structure::sopdt && structure == Structure::sopdt_zero) {
         Shape shape = simpler;
@@ -96,7 +116,8 @@ std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
     }
     if (simpler.structure == Structure::ipdt && structure == Structure::ipdt_lag) {
         const double sum = std::max(L, 1e-4);
-        return {at(structure, L, 0.01 * sum, 1), at(structure, 0.5 * sum, 0.5 * sum, 1), at(structure, 0, sum, 1)};
+        return {at(structure, L, 0.01 * sum, 1, load), at(structure, 0.5 * sum, 0.5 * sum, 1, load),
+                at(structure, 0, sum, 1, load)};
     }
     return {};
 }

@@ -92,7 +92,10 @@ Eigen::MatrixXd principal_deviations(const Fit& fit, double variance) {
 
 }  // namespace
 
-double correlation_time(std::span<const double> series) {
+namespace {
+
+/// By Geyer's sum, for up to a few thousand samples.
+double summed_correlation_time(std::span<const double> series) {
     const int n = static_cast<int>(series.size());
     const int longest = std::min(n / 2, 2000);
     auto covariance = [&](int lag) {
@@ -111,17 +114,49 @@ double correlation_time(std::span<const double> series) {
     return std::max(1.0, time);
 }
 
+}  // namespace
+
+double correlation_time(std::span<const double> series) {
+    constexpr std::size_t kMostSummed = 3000;
+    if (series.size() <= kMostSummed) return summed_correlation_time(series);
+    // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
+    const std::size_t batch = (series.size() + kMostSummed - 1) / kMostSummed;
+    std::vector<double> means;
+    double squares = 0;
+    for (std::size_t i = 0; i + batch <= series.size(); i += batch) {
+        double sum = 0;
+        for (std::size_t k = i; k < i + batch; ++k) {
+            sum += series[k];
+            squares += series[k] * series[k];
+        }
+        means.push_back(sum / static_cast<double>(batch));
+    }
+    double between = 0;
+    for (const double mean : means) between += mean * mean;
+    if (!(squares > 0)) return 1;
+    const double size = static_cast<double>(batch);
+    return std::max(1.0, size * size * between / squares * summed_correlation_time(means));
+}
+
 double effective_samples(std::span<const double> residual) {
     return std::max(4.0, static_cast<double>(residual.size()) / correlation_time(residual));
+}
+
+Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
+    const bool lags = has_two_lags(fit.shape);
+    return plant_of(fit.form, parameters_of(scale, fit.form, fit.shape, fit.linear, lags), lags);
 }
 
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation) {
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
-    FittedPlant result{plant_of(fit.form, best, lags), best, {}};
+    FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
+    ParameterCovariance& covariance = result.covariance;
+    for (const auto& [name, value] : best) covariance.names.push_back(name);
+    covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
     const Eigen::MatrixXd deviations = principal_deviations(fit, residual_variance(fit, quantisation));
-    const int size = shape_size(fit.form.structure);
-    std::map<std::string, double> squares;
+    const std::vector<int> places = fit.form.searched();
+    const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {
         // A long axis is walked in part and scaled up: the logarithms would overflow.
         const double reach = deviations.row(axis).head(size).cwiseAbs().maxCoeff();
@@ -131,18 +166,21 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
             const double sign = k == 0 ? part : -part;
             Shape shape = fit.shape;
             std::vector<double> linear = fit.linear;
-            for (int i = 0; i < size; ++i) shape.p[i] += sign * deviations(axis, i);
+            for (int i = 0; i < size; ++i) shape.p[places[i]] += sign * deviations(axis, i);
             for (std::size_t i = 0; i < linear.size(); ++i)
                 linear[i] += sign * deviations(axis, size + static_cast<int>(i));
             if (linear[0] == 0) linear = fit.linear;
             side[k] = parameters_of(record.scale, fit.form, shape, linear, lags);
         }
-        for (const auto& [name, value] : side[0]) {
-            const double half = 0.5 * (value - side[1].at(name)) / part;
-            squares[name] += half * half;
+        std::vector<double> half;
+        for (const auto& [name, value] : side[0])
+            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -1e150, 1e150));
+        for (std::size_t i = 0; i < half.size(); ++i) {
+            for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
         }
     }
-    for (const auto& [name, square] : squares) result.standard_errors[name] = std::min(std::sqrt(square), 1e300);
+    for (std::size_t i = 0; i < best.size(); ++i)
+        result.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
     return result;
 }
 

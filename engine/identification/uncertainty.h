@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/identification/identify.h"
 #include "engine/identification/output_error.h"
 #include "engine/plant/plant.h"
 
 namespace tunewright {
 
 /// The integrated autocorrelation time of a series, in samples, >= 1: 1 + 2 sum rho_k, the sum ended by Geyer's initial
-/// positive sequence (Geyer 1992, section 3.3). White noise: 1. n samples are worth n/(this) independent ones.
+/// positive sequence (Geyer 1992, section 3.3), of more than 3,000 samples by means of batches. White noise: 1. n samples are worth n/(this) independent ones.
 double correlation_time(std::span<const double> series);
 
 /// Independent samples that a residual is worth, at least 4.
@@ -23,7 +24,11 @@ struct FittedPlant {
     Plant plant;
     std::map<std::string, double> values;           ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b
     std::map<std::string, double> standard_errors;  ///< of the same; all finite and >= 0
+    ParameterCovariance covariance;
 };
+
+/// The plant alone.
+Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 
 /// Needs `fit.J`. Covariance s^2 (J'J)^-1 with s^2 of the residual, enlarged by its correlation time and never below
 /// the variance of the rounding, quantisation^2/12 (`quantisation` dimensionless); carried to the plant's parameters by

@@ -3,13 +3,9 @@
 
 #include <optional>
 
-namespace tunewright {
+#include "engine/loop/ultimate_point.h"
 
-/// A gain and the period at which the loop oscillates with it.
-struct UltimatePoint {
-    double Ku = 0;  ///< of the sign of the feedback that oscillates
-    double Pu = 0;
-};
+namespace tunewright {
 
 /// G(sigma + j 2 pi/Pu) = A e^(j phi) (Liu and Gao, Eq. 9), phi in (-2 pi, 0].
 struct ShiftedPoint {

@@ -1,0 +1,167 @@
+#include "engine/identification/model_answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "engine/identification/data_quality.h"
+#include "engine/identification/diagnosis.h"
+#include "engine/identification/uncertainty.h"
+#include "engine/identification/wording.h"
+#include "engine/plant/linear_plant.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kTracePoints = 2000;
+
+/// The samples that a plot shows: all, or evenly chosen ones.
+std::vector<int> shown(int n) {
+    const int points = std::min(n, kTracePoints);
+    std::vector<int> rows;
+    for (int k = 0; k < points; ++k)
+        rows.push_back(points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1)));
+    return rows;
+}
+
+FitTrace trace_of(const CleanRecord& r, const std::vector<double>& y_model) {
+    FitTrace trace;
+    int change = 0;
+    double v = 0;
+    for (const int i : shown(r.samples())) {
+        trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
+        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = r.v_level[change];
+        trace.u.push_back(r.scale.u_rest + r.scale.u_scale * v);
+        trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
+        trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * y_model[i]);
+    }
+    return trace;
+}
+
+void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
+    if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
+    const double level = level_of_rest(fit) * record.scale.u_scale + record.scale.u_rest;
+    quality.notes.push_back("The record does not start at rest: y rests at u = " + number_text(level) +
+                            ", as estimated from the record (the first u is " + number_text(record.scale.u_rest) +
+                            "). Give u0 if it is known.");
+}
+
+void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
+    if (fit.form.slope && !is_integrating(fit.form.structure)) {
+        const double slope = fit.linear[fit.form.slope_index()] * r.scale.y_scale / r.scale.t_scale;
+        warnings.push_back({"drift", "y drifts by " + number_text(slope, 3) +
+                                         " per unit of time beside its response to u (" +
+                                         number_text(slope * r.scale.t_scale, 3) +
+                                         " over the record). The model was fitted together with this drift."});
+    }
+    if (fit.form.load) {
+        const double size = fit.linear[fit.form.load_index()] / fit.linear[0] * r.scale.u_scale;
+        warnings.push_back(
+            {"load-disturbance",
+             "A lasting load as large as " + number_text(size, 3) + " of u reached the plant at about t = " +
+                 number_text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
+                 ", by the fit. The model was fitted together with this load; repeat the test without it if you can."});
+    }
+}
+
+}  // namespace
+
+IdentifiedModel searched_model(Search search) {
+    const CleanRecord& record = search.context.record;
+    const FitData data = search.context.all();
+    IdentifiedModel model;
+    model.data_quality = describe_record(record);
+    const double grid = model.data_quality.quantisation / record.scale.y_scale;
+    std::vector<int> order(search.fits.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
+    for (const int i : order) {
+        Fit& fit = search.fits[i];
+        if (!fit.determined) continue;
+        jacobian(data, fit);
+        FittedPlant fitted = fitted_plant(record, fit, grid);
+        FitTrace trace = trace_of(record, fit.model);
+        model.candidates.push_back(
+            {fitted.plant, search.percents[i], search.criteria[i], fitted.standard_errors, trace.y_model});
+        fit.J.clear();
+        if (i != search.choice.index) continue;
+        Diagnosis diagnosis = diagnose(record, fit, fitted.values, fitted.standard_errors, model.data_quality);
+        model.plant = fitted.plant;
+        model.fit_percent = search.percents[i];
+        model.standard_errors = std::move(fitted.standard_errors);
+        model.covariance = std::move(fitted.covariance);
+        model.choice_reason = search.choice.reason;
+        model.fit = std::move(trace);
+        model.data_quality.settled = diagnosis.settled;
+        model.warnings = std::move(diagnosis.warnings);
+        warn_disturbances(record, fit, model.warnings);
+        note_start(record, fit, model.data_quality);
+    }
+    if (search.between_rows) {
+        model.data_quality.notes.push_back(
+            "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "
+            "spaced, and y follows earlier than the rows of u say.");
+    }
+    return model;
+}
+
+IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, double K, double v_rest) {
+    static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
+    UnitResponse response, level;
+    unit_response(record.t, {record.v_time, record.v_level}, shape, 0, response);
+    unit_response(record.t, {kAtOnce, kUnit}, shape, 0, level);
+    const auto n = static_cast<std::size_t>(record.samples());
+    std::vector<double> y_model(n);
+    for (std::size_t i = 0; i < n; ++i) y_model[i] = K * (response.x[i] - v_rest * level.x[i]);
+    double offset = 0;
+    for (std::size_t i = 0; i < n; ++i) offset += (record.y[i] - y_model[i]) / static_cast<double>(n);
+    for (double& y : y_model) y += offset;
+
+    Fit fit;
+    fit.form.structure = shape.structure;
+    fit.shape = shape;
+    fit.linear = {K, offset};
+    fit.determined = true;
+    for (std::size_t i = 0; i < n; ++i) fit.residual.push_back(record.y[i] - y_model[i]);
+    IdentifiedModel model;
+    model.plant = plant_in_units(record.scale, fit);
+    model.fit_percent = fit_percent(record, fit);
+    model.fit = trace_of(record, y_model);
+    model.data_quality = describe_record(record);
+    model.candidates.push_back({model.plant, model.fit_percent, 0, {}, model.fit.y_model});
+    return model;
+}
+
+void add_cycle(const CleanRecord& r, const RelayCycle& cycle, const Shift& shift, IdentifiedModel& model) {
+    constexpr double kTwoPi = 2 * std::numbers::pi;
+    const double unit = r.scale.y_scale / r.scale.u_scale;
+    auto lag = [](std::complex<double> G) { return std::arg(G) > 0 ? std::arg(G) - kTwoPi : std::arg(G); };
+    const Harmonic& first = cycle.harmonics.front();
+    LimitCycle answer;
+    answer.Pu = cycle.period * r.scale.t_scale;
+    answer.Au = std::abs(first.G) * unit;
+    answer.phi_u = lag(first.G);
+    answer.periods = cycle.periods;
+    answer.shift = ShiftedPoint{shift.sigma, std::abs(shift.value) * unit, lag(shift.value)};
+    answer.describing_function =
+        UltimatePoint{(cycle.reversed ? -1 : 1) * 4 * cycle.v_half / (std::numbers::pi * cycle.y_half) / unit, answer.Pu};
+    model.limit_cycle = answer;
+    for (const Harmonic& h : cycle.harmonics) {
+        const bool known = std::abs(h.U) > 0.03 * std::abs(first.U) && h.G_std < 0.2 * std::abs(h.G);
+        if (h.order > 1 && !known) continue;
+        model.frequency_points.push_back(
+            {h.order * cycle.omega() / r.scale.t_scale, h.G.real() * unit, h.G.imag() * unit, h.G_std * unit});
+    }
+    model.data_quality.notes.push_back(
+        "The relay's oscillation repeats " + std::to_string(cycle.periods) + " times (" +
+        std::to_string(cycle.recorded_periods) + " whole periods are recorded), its period " + number_text(answer.Pu) +
+        (cycle.periods > 1 ? " +- " + number_text(cycle.period_scatter * r.scale.t_scale, 2) : "") + ".");
+}
+
+void add_ultimate_point(IdentifiedModel& model) {
+    if (const auto plant = LinearPlant::make(model.plant)) model.ultimate_point = ultimate_point(*plant);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,201 @@
+#include "engine/identification/model_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "engine/identification/uncertainty.h"
+
+namespace tunewright {
+namespace {
+
+/// The structures to fit, simpler ones first, and those that answer the request: the others only give starting values.
+struct Plan {
+    std::vector<Structure> fitted, answers;
+};
+
+Plan plan_for(ModelChoice model, const CleanRecord& record) {
+    using enum Structure;
+    // An unstable plant is recorded under feedback, so u moves often; after one step any curve may look like its
+    // beginning.
+    const bool maybe_unstable = record.changes() > 2;
+    Plan plan;
+    switch (model) {
+        case ModelChoice::fopdt:
+            plan.fitted = {fopdt};
+            if (maybe_unstable) plan.fitted.push_back(unstable);
+            plan.answers = plan.fitted;
+            return plan;
+        case ModelChoice::sopdt: return {{fopdt, sopdt}, {sopdt}};
+        case ModelChoice::sopdt_zero: return {{fopdt, sopdt, sopdt_zero}, {sopdt_zero}};
+        case ModelChoice::ipdt: return {{ipdt}, {ipdt}};
+        case ModelChoice::ipdt_lag: return {{ipdt, ipdt_lag}, {ipdt_lag}};
+        case ModelChoice::automatic: break;
+    }
+    plan.fitted = {ipdt, fopdt, ipdt_lag, sopdt, sopdt_zero};
+    if (maybe_unstable) plan.fitted.push_back(unstable);
+    plan.answers = plan.fitted;
+    return plan;
+}
+
+void report(const RunControl& control, double fraction, std::string message) {
+    if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
+}
+
+/// The best-fitting candidate's residual is the nearest to noise: it says how many independent samples there are.
+double independent_samples(const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    return best == nullptr ? 4 : effective_samples(best->residual);
+}
+
+Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
+    std::erase_if(fits, [&](const Fit& fit) {
+        return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
+    });
+    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false};
+    finish_fits(search.context, search.fits);
+    search.independent = independent_samples(search.fits);
+    for (const Fit& fit : search.fits) {
+        search.criteria.push_back(information_criterion(fit, search.independent));
+        search.percents.push_back(fit_percent(search.context.record, fit));
+    }
+    search.choice = choose(search.fits, search.criteria, search.percents, search.independent);
+    if (search.choice.index >= 0) polish(search.context, search.fits[static_cast<std::size_t>(search.choice.index)]);
+    return search;
+}
+
+Search fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+    const Plan plan = plan_for(model, context.record);
+    std::vector<Fit> fits;
+    for (std::size_t i = 0; i < plan.fitted.size() && !control.stop.stop_requested(); ++i) {
+        report(control, static_cast<double>(i) / static_cast<double>(plan.fitted.size()),
+               std::string("fitting ") + name_of(plan.fitted[i]));
+        fits.push_back(fit_structure(context, plan.fitted[i], disturbances, fits));
+    }
+    return ranked(std::move(context), std::move(fits), plan, disturbances);
+}
+
+/// The chosen structure again with disturbances, and the one that it extends.
+Search fit_some(const Search& search, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+    const Structure chosen = search.chosen().form.structure;
+    const Plan answers = plan_for(model, search.context.record);
+    std::vector<Fit> fits;
+    for (const Structure structure : {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, chosen}) {
+        const bool extended = is_integrating(structure) == is_integrating(chosen) &&
+                              shape_size(structure) < shape_size(chosen);
+        if ((structure == chosen || extended) && !control.stop.stop_requested() &&
+            std::none_of(fits.begin(), fits.end(), [&](const Fit& f) { return f.form.structure == structure; }))
+            fits.push_back(fit_structure(search.context, structure, disturbances, fits));
+    }
+    return ranked(search.context, std::move(fits), answers, disturbances);
+}
+
+/// The record with each change of u midway between the row that shows it and the row before: what a logger that writes
+/// now and then has seen late.
+CleanRecord changed_between_rows(CleanRecord record) {
+    for (double& time : record.v_time) {
+        const auto row = std::lower_bound(record.t.begin(), record.t.end(), time);
+        if (row != record.t.begin()) time = 0.5 * (time + *std::prev(row));
+    }
+    return record;
+}
+
+bool irregular(const CleanRecord& record) {
+    std::vector<double> spacings;
+    for (std::size_t i = 1; i < record.t.size(); ++i) spacings.push_back(record.t[i] - record.t[i - 1]);
+    const auto [low, high] = std::minmax_element(spacings.begin(), spacings.end());
+    const double mean = record.t.back() / static_cast<double>(spacings.size());
+    const auto off = std::count_if(spacings.begin(), spacings.end(),
+                                   [&](double d) { return std::abs(d - mean) > 0.1 * mean; });
+    return *high - *low > 0.2 * mean && static_cast<double>(off) > 0.2 * static_cast<double>(spacings.size());
+}
+
+bool usable(const Search& search) { return search.choice.index >= 0; }
+
+void try_between_rows(Search& search, ModelChoice model, const RunControl& control) {
+    if (!irregular(search.context.record)) return;
+    const CleanRecord moved = changed_between_rows(search.context.record);
+    const Fit& now = search.chosen();
+    const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
+    if (!fit.determined || fit.sse > 0.8 * now.sse) return;
+    Search other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
+    if (!usable(other) || other.chosen().sse >= now.sse) return;
+    search = std::move(other);
+    search.between_rows = true;
+}
+
+/// A late load can be told from the response only where u moves again; a drift also by what y does before u moves.
+bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
+
+bool shows_drift(const CleanRecord& r) {
+    constexpr int kEnoughBefore = 30;
+    const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
+    return r.changes() > 1 || before >= kEnoughBefore;
+}
+
+void try_disturbances(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMuchLess = 3, kStrong = 10, kWorthLooking = 0.005;
+    const CleanRecord& record = search.context.record;
+    if (misfit(search.context, search.chosen()) < kWorthLooking) return;
+    const Search* best = &search;
+    std::vector<Search> others;
+    others.reserve(3);
+    for (const Disturbances& d : {Disturbances{true, false}, Disturbances{false, true}, Disturbances{true, true}}) {
+        if (control.stop.stop_requested()) return;
+        if ((d.slope && !shows_drift(record)) || (d.load && !shows_load(record))) continue;
+        // Both together only where neither alone explains the record.
+        if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
+        others.push_back(fit_some(search, model, d, control));
+        const Search& other = others.back();
+        if (!usable(other) || other.chosen().sse * kMuchLess > best->chosen().sse) continue;
+        const double n = other.independent;
+        if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n)) best = &other;
+    }
+    if (best == &search) return;
+    const bool between_rows = search.between_rows;
+    search = fit_all(search.context, model, best->disturbances, control);
+    search.between_rows = between_rows;
+}
+
+}  // namespace
+
+double misfit(const FitContext& context, const Fit& fit) {
+    const std::vector<double>& y = context.record.y;
+    const double n = static_cast<double>(y.size());
+    const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
+    double total = 0, left = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        total += (y[i] - mean) * (y[i] - mean);
+        left += fit.residual[i] * fit.residual[i];
+    }
+    return std::sqrt(std::max(0.0, left - n * context.noise * context.noise) / total);
+}
+
+Search search_models(CleanRecord record, ModelChoice model, bool relay, const RunControl& control) {
+    Search search = fit_all(fit_context(std::move(record), relay, control.stop), model, {}, control);
+    auto unexplained = [&] {
+        return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
+    };
+    if (unexplained()) try_between_rows(search, model, control);
+    if (unexplained()) try_disturbances(search, model, control);
+    return search;
+}
+
+void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, const RunControl& control) {
+    const Plan plan = plan_for(model, search.context.record);
+    FitContext context = search.context;
+    context.anchors = std::move(anchors);
+    std::vector<Fit> fits;
+    for (const Fit& fit : search.fits) {
+        fits.push_back(fit.determined ? fit_shape(context.some(), fit.form, fit.shape, {}, control.stop) : fit);
+    }
+    const bool between_rows = search.between_rows;
+    search = ranked(std::move(context), std::move(fits), plan, search.disturbances);
+    search.between_rows = between_rows;
+}
+
+}  // namespace tunewright

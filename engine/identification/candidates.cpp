@@ -134,7 +134,8 @@ constexpr double kVarianceFloor = 1e-14;
 
 FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
     FitContext context;
-    context.noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
+    context.grid = quantisation_step(record.y);
+    context.noise = std::max(noise_std(record.y), context.grid / std::sqrt(12.0));
     context.thin = thin_out(record, kThinSamples);
     context.medium = every_few(record, kMediumSamples);
     context.record = std::move(record);

@@ -77,13 +77,14 @@ std::vector<RelayModel> relay_models(const RelayCycle& cycle, std::complex<doubl
         if (const auto model = integrating_model(cycle)) models.push_back(*model);
     }
     if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
-    std::stable_sort(models.begin(), models.end(),
-                     [](const auto& a, const auto& b) { return a.fit_rms < b.fit_rms; });
-    // A first-order lag without end repeats an integrator's oscillation as well as the integrator: the simpler counts.
-    for (std::size_t i = 1; any && i < models.size(); ++i) {
-        if (models[i].shape.structure == Structure::ipdt && models[i].fit_rms < 1.05 * models[0].fit_rms + 1e-5)
-            std::swap(models[0], models[i]);
-    }
+    // The paper's first-order lag is what is asked for, unless the integrator repeats the oscillation far better, or as
+    // well where both repeat it: a lag without end is an integrator.
+    auto cost = [&](const RelayModel& model) {
+        const bool integrator = any && model.shape.structure == Structure::ipdt;
+        if (!integrator) return model.fit_rms;
+        return model.fit_rms < 0.01 * cycle.y_half ? 0.95 * model.fit_rms - 1e-5 : 2 * model.fit_rms;
+    };
+    std::stable_sort(models.begin(), models.end(), [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
     return models;
 }
 
@@ -186,7 +187,7 @@ std::vector<Anchor> anchors_of(const Search& search, const RelayCycle& cycle) {
     const std::complex<double> G = cycle.harmonics.front().G;
     std::vector<Anchor> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
-    const bool shows_gain = cycle.biased() && cycle.drift == 0 && search.disturbances.slope == false &&
+    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > 0.01 * cycle.v_half && cycle.drift == 0 && search.disturbances.slope == false &&
                             search.disturbances.load == false && gain * sign > std::abs(G);
     if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain))});
     return anchors;

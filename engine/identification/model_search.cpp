@@ -137,6 +137,28 @@ bool shows_drift(const CleanRecord& r) {
     return r.changes() > 1 || before >= kEnoughBefore;
 }
 
+/// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
+/// show it.
+void try_drift(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kWorthAMention = 2, kStrong = 10;
+    const Fit& now = search.chosen();
+    if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
+    ModelForm form = now.form;
+    form.slope = true;
+    const Fit fit = fit_shape(search.context.some(), form, now.shape, {30, 1e-6}, control.stop);
+    const Fit plain = project(search.context.some(), now.form, now.shape);
+    if (!fit.determined) return;
+    // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
+    const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
+    const double lead = information_criterion(plain, n) - information_criterion(fit, n);
+    if (lead < (time < 2 ? kWorthAMention : kStrong)) return;
+    if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
+    Search other = fit_all(search.context, model, {true, false}, control);
+    if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
+    other.between_rows = search.between_rows;
+    search = std::move(other);
+}
+
 void try_disturbances(Search& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3, kStrong = 10, kWorthLooking = 0.005;
     const CleanRecord& record = search.context.record;
@@ -172,7 +194,9 @@ double misfit(const FitContext& context, const Fit& fit) {
         total += (y[i] - mean) * (y[i] - mean);
         left += fit.residual[i] * fit.residual[i];
     }
-    return std::sqrt(std::max(0.0, left - n * context.noise * context.noise) / total);
+    // The noise is known to some ten per cent.
+    const double noise = 1.1 * context.noise;
+    return std::sqrt(std::max(0.0, left - n * noise * noise) / total);
 }
 
 Search search_models(CleanRecord record, ModelChoice model, bool relay, const RunControl& control) {
@@ -182,6 +206,7 @@ Search search_models(CleanRecord record, ModelChoice model, bool relay, const Ru
     };
     if (unexplained()) try_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
+    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) try_drift(search, model, control);
     return search;
 }
 

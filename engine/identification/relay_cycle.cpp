@@ -163,19 +163,23 @@ Line creep(const std::vector<Period>& periods, std::size_t first) {
 }
 
 /// The mean of y before the plant has answered: up to the relay's start; or, where the record starts with it, of the
-/// first samples until one leaves their mean.
+/// earlier half of the first samples until one leaves their mean (an answer shows in noise only some time after it
+/// began).
 double y_before_answer(const CleanRecord& r, double relay_start, double noise, double swing, int& n) {
     double sum = 0;
     n = 0;
+    const bool before = relay_start > 0;
+    std::vector<double> sums;
     for (int i = 0; i < r.samples(); ++i) {
         const double y = r.y[static_cast<std::size_t>(i)], t = r.t[static_cast<std::size_t>(i)];
-        const bool answered = relay_start > 0 ? t > relay_start
-                                              : n > 0 && std::abs(y - sum / n) > 4 * noise + 0.002 * swing;
+        const bool answered = before ? t > relay_start : n > 0 && std::abs(y - sum / n) > 4 * noise + 0.002 * swing;
         if (answered && n > 0) break;
         sum += y;
+        sums.push_back(sum);
         ++n;
     }
-    return sum / n;
+    if (!before) n = (n + 1) / 2;
+    return sums[static_cast<std::size_t>(n - 1)] / n;
 }
 
 RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_start, double noise, double swing) {
@@ -202,12 +206,12 @@ Pooled pool(const Signals& signals, const RelayCycle& cycle, int order) {
     const double length = cycle.period * cycle.periods, end = cycle.start + length;
     const Complex s(0, order * cycle.omega());
     Pooled pooled{signals.of_v(cycle.start, end, s, cycle.v_mean) / length,
-                  signals.of_y(cycle.start, end, s, cycle.y_mean, cycle.drift) / length};
+                  signals.of_y(cycle.start, end, s, cycle.y_start(), cycle.drift) / length};
     const Complex G = pooled.Y / pooled.U;
     double squares = 0;
     for (int p = 0; p < cycle.periods; ++p) {
         const double from = cycle.start + p * cycle.period, to = from + cycle.period;
-        const double level = cycle.y_mean + cycle.drift * (from - cycle.start);
+        const double level = cycle.y_start() + cycle.drift * (from - cycle.start);
         const Complex y = signals.of_y(from, to, s, level, cycle.drift), v = signals.of_v(from, to, s, cycle.v_mean);
         squares += std::norm((y - G * v) / cycle.period);
     }
@@ -242,10 +246,11 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
     }
     cycle.period_scatter = scatter(lengths);
     cycle.y_half = std::accumulate(halves.begin(), halves.end(), 0.0) / static_cast<double>(halves.size());
-    const bool creeps = std::abs(line.slope) > 4 * line.slope_std && std::abs(line.slope) * length > 0.01 * cycle.y_half;
+    const bool creeps = cycle.periods >= 4 && std::abs(line.slope) > 6 * line.slope_std &&
+                        std::abs(line.slope) * length > 0.01 * cycle.y_half;
     cycle.drift = creeps ? line.slope : 0;
     cycle.v_mean = signals.of_v(cycle.start, cycle.start + length, 0, 0).real() / length;
-    cycle.y_mean = signals.of_y(cycle.start, cycle.start + length, 0, 0, cycle.drift).real() / length;
+    cycle.y_mean = signals.of_y(cycle.start, cycle.start + length, 0, 0, 0).real() / length;
 }
 
 /// Of the periods that repeat each other, as many as make the pooled response most certain: one more period averages
@@ -260,7 +265,8 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
         const int samples = signals.samples(now.start, now.start + now.period * now.periods);
         const double n = now.periods, by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
         const double uncertainty = std::max(pool(signals, now, 1).scatter, by_noise) * (1 + 1 / (n - 1));
-        if (uncertainty < least) least = uncertainty, best = now;
+        // Only what is clearly more certain is worth fewer periods: the scatter of a few is itself uncertain.
+        if (uncertainty < 0.7 * least) least = uncertainty, best = now;
     }
     if (best.periods > 0) cycle = best;
     else take_periods(signals, periods, steady, cycle);
@@ -268,7 +274,7 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
 
 }  // namespace
 
-bool RelayCycle::biased() const { return std::abs(v_mean - rest.v) > 0.01 * v_half; }
+bool RelayCycle::biased() const { return std::abs(v_middle - rest.v) > 0.05 * v_half; }
 
 double RelayCycle::static_gain() const { return (y_mean - rest.y) / (v_mean - rest.v); }
 
@@ -299,6 +305,7 @@ Expected<RelayCycle> find_cycle(const CleanRecord& r, double noise) {
     const double typical = periods.back().to - periods.back().from;
     const std::size_t first = first_steady(periods, spacing, noise, static_cast<int>(typical / spacing));
     take_best_periods(signals, periods, first, noise, cycle);
+    cycle.v_middle = 0.5 * (u.high + u.low);
     cycle.v_half = 0.5 * (u.high - u.low);
     cycle.rest = rest_point(r, u, cycle.relay_start, noise, cycle.y_half);
     add_harmonics(signals, noise, cycle);

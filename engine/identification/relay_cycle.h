@@ -33,14 +33,16 @@ struct RelayCycle {
     int recorded_periods = 0;         ///< whole ones, steady or not
     double period_scatter = 0;        ///< standard deviation over the steady periods
     double v_mean = 0, y_mean = 0;    ///< over the steady periods
+    double v_middle = 0;              ///< of the relay's two levels
     double v_half = 0, y_half = 0;    ///< half the swing of v and of y
     double drift = 0, drift_std = 0;  ///< slope of y's mean from period to period
     bool reversed = false;            ///< y is high when u switches up: the relay of a plant with negative gain
     RestPoint rest;
     std::vector<Harmonic> harmonics;  ///< the first, then those that the relay excites and the noise leaves visible
 
+    double y_start() const { return y_mean - 0.5 * drift * period * periods; }  ///< the creeping mean at `start`
     double omega() const { return 6.283185307179586 / period; }
-    /// Whether the mean of v tells a static gain: its distance from rest beside the swing.
+    /// Whether the test was meant to tell a static gain: the relay's levels lie unevenly about the rest.
     bool biased() const;
     /// Eq. 14 (Liu and Gao): mean of y over mean of v, from rest.
     double static_gain() const;

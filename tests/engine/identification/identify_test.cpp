@@ -271,9 +271,21 @@ TEST(Identify, UnsettledRecordWarnsAndSaysHowMuchIsMissing) {
     EXPECT_FALSE(model.data_quality.settled);
 }
 
-TEST(Identify, MovingBeforeTheStepWarns) {
+TEST(Identify, DriftSeenBeforeTheStepIsFittedAndTold) {
     Record record = simulate(even_times(200, 0.5), 0, 0, {{30, 1}}, first_order(1, 10, 3));
     for (std::size_t i = 0; i < record.t.size(); ++i) record.y[i] += 0.004 * record.t[i];
+    add_noise(record, 0.005, 4);
+    const IdentifiedModel model = identified(record, ModelChoice::fopdt);
+    EXPECT_TRUE(warns(model, "drift"));
+    const auto plant = plant_as<Fopdt>(model);
+    EXPECT_NEAR(plant.K, 1, 4 * model.standard_errors.at("K"));
+    EXPECT_NEAR(plant.T, 10, 4 * model.standard_errors.at("T"));
+    EXPECT_LT(model.standard_errors.at("K"), 0.02);
+}
+
+TEST(Identify, MovingBeforeTheStepWarnsWhereTooLittleIsSeenToFitADrift) {
+    Record record = simulate(even_times(200, 0.5), 0, 0, {{10, 1}}, first_order(1, 10, 3));
+    for (std::size_t i = 0; i < record.t.size(); ++i) record.y[i] += 0.01 * record.t[i];
     add_noise(record, 0.005, 4);
     EXPECT_TRUE(warns(identified(record, ModelChoice::fopdt), "not-at-rest"));
 }
@@ -371,12 +383,13 @@ TEST(Identify, ARecordPastedTwiceIsAnInvalidArgument) {
     EXPECT_THAT(error.message, HasSubstr("Times run backward in 199 of 400 rows (first at row 200)"));
 }
 
-TEST(Identify, RelayFormulasAloneAreUnsupported) {
+TEST(Identify, RelayFormulasRefuseARecordWithoutARelay) {
     IdentifyOptions options;
     options.method = IdentifyMethod::relay_fourier;
     const Error error = refusal(simulate(even_times(100, 1), 0, 0, {{10, 1}}, first_order(1, 12, 3)), options);
-    EXPECT_EQ(error.kind, ErrorKind::unsupported);
-    EXPECT_EQ(error.where, "identify/method");
+    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
+    EXPECT_EQ(error.where, "record/u");
+    EXPECT_THAT(error.message, HasSubstr("output_error"));
 }
 
 TEST(Identify, ReportsProgressAndStopsWhenAsked) {

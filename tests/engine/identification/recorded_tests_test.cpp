@@ -125,10 +125,13 @@ TEST(RecordedTests, UnstablePlantUnderARelayHasANegativeTimeConstant) {
     }
 }
 
-TEST(RecordedTests, HiddenLoadIsFlagged) {
+TEST(RecordedTests, HiddenLoadIsFittedAndTold) {
     const IdentifiedModel model = identified(read_record("relay_ex1_biased_load_offset.csv"), ModelChoice::fopdt);
+    expect_fopdt(model, {1, 10, 2}, {1e-4, 1e-4, 1e-4});
     ASSERT_FALSE(model.warnings.empty());
-    EXPECT_EQ(model.warnings.front().code, "structured-residuals");
+    EXPECT_EQ(model.warnings.front().code, "load-disturbance");
+    EXPECT_THAT(model.warnings.front().detail, testing::HasSubstr("0.15 of u"));
+    EXPECT_THAT(model.warnings.front().detail, testing::HasSubstr("t = 10"));
 }
 
 TEST(RecordedTests, LabKitReaches97Point2PercentWithFopdtAndMoreWithAuto) {

@@ -201,7 +201,8 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
 
 double level_of_rest(const Fit& fit) {
     if (fit.form.other_level) return -fit.linear[fit.form.level_index()] / fit.linear[0];
-    if (is_integrating(fit.form.structure) && fit.form.slope) return -fit.linear[fit.form.slope_index()] / fit.linear[0];
+    if (is_integrating(fit.form.structure) && fit.form.slope)
+        return -fit.linear[fit.form.slope_index()] / fit.linear[0];
     return 0;
 }
 

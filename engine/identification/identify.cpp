@@ -54,7 +54,7 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
 }
 
 /// The shift of Eq. 9, dimensionless; 1/Pu unless given.
-Expected<double> shift_of(const IdentifyOptions& options, const CleanRecord& record, const RelayCycle& cycle) {
+Expected<double> shift_of(const IdentifyOptions& options, const CleanRecord& record, const RecordedCycle& cycle) {
     if (!options.shift) return 1 / cycle.period;
     if (!(*options.shift > 0) || !std::isfinite(*options.shift))
         return Error{ErrorKind::invalid_argument, "identify/shift", "shift must be a number above 0."};
@@ -62,15 +62,17 @@ Expected<double> shift_of(const IdentifyOptions& options, const CleanRecord& rec
 }
 
 /// Every model that the formulas give and `asked` admits, the one that repeats y best first.
-std::vector<RelayModel> relay_models(const RelayCycle& cycle, std::complex<double> shifted, double sigma,
+std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<double> shifted, double sigma,
                                      ModelChoice asked) {
     std::vector<RelayModel> models;
     auto add = [&](const std::vector<RelayModel>& more) { models.insert(models.end(), more.begin(), more.end()); };
     const bool any = asked == ModelChoice::automatic;
     if (any || asked == ModelChoice::fopdt) {
         const auto by_gain = cycle.biased() ? biased_fopdt(cycle) : std::nullopt;
-        if (by_gain) models.push_back(*by_gain);
-        else add(unbiased_models(cycle, shifted, sigma, Structure::fopdt));
+        if (by_gain)
+            models.push_back(*by_gain);
+        else
+            add(unbiased_models(cycle, shifted, sigma, Structure::fopdt));
         if (!by_gain) add(unbiased_models(cycle, shifted, sigma, Structure::unstable));
     }
     if (any || asked == ModelChoice::ipdt) {
@@ -88,7 +90,7 @@ std::vector<RelayModel> relay_models(const RelayCycle& cycle, std::complex<doubl
     return models;
 }
 
-void warn_formula(const CleanRecord& r, const RelayCycle& cycle, const RelayModel& chosen, double noise,
+void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayModel& chosen, double noise,
                   std::vector<Warning>& warnings) {
     if (cycle.rest.assumed) {
         warnings.push_back({"rest-assumed", "The record starts under the relay: u is taken to rest at " +
@@ -109,28 +111,29 @@ void warn_formula(const CleanRecord& r, const RelayCycle& cycle, const RelayMode
     const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
                            2 * cycle.period_scatter / cycle.period * cycle.y_half;
     if (chosen.fit_rms > 0.03 * cycle.y_half + 4 * scatter) {
-        warnings.push_back(
-            {"structure-mismatch",
-             "The model repeats the steady oscillation only within " + number_text(chosen.fit_rms * r.scale.y_scale, 3) +
-                 " (r.m.s., of a half swing of " + number_text(cycle.y_half * r.scale.y_scale, 3) +
-                 "): the plant is not of this structure. Trust the measured frequency point; " +
-                 (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
-                                        : "the gain is not the plant's static gain.")});
+        warnings.push_back({"structure-mismatch",
+                            "The model repeats the steady oscillation only within " +
+                                number_text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
+                                number_text(cycle.y_half * r.scale.y_scale, 3) +
+                                "): the plant is not of this structure. Trust the measured frequency point; " +
+                                (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
+                                                       : "the gain is not the plant's static gain.")});
     }
     if (std::abs(cycle.drift) > 0) {
-        warnings.push_back({"drift", "The mean of y creeps from period to period by " +
-                                         number_text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
-                                         ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
-                                         "output_error fits it."});
+        warnings.push_back(
+            {"drift", "The mean of y creeps from period to period by " +
+                          number_text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
+                          ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
+                          "output_error fits it."});
     }
 }
 
-Error no_relay_model(const CleanRecord& r, const RelayCycle& cycle, ModelChoice asked) {
+Error no_relay_model(const CleanRecord& r, const RecordedCycle& cycle, ModelChoice asked) {
     std::string why = "No ";
     why += asked == ModelChoice::ipdt || asked == ModelChoice::ipdt_lag ? "integrating" : "first-order";
     why += " model with a dead time meets the oscillation (A_u = " +
-           number_text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) + ", phi_u = " +
-           number_text(std::arg(cycle.harmonics.front().G)) + ")";
+           number_text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) +
+           ", phi_u = " + number_text(std::arg(cycle.harmonics.front().G)) + ")";
     if (cycle.biased()) {
         why += "; the mean of y over the mean of u is " +
                number_text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
@@ -146,7 +149,7 @@ Expected<IdentifiedModel> by_relay_formulas(const CleanRecord& record, const Ide
                      "order."};
     }
     const double noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
-    const Expected<RelayCycle> cycle = find_cycle(record, noise);
+    const Expected<RecordedCycle> cycle = find_cycle(record, noise);
     if (!cycle) return cycle.error();
     const Expected<double> sigma = shift_of(options, record, *cycle);
     if (!sigma) return sigma.error();
@@ -156,9 +159,9 @@ Expected<IdentifiedModel> by_relay_formulas(const CleanRecord& record, const Ide
     const RelayModel& chosen = models.front();
     IdentifiedModel model = formula_model(record, chosen.shape, chosen.K, cycle->rest.v);
     model.choice_reason = std::string(name_of(chosen.shape.structure)) + " by the relay formulas " +
-                          (chosen.by_static_gain                             ? "(11), (12), (14)"
+                          (chosen.by_static_gain                       ? "(11), (12), (14)"
                            : chosen.shape.structure == Structure::ipdt ? "(4) of an integrator"
-                                                                             : "(11) to (13)") +
+                                                                       : "(11) to (13)") +
                           ": it repeats the steady oscillation best.";
     add_cycle(record, *cycle, {*sigma / record.scale.t_scale, shifted}, model);
     model.limit_cycle->fit_rms = chosen.fit_rms * record.scale.y_scale;
@@ -180,20 +183,21 @@ Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const Identif
 
 /// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
 /// gain where the test shows it.
-std::vector<Anchor> anchors_of(const Search& search, const RelayCycle& cycle) {
+std::vector<Anchor> anchors_of(const Search& search, const RecordedCycle& cycle) {
     constexpr double kHeldWithin = 3e-4;
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
     const std::complex<double> G = cycle.harmonics.front().G;
     std::vector<Anchor> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
-    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > 0.01 * cycle.v_half && cycle.drift == 0 && search.disturbances.slope == false &&
+    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > 0.01 * cycle.v_half &&
+                            cycle.drift == 0 && search.disturbances.slope == false &&
                             search.disturbances.load == false && gain * sign > std::abs(G);
     if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain))});
     return anchors;
 }
 
-void warn_mismatch(const RelayCycle& cycle, bool gain_held, double left, std::vector<Warning>& warnings) {
+void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std::vector<Warning>& warnings) {
     std::string detail = "The structure does not fit this plant: it leaves " + number_text(100 * left, 3) +
                          " % of y's variation beyond noise. The model is held to the response measured at the "
                          "oscillation";
@@ -205,7 +209,7 @@ void warn_mismatch(const RelayCycle& cycle, bool gain_held, double left, std::ve
     warnings.push_back({"structure-mismatch", detail});
 }
 
-double steady_misfit(const CleanRecord& r, const RelayCycle& cycle, const Fit& fit) {
+double steady_misfit(const CleanRecord& r, const RecordedCycle& cycle, const Fit& fit) {
     double squares = 0;
     int n = 0;
     for (int i = 0; i < r.samples(); ++i) {
@@ -230,7 +234,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
     }
     const double noise = search.context.noise;
     const auto cycle = kind == RecordKind::relay ? find_cycle(search.context.record, noise)
-                                                 : Expected<RelayCycle>(Error{ErrorKind::unsupported, "", ""});
+                                                 : Expected<RecordedCycle>(Error{ErrorKind::unsupported, "", ""});
     std::vector<Warning> warnings;
     const double left = misfit(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.

@@ -75,8 +75,7 @@ IdentifiedModel searched_model(Search search) {
     const double grid = model.data_quality.quantisation / record.scale.y_scale;
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
     for (const int i : order) {
         Fit& fit = search.fits[i];
         if (!fit.determined) continue;
@@ -134,7 +133,7 @@ IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, dou
     return model;
 }
 
-void add_cycle(const CleanRecord& r, const RelayCycle& cycle, const Shift& shift, IdentifiedModel& model) {
+void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& shift, IdentifiedModel& model) {
     constexpr double kTwoPi = 2 * std::numbers::pi;
     const double unit = r.scale.y_scale / r.scale.u_scale;
     auto lag = [](std::complex<double> G) { return std::arg(G) > 0 ? std::arg(G) - kTwoPi : std::arg(G); };
@@ -145,8 +144,8 @@ void add_cycle(const CleanRecord& r, const RelayCycle& cycle, const Shift& shift
     answer.phi_u = lag(first.G);
     answer.periods = cycle.periods;
     answer.shift = ShiftedPoint{shift.sigma, std::abs(shift.value) * unit, lag(shift.value)};
-    answer.describing_function =
-        UltimatePoint{(cycle.reversed ? -1 : 1) * 4 * cycle.v_half / (std::numbers::pi * cycle.y_half) / unit, answer.Pu};
+    answer.describing_function = UltimatePoint{
+        (cycle.reversed ? -1 : 1) * 4 * cycle.v_half / (std::numbers::pi * cycle.y_half) / unit, answer.Pu};
     model.limit_cycle = answer;
     for (const Harmonic& h : cycle.harmonics) {
         const bool known = std::abs(h.U) > 0.03 * std::abs(first.U) && h.G_std < 0.2 * std::abs(h.G);

@@ -21,7 +21,7 @@ struct Shift {
 
 /// The oscillation's figures, and the measured points of the frequency response: the first harmonic, and those others
 /// that are known to a fifth.
-void add_cycle(const CleanRecord& record, const RelayCycle& cycle, const Shift& shift, IdentifiedModel& model);
+void add_cycle(const CleanRecord& record, const RecordedCycle& cycle, const Shift& shift, IdentifiedModel& model);
 
 /// Adds the ultimate point of the model's plant.
 void add_ultimate_point(IdentifiedModel& model);

@@ -84,9 +84,10 @@ Search fit_some(const Search& search, ModelChoice model, const Disturbances& dis
     const Structure chosen = search.chosen().form.structure;
     const Plan answers = plan_for(model, search.context.record);
     std::vector<Fit> fits;
-    for (const Structure structure : {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, chosen}) {
-        const bool extended = is_integrating(structure) == is_integrating(chosen) &&
-                              shape_size(structure) < shape_size(chosen);
+    for (const Structure structure :
+         {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, chosen}) {
+        const bool extended =
+            is_integrating(structure) == is_integrating(chosen) && shape_size(structure) < shape_size(chosen);
         if ((structure == chosen || extended) && !control.stop.stop_requested() &&
             std::none_of(fits.begin(), fits.end(), [&](const Fit& f) { return f.form.structure == structure; }))
             fits.push_back(fit_structure(search.context, structure, disturbances, fits));
@@ -109,8 +110,8 @@ bool irregular(const CleanRecord& record) {
     for (std::size_t i = 1; i < record.t.size(); ++i) spacings.push_back(record.t[i] - record.t[i - 1]);
     const auto [low, high] = std::minmax_element(spacings.begin(), spacings.end());
     const double mean = record.t.back() / static_cast<double>(spacings.size());
-    const auto off = std::count_if(spacings.begin(), spacings.end(),
-                                   [&](double d) { return std::abs(d - mean) > 0.1 * mean; });
+    const auto off =
+        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - mean) > 0.1 * mean; });
     return *high - *low > 0.2 * mean && static_cast<double>(off) > 0.2 * static_cast<double>(spacings.size());
 }
 
@@ -175,7 +176,8 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
         const Search& other = others.back();
         if (!usable(other) || other.chosen().sse * kMuchLess > best->chosen().sse) continue;
         const double n = other.independent;
-        if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n)) best = &other;
+        if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n))
+            best = &other;
     }
     if (best == &search) return;
     const bool between_rows = search.between_rows;
@@ -206,7 +208,8 @@ Search search_models(CleanRecord record, ModelChoice model, bool relay, const Ru
     };
     if (unexplained()) try_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
-    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) try_drift(search, model, control);
+    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope)
+        try_drift(search, model, control);
     return search;
 }
 

@@ -9,7 +9,8 @@
 
 namespace tunewright {
 
-/// The fits of one record, on all its samples, with what chooses among them; `criteria` and `percents` belong to `fits`.
+/// The fits of one record, on all its samples, with what chooses among them; `criteria` and `percents` belong to
+/// `fits`.
 struct Search {
     FitContext context;
     std::vector<Fit> fits;

@@ -250,8 +250,8 @@ std::vector<int> free_parameters(const Shape& shape, const std::vector<int>& pla
     std::vector<int> free;
     for (int k = 0; k < descent.size(); ++k) {
         const double value = shape.p[places[k]];
-        const bool blocked = (value <= bounds.low[places[k]] && descent[k] < 0) ||
-                             (value >= bounds.high[places[k]] && descent[k] > 0);
+        const bool blocked =
+            (value <= bounds.low[places[k]] && descent[k] < 0) || (value >= bounds.high[places[k]] && descent[k] > 0);
         if (!blocked) free.push_back(k);
     }
     return free;

@@ -17,7 +17,7 @@ struct Polar {
     double A, lag, sign;
 };
 
-Polar polar(const RelayCycle& cycle) {
+Polar polar(const RecordedCycle& cycle) {
     const double sign = cycle.reversed ? -1 : 1;
     const Complex G = sign * cycle.harmonics.front().G;
     double lag = -std::arg(G);
@@ -49,7 +49,7 @@ Matched matched(const Polar& point, double omega, Structure structure, double T)
     return {sign * point.A * std::abs(d), (point.lag - own) / omega};
 }
 
-RelayModel model_at(const RelayCycle& cycle, const Polar& point, Structure structure, double T) {
+RelayModel model_at(const RecordedCycle& cycle, const Polar& point, Structure structure, double T) {
     const Matched m = matched(point, cycle.omega(), structure, T);
     RelayModel model{shape_of(structure, T, m.L), m.K, 0, false};
     model.fit_rms = harmonic_misfit(cycle, model.shape, model.K);
@@ -80,7 +80,7 @@ double solve(const std::function<double(double)>& f, double low, double high) {
 
 }  // namespace
 
-double harmonic_misfit(const RelayCycle& cycle, const Shape& shape, double K) {
+double harmonic_misfit(const RecordedCycle& cycle, const Shape& shape, double K) {
     double sum = 0;
     for (const Harmonic& h : cycle.harmonics) {
         const Complex s(0, h.order * cycle.omega());
@@ -89,7 +89,7 @@ double harmonic_misfit(const RelayCycle& cycle, const Shape& shape, double K) {
     return std::sqrt(2 * sum);
 }
 
-std::optional<RelayModel> biased_fopdt(const RelayCycle& cycle) {
+std::optional<RelayModel> biased_fopdt(const RecordedCycle& cycle) {
     const Polar point = polar(cycle);
     const double K = cycle.static_gain(), omega = cycle.omega();
     if (!(std::abs(K) > point.A) || !std::isfinite(K)) return std::nullopt;
@@ -102,7 +102,8 @@ std::optional<RelayModel> biased_fopdt(const RelayCycle& cycle) {
     return model;
 }
 
-std::vector<RelayModel> unbiased_models(const RelayCycle& cycle, Complex shifted, double sigma, Structure structure) {
+std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shifted, double sigma,
+                                        Structure structure) {
     const Polar point = polar(cycle);
     const double omega = cycle.omega(), magnitude = std::abs(shifted);
     auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
@@ -126,7 +127,7 @@ std::vector<RelayModel> unbiased_models(const RelayCycle& cycle, Complex shifted
     return models;
 }
 
-std::optional<RelayModel> integrating_model(const RelayCycle& cycle) {
+std::optional<RelayModel> integrating_model(const RecordedCycle& cycle) {
     const Polar point = polar(cycle);
     const double omega = cycle.omega(), L = (point.lag - 0.5 * kPi) / omega;
     if (L < 0) return std::nullopt;

@@ -61,7 +61,9 @@ std::vector<double> load_times(const CleanRecord& r) {
 Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
     const Structure structure = form.structure;
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
-    const std::vector<double> L = dead_times(r, form.load || structure == Structure::sopdt_zero ? 0 : shape_size(structure) > 2 ? 8 : 23);
+    const std::vector<double> L = dead_times(r, form.load || structure == Structure::sopdt_zero ? 0
+                                                : shape_size(structure) > 2                     ? 8
+                                                                                                : 23);
     std::vector<double> T = {1}, rho = {1}, load = {0};
     if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
     if (structure == Structure::unstable) T = geometric(0.05, 2.0, 12);

@@ -21,7 +21,8 @@ double crossing(const CleanRecord& r, std::size_t first, std::size_t window, dou
     double before = y0, t_before = r.t[first];
     for (std::size_t i = first; i + window <= r.y.size(); ++i) {
         const double y = mean(std::span(r.y).subspan(i, window)), t = mean(std::span(r.t).subspan(i, window));
-        if (side * (y - level) >= 0) return y == before ? t : t_before + (level - before) / (y - before) * (t - t_before);
+        if (side * (y - level) >= 0)
+            return y == before ? t : t_before + (level - before) / (y - before) * (t - t_before);
         before = y, t_before = t;
     }
     return r.t.back();

@@ -14,8 +14,8 @@ struct UltimatePoint {
 };
 
 /// The P gain at which the loop loses stability when it is raised (in size) from a stable one, and the period of the
-/// oscillation: Ziegler and Nichols (1942). Of a plant that is stable or integrating the sign is that of its low-frequency
-/// gain. Empty where no gain destabilises, or none stabilises.
+/// oscillation: Ziegler and Nichols (1942). Of a plant that is stable or integrating the sign is that of its
+/// low-frequency gain. Empty where no gain destabilises, or none stabilises.
 std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant);
 
 }  // namespace tunewright

@@ -25,7 +25,7 @@ struct RestPoint {
 };
 
 /// Everything dimensionless, as in the clean record.
-struct RelayCycle {
+struct RecordedCycle {
     double relay_start = 0;  ///< when the relay took over
     double start = 0;        ///< of the steady periods: a switch
     double period = 0;
@@ -51,10 +51,10 @@ struct RelayCycle {
 /// Locates the switches from u, takes the last whole periods that repeat each other, and pools the Fourier integrals
 /// over all of them: u exactly, y by trapezoids, a drift of y's mean taken out. `noise`: standard deviation of y.
 /// Errors: not_identifiable where u does not alternate between two levels, or for fewer than two whole periods.
-Expected<RelayCycle> find_cycle(const CleanRecord& record, double noise);
+Expected<RecordedCycle> find_cycle(const CleanRecord& record, double noise);
 
-/// G(sigma + j omega) by Eq. 9 of Liu and Gao, the integrals started with the relay; sigma > 0, dimensionless. The steady
-/// part is pooled over all steady periods.
-std::complex<double> shifted_response(const CleanRecord& record, const RelayCycle& cycle, double sigma);
+/// G(sigma + j omega) by Eq. 9 of Liu and Gao, the integrals started with the relay; sigma > 0, dimensionless. The
+/// steady part is pooled over all steady periods.
+std::complex<double> shifted_response(const CleanRecord& record, const RecordedCycle& cycle, double sigma);
 
 }  // namespace tunewright

@@ -1,4 +1,4 @@
-#include "engine/identification/relay_cycle.h"
+#include "engine/identification/recorded_cycle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,7 +192,8 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     const double zero = -r.scale.u_rest / r.scale.u_scale, y_zero = -r.scale.y_origin / r.scale.y_scale;
     const bool deviations = zero > u.low && zero < u.high;
     rest.v = deviations ? zero : 0.5 * (u.low + u.high);
-    if (deviations && !r.y_rest && std::abs(rest.y - y_zero) < 4 * noise / std::sqrt(n) + 0.002 * swing) rest.y = y_zero;
+    if (deviations && !r.y_rest && std::abs(rest.y - y_zero) < 4 * noise / std::sqrt(n) + 0.002 * swing)
+        rest.y = y_zero;
     return rest;
 }
 
@@ -202,7 +203,7 @@ struct Pooled {
     double scatter = 0;  ///< standard deviation of Y's parts
 };
 
-Pooled pool(const Signals& signals, const RelayCycle& cycle, int order) {
+Pooled pool(const Signals& signals, const RecordedCycle& cycle, int order) {
     const double length = cycle.period * cycle.periods, end = cycle.start + length;
     const Complex s(0, order * cycle.omega());
     Pooled pooled{signals.of_v(cycle.start, end, s, cycle.v_mean) / length,
@@ -220,19 +221,19 @@ Pooled pool(const Signals& signals, const RelayCycle& cycle, int order) {
     return pooled;
 }
 
-void add_harmonics(const Signals& signals, double noise, RelayCycle& cycle) {
+void add_harmonics(const Signals& signals, double noise, RecordedCycle& cycle) {
     constexpr int kHighest = 25;
     const int samples = signals.samples(cycle.start, cycle.start + cycle.period * cycle.periods);
     const double by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
     for (int k = 1; k <= kHighest && k * 8 * cycle.periods <= samples; ++k) {
         const Pooled pooled = pool(signals, cycle, k);
-        cycle.harmonics.push_back({k, pooled.U, pooled.Y, pooled.Y / pooled.U,
-                                   std::max(pooled.scatter, by_noise) / std::abs(pooled.U)});
+        cycle.harmonics.push_back(
+            {k, pooled.U, pooled.Y, pooled.Y / pooled.U, std::max(pooled.scatter, by_noise) / std::abs(pooled.U)});
     }
 }
 
 /// Period, means and creep of the periods from `first` on.
-void take_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t first, RelayCycle& cycle) {
+void take_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t first, RecordedCycle& cycle) {
     cycle.periods = static_cast<int>(periods.size() - first);
     cycle.start = periods[first].from;
     cycle.period = (periods.back().to - cycle.start) / cycle.periods;
@@ -256,11 +257,11 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
 /// Of the periods that repeat each other, as many as make the pooled response most certain: one more period averages
 /// noise, one that is not steady yet adds scatter.
 void take_best_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t steady, double noise,
-                       RelayCycle& cycle) {
+                       RecordedCycle& cycle) {
     double least = std::numeric_limits<double>::max();
-    RelayCycle best;
+    RecordedCycle best;
     for (std::size_t first = steady; first + 2 <= periods.size(); ++first) {
-        RelayCycle now = cycle;
+        RecordedCycle now = cycle;
         take_periods(signals, periods, first, now);
         const int samples = signals.samples(now.start, now.start + now.period * now.periods);
         const double n = now.periods, by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
@@ -268,35 +269,39 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
         // Only what is clearly more certain is worth fewer periods: the scatter of a few is itself uncertain.
         if (uncertainty < 0.7 * least) least = uncertainty, best = now;
     }
-    if (best.periods > 0) cycle = best;
-    else take_periods(signals, periods, steady, cycle);
+    if (best.periods > 0)
+        cycle = best;
+    else
+        take_periods(signals, periods, steady, cycle);
 }
 
 }  // namespace
 
-bool RelayCycle::biased() const { return std::abs(v_middle - rest.v) > 0.05 * v_half; }
+bool RecordedCycle::biased() const { return std::abs(v_middle - rest.v) > 0.05 * v_half; }
 
-double RelayCycle::static_gain() const { return (y_mean - rest.y) / (v_mean - rest.v); }
+double RecordedCycle::static_gain() const { return (y_mean - rest.y) / (v_mean - rest.v); }
 
-Expected<RelayCycle> find_cycle(const CleanRecord& r, double noise) {
+Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     const InputLevels levels = input_levels(r);
     const TwoLevels u = two_levels(levels);
     const std::size_t switches = u.switch_time.size();
     if (switches < 2) {
-        return Error{ErrorKind::not_identifiable, "record/u",
-                     "u does not switch between two levels (" + std::to_string(switches) +
-                         " switches found), so there is no limit cycle. Use method output_error, or record a relay test."};
+        return Error{
+            ErrorKind::not_identifiable, "record/u",
+            "u does not switch between two levels (" + std::to_string(switches) +
+                " switches found), so there is no limit cycle. Use method output_error, or record a relay test."};
     }
     const Signals signals(r);
     const std::vector<Period> periods = whole_periods(signals, u.switch_time);
     if (periods.size() < 2) {
-        return Error{ErrorKind::not_identifiable, "record",
-                     "The record holds " + number_text(0.5 * static_cast<double>(switches - 1), 2) +
-                         " cycles of the relay's oscillation (" + std::to_string(switches) +
-                         " switches); the limit-cycle formulas need two whole ones, and four or more are better. Record "
-                         "longer, or use method output_error."};
+        return Error{
+            ErrorKind::not_identifiable, "record",
+            "The record holds " + number_text(0.5 * static_cast<double>(switches - 1), 2) +
+                " cycles of the relay's oscillation (" + std::to_string(switches) +
+                " switches); the limit-cycle formulas need two whole ones, and four or more are better. Record "
+                "longer, or use method output_error."};
     }
-    RelayCycle cycle;
+    RecordedCycle cycle;
     const double relay_level = u.first_is_up ? u.low : u.high;
     const bool pre_test = std::abs(levels.level.front() - relay_level) > 0.02 * (u.high - u.low) && levels.moves() > 0;
     cycle.relay_start = pre_test ? levels.time[1] : 0;
@@ -319,7 +324,7 @@ Expected<RelayCycle> find_cycle(const CleanRecord& r, double noise) {
     return cycle;
 }
 
-Complex shifted_response(const CleanRecord& r, const RelayCycle& cycle, double sigma) {
+Complex shifted_response(const CleanRecord& r, const RecordedCycle& cycle, double sigma) {
     const Signals signals(r);
     const Complex s(sigma, cycle.omega());
     const double length = cycle.period * cycle.periods, lead = cycle.start - cycle.relay_start;

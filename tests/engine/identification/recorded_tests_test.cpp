@@ -130,8 +130,8 @@ TEST(RecordedTests, HiddenLoadIsFittedAndTold) {
     expect_fopdt(model, {1, 10, 2}, {1e-4, 1e-4, 1e-4});
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_EQ(model.warnings.front().code, "load-disturbance");
-    EXPECT_THAT(model.warnings.front().detail, testing::HasSubstr("0.15 of u"));
-    EXPECT_THAT(model.warnings.front().detail, testing::HasSubstr("t = 10"));
+    EXPECT_THAT(model.warnings.front().detail, ::testing::HasSubstr("0.15 of u"));
+    EXPECT_THAT(model.warnings.front().detail, ::testing::HasSubstr("t = 10"));
 }
 
 TEST(RecordedTests, LabKitReaches97Point2PercentWithFopdtAndMoreWithAuto) {

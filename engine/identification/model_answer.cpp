@@ -39,6 +39,10 @@ FitTrace trace_of(const CleanRecord& r, const std::vector<double>& y_model) {
     return trace;
 }
 
+void add_record_warnings(const CleanRecord& record, IdentifiedModel& model) {
+    for (Warning& warning : record_warnings(record, model.data_quality)) model.warnings.push_back(std::move(warning));
+}
+
 void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
     if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
     const double level = level_of_rest(fit) * record.scale.u_scale + record.scale.u_rest;
@@ -96,6 +100,7 @@ IdentifiedModel searched_model(Search search) {
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
+        add_record_warnings(record, model);
         note_start(record, fit, model.data_quality);
     }
     if (search.between_rows) {
@@ -129,6 +134,7 @@ IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, dou
     model.fit_percent = fit_percent(record, fit);
     model.fit = trace_of(record, y_model);
     model.data_quality = describe_record(record);
+    add_record_warnings(record, model);
     model.candidates.push_back({model.plant, model.fit_percent, 0, {}, model.fit.y_model});
     return model;
 }

@@ -69,7 +69,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
 }
 
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
-constexpr double kWorthAMention = 2, kStrong = 10;
+constexpr double kWorthAMention = 2, kStrong = 10, kRuledOut = 1e6;
 
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
@@ -221,13 +221,20 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
     return 100 * (1 - std::sqrt(left / total));
 }
 
+/// A lag of ten record lengths and more cannot be told from an integrator, nor its gain from any other.
+bool looks_integrating(const Fit& fit) {
+    const Structure structure = fit.form.structure;
+    if (structure == Structure::fopdt) return fit.shape.T() > 10;
+    return (structure == Structure::sopdt || structure == Structure::sopdt_zero) && fit.shape.a1() > 10;
+}
+
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
               double independent_samples) {
     // A handicap makes "must win by" a comparison like any other.
     auto handicapped = [&](int i) {
         const bool unusual =
             fits[i].form.structure == Structure::sopdt_zero || fits[i].form.structure == Structure::unstable;
-        return criteria[i] + (unusual ? kStrong - kWorthAMention : 0);
+        return criteria[i] + (unusual ? kStrong - kWorthAMention : 0) + (looks_integrating(fits[i]) ? kRuledOut : 0);
     };
     int best = -1;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {

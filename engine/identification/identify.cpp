@@ -224,7 +224,7 @@ Error cancelled() { return {ErrorKind::cancelled, "", "The identification was ca
 
 Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const IdentifyOptions& options,
                                           const RunControl& control) {
-    constexpr double kMisfit = 0.02;
+    constexpr double kMisfit = 0.004;
     const RecordKind kind = record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
     Search search = search_models(record, options.model, kind == RecordKind::relay, control);
     if (control.stop.stop_requested()) return cancelled();
@@ -238,7 +238,8 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
     std::vector<Warning> warnings;
     const double left = misfit(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
-    if (cycle && left > kMisfit && cycle->periods > 1 && !search.between_rows) {
+    const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
+    if (cycle && unexplained && cycle->periods > 1 && !search.between_rows) {
         const std::vector<Anchor> anchors = anchors_of(search, *cycle);
         hold_to(search, anchors, options.model, control);
         if (control.stop.stop_requested()) return cancelled();

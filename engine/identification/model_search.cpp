@@ -122,9 +122,11 @@ void try_between_rows(Search& search, ModelChoice model, const RunControl& contr
     const CleanRecord moved = changed_between_rows(search.context.record);
     const Fit& now = search.chosen();
     const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
-    if (!fit.determined || fit.sse > 0.8 * now.sse) return;
+    // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
+    constexpr double kMuchWorse = 1.5;
+    if (!fit.determined || fit.sse > kMuchWorse * now.sse) return;
     Search other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
-    if (!usable(other) || other.chosen().sse >= now.sse) return;
+    if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
     search.between_rows = true;
 }
@@ -133,7 +135,7 @@ void try_between_rows(Search& search, ModelChoice model, const RunControl& contr
 bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
 
 bool shows_drift(const CleanRecord& r) {
-    constexpr int kEnoughBefore = 30;
+    constexpr int kEnoughBefore = 15;
     const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
     return r.changes() > 1 || before >= kEnoughBefore;
 }
@@ -141,7 +143,7 @@ bool shows_drift(const CleanRecord& r) {
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(Search& search, ModelChoice model, const RunControl& control) {
-    constexpr double kWorthAMention = 2, kStrong = 10;
+    constexpr double kPositive = 6, kStrong = 10;
     const Fit& now = search.chosen();
     if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
     ModelForm form = now.form;
@@ -152,7 +154,7 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
     const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < 2 ? kWorthAMention : kStrong)) return;
+    if (lead < (time < 2 ? kPositive : kStrong)) return;
     if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
     Search other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
@@ -161,7 +163,7 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
 }
 
 void try_disturbances(Search& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 3, kStrong = 10, kWorthLooking = 0.005;
+    constexpr double kMuchLess = 3, kFarLess = 30, kStrong = 10, kWorthLooking = 0.005;
     const CleanRecord& record = search.context.record;
     if (misfit(search.context, search.chosen()) < kWorthLooking) return;
     const Search* best = &search;
@@ -174,7 +176,10 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
         if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
         others.push_back(fit_some(search, model, d, control));
         const Search& other = others.back();
-        if (!usable(other) || other.chosen().sse * kMuchLess > best->chosen().sse) continue;
+        if (!usable(other)) continue;
+        // A disturbance that leaves a pattern too stands in for a structure that is none of these.
+        const double less = best->chosen().sse / other.chosen().sse;
+        if (less < (leaves_a_pattern(other.context, other.chosen()) ? kFarLess : kMuchLess)) continue;
         const double n = other.independent;
         if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n))
             best = &other;

@@ -25,7 +25,8 @@ struct Search {
 
 /// Fits the structures that answer `model`. Where the best leaves a pattern: in a record that is not evenly sampled, u
 /// is tried as changing midway between the rows; in one in which u moves more than once (or y creeps before it does), a
-/// drift and a lasting load at an unknown time are tried, and kept if they leave a third of the sum of squares or less.
+/// drift and a lasting load at an unknown time are tried, and kept if they leave a third of the sum of squares or less
+/// (a thirtieth where a pattern remains).
 /// Stops early when asked to; the caller looks.
 Search search_models(CleanRecord record, ModelChoice model, bool relay, const RunControl& control);
 

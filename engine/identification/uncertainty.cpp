@@ -71,12 +71,14 @@ double residual_variance(const Fit& fit, double quantisation) {
 /// The rows are scaled deviations of (shape, linear), one per principal axis of the covariance, each one standard
 /// deviation long.
 Eigen::MatrixXd principal_deviations(const Fit& fit, double variance) {
-    const int m = fit.form.parameters();
-    const int rows = static_cast<int>(fit.J[0].size());
-    Eigen::MatrixXd J(rows, m);
+    const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
+    const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);
     Eigen::VectorXd length(m);
     for (int k = 0; k < m; ++k) {
-        J.col(k) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), rows);
+        J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
+        // What no sample shows is still no longer than the record, and no lag is thousands of times another.
+        if (k < shape) J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
         length[k] = std::max(J.col(k).norm(), 1e-12);
         J.col(k) /= length[k];
     }

@@ -84,7 +84,7 @@ IdentifiedModel searched_model(Search search) {
         Fit& fit = search.fits[i];
         if (!fit.determined) continue;
         jacobian(data, fit);
-        FittedPlant fitted = fitted_plant(record, fit, grid);
+        FittedPlant fitted = fitted_plant(record, fit, grid, model.data_quality.noise_std / record.scale.y_scale);
         FitTrace trace = trace_of(record, fit.model);
         model.candidates.push_back(
             {fitted.plant, search.percents[i], search.criteria[i], fitted.standard_errors, trace.y_model});

@@ -140,6 +140,17 @@ bool shows_drift(const CleanRecord& r) {
     return r.changes() > 1 || before >= kEnoughBefore;
 }
 
+/// What the parameters of `plain` become in `with_slope`, which has one coefficient more.
+std::vector<double> difference(const Fit& with_slope, const Fit& plain) {
+    std::vector<double> change;
+    for (const int place : plain.form.searched()) change.push_back(with_slope.shape.p[place] - plain.shape.p[place]);
+    for (int i = 0; i < plain.form.linear_size(); ++i) {
+        const int j = i < with_slope.form.slope_index() ? i : i + 1;
+        change.push_back(with_slope.linear[j] - plain.linear[i]);
+    }
+    return change;
+}
+
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(Search& search, ModelChoice model, const RunControl& control) {
@@ -154,7 +165,10 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
     const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < 2 ? kPositive : kStrong)) return;
+    if (lead < (time < 2 ? kPositive : kStrong)) {
+        if (lead > 0) search.fits[static_cast<std::size_t>(search.choice.index)].doubt = difference(fit, plain);
+        return;
+    }
     if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
     Search other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;

@@ -57,6 +57,9 @@ struct Fit {
     std::vector<std::vector<double>> J;
     bool determined = false;  ///< the gain's column is independent of the others
     int iterations = 0;
+    /// A change of (searched, linear) that the record neither asks for nor rules out, one standard deviation long: what
+    /// a drift too small to be found would do. Empty: none.
+    std::vector<double> doubt;
 };
 
 /// The data of a least-squares problem. The referred record and anchors must outlive it.

@@ -68,9 +68,31 @@ double residual_variance(const Fit& fit, double quantisation) {
     return std::max(fit.sse / n, floor) * n / freedom;
 }
 
-/// The rows are scaled deviations of (shape, linear), one per principal axis of the covariance, each one standard
-/// deviation long.
-Eigen::MatrixXd principal_deviations(const Fit& fit, double variance) {
+/// Stretches of samples that the model puts into one step of y's grid: [first, last).
+std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
+    constexpr int kFewest = 8;
+    std::vector<std::pair<int, int>> runs;
+    const int n = static_cast<int>(fit.model.size());
+    int first = 0;
+    for (int i = 1; i <= n; ++i) {
+        if (i < n && std::abs(fit.model[i] - fit.model[first]) < 0.5 * grid) continue;
+        if (i - first >= kFewest) runs.emplace_back(first, i);
+        first = i;
+    }
+    return runs;
+}
+
+/// Rounding to a grid is the same error over a whole plateau, unless noise dithers it: q/sqrt 12 for no noise, falling
+/// as the grid's first harmonic does, e^(-2 pi^2 sigma^2/q^2) for noise sigma (Widrow and Kollar 2008, chapter 19).
+double common_rounding(double grid, double noise) {
+    constexpr double kPi = 3.141592653589793;
+    const double ratio = noise / grid;
+    return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
+}
+
+/// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
+/// covariance, one per plateau of a rounded y, and the fit's doubt.
+Eigen::MatrixXd deviations_of(const Fit& fit, double variance, double grid, double noise) {
     const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
     const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);
@@ -83,12 +105,24 @@ Eigen::MatrixXd principal_deviations(const Fit& fit, double variance) {
         J.col(k) /= length[k];
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(J.transpose() * J);
-    Eigen::MatrixXd deviations(m, m);
+    std::vector<Eigen::VectorXd> all;
     for (int k = 0; k < m; ++k) {
         const double value = std::max(eigen.eigenvalues()[k], 1e-13);
-        deviations.row(k) =
-            (std::sqrt(variance / value) * eigen.eigenvectors().col(k).array() / length.array()).transpose();
+        all.emplace_back(std::sqrt(variance / value) * eigen.eigenvectors().col(k).array() / length.array());
     }
+    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
+    if (common > 0.02 * grid) {
+        const Eigen::MatrixXd inverse = eigen.eigenvectors() *
+                                        eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+                                        eigen.eigenvectors().transpose();
+        for (const auto& [first, last] : plateaus(fit, grid)) {
+            const Eigen::VectorXd pull = J.middleRows(first, last - first).colwise().sum().transpose();
+            all.emplace_back((common * (inverse * pull)).array() / length.array());
+        }
+    }
+    if (!fit.doubt.empty()) all.emplace_back(Eigen::Map<const Eigen::VectorXd>(fit.doubt.data(), m));
+    Eigen::MatrixXd deviations(static_cast<Eigen::Index>(all.size()), m);
+    for (std::size_t k = 0; k < all.size(); ++k) deviations.row(static_cast<Eigen::Index>(k)) = all[k].transpose();
     return deviations;
 }
 
@@ -149,14 +183,14 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
     return plant_of(fit.form, parameters_of(scale, fit.form, fit.shape, fit.linear, lags), lags);
 }
 
-FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation) {
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise) {
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
     FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
-    const Eigen::MatrixXd deviations = principal_deviations(fit, residual_variance(fit, quantisation));
+    const Eigen::MatrixXd deviations = deviations_of(fit, residual_variance(fit, quantisation), quantisation, noise);
     const std::vector<int> places = fit.form.searched();
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

@@ -32,9 +32,11 @@ struct FittedPlant {
 Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 
 /// Needs `fit.J`. Covariance s^2 (J'J)^-1 with s^2 of the residual, enlarged by its correlation time and never below
-/// the variance of the rounding, quantisation^2/12 (`quantisation` dimensionless); carried to the plant's parameters by
-/// differences along the principal axes of the covariance. Two lags give `Sopdt` (T1 >= T2), an oscillation
-/// `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K], den [a2, a1, 1].
-FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation);
+/// the variance of the rounding, quantisation^2/12; to it are added the errors that rounding makes in common over a
+/// plateau, and the fit's doubt (`quantisation` and `noise`, y's standard deviation from sample to sample,
+/// dimensionless); carried to the plant's parameters by differences along the principal axes of the covariance. Two
+/// lags give `Sopdt` (T1 >= T2), an oscillation `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K],
+/// den [a2, a1, 1].
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise);
 
 }  // namespace tunewright

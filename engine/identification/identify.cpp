@@ -275,6 +275,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                           ? by_two_points(*clean, options)
                                           : by_output_error(*clean, options, control);
     if (!model) return model;
+    add_excited_band(*clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});
     return model;

@@ -165,6 +165,14 @@ void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& sh
         (cycle.periods > 1 ? " +- " + number_text(cycle.period_scatter * r.scale.t_scale, 2) : "") + ".");
 }
 
+void add_excited_band(const CleanRecord& record, IdentifiedModel& model) {
+    // No sensor is taken to resolve less than a thousandth of what y did.
+    const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
+    const double noise = std::max({model.data_quality.noise_std, rounding, 1e-3 * record.scale.y_scale});
+    model.excited_band = excited_band(
+        {model.fit.t, model.fit.u, record.scale.u_rest, model.data_quality.sample_time, noise}, model.plant);
+}
+
 void add_ultimate_point(IdentifiedModel& model) {
     if (const auto plant = LinearPlant::make(model.plant)) model.ultimate_point = ultimate_point(*plant);
 }

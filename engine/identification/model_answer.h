@@ -23,6 +23,9 @@ struct Shift {
 /// that are known to a fifth.
 void add_cycle(const CleanRecord& record, const RecordedCycle& cycle, const Shift& shift, IdentifiedModel& model);
 
+/// Adds the band of frequencies that the record tells something about.
+void add_excited_band(const CleanRecord& record, IdentifiedModel& model);
+
 /// Adds the ultimate point of the model's plant.
 void add_ultimate_point(IdentifiedModel& model);
 

@@ -187,4 +187,18 @@ CleanRecord every_few(const CleanRecord& record, int most) {
     return few;
 }
 
+CleanRecord block_means(const CleanRecord& record, int most) {
+    const int n = record.samples(), block = (n + most - 1) / most;
+    if (block <= 1) return record;
+    CleanRecord means = record;
+    means.t.clear();
+    means.y.clear();
+    for (int i = 0; i < n; i += block) {
+        const int end = std::min(n, i + block);
+        means.t.push_back(std::accumulate(record.t.begin() + i, record.t.begin() + end, 0.0) / (end - i));
+        means.y.push_back(std::accumulate(record.y.begin() + i, record.y.begin() + end, 0.0) / (end - i));
+    }
+    return means;
+}
+
 }  // namespace tunewright

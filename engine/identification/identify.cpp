@@ -226,9 +226,10 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
                                           const RunControl& control) {
     constexpr double kMisfit = 0.004;
     const RecordKind kind = record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
-    Search search = search_models(record, options.model, kind == RecordKind::relay, control);
+    constexpr int kMostFitted = 100'000;
+    Search search = search_models(block_means(record, kMostFitted), options.model, kind == RecordKind::relay, control);
     if (control.stop.stop_requested()) return cancelled();
-    if (search.choice.index < 0 || !responds(record, search.chosen())) {
+    if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) {
         const double best = *std::max_element(search.percents.begin(), search.percents.end());
         return no_response(record, best, asked_name(options.model));
     }
@@ -250,7 +251,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
 
     const CleanRecord used = search.context.record;
     const double steady = cycle ? steady_misfit(used, *cycle, search.chosen()) : 0;
-    IdentifiedModel model = searched_model(std::move(search));
+    IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());
     if (cycle) {
         const Expected<double> sigma = shift_of(options, used, *cycle);

@@ -71,12 +71,14 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
 
 }  // namespace
 
-IdentifiedModel searched_model(Search search) {
+IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
     const CleanRecord& record = search.context.record;
     const FitData data = search.context.all();
     IdentifiedModel model;
-    model.data_quality = describe_record(record);
-    const double grid = model.data_quality.quantisation / record.scale.y_scale;
+    model.data_quality = describe_record(recorded);
+    // Means over blocks lie on no grid.
+    const double grid =
+        recorded.samples() == record.samples() ? model.data_quality.quantisation / record.scale.y_scale : 0;
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
@@ -100,7 +102,7 @@ IdentifiedModel searched_model(Search search) {
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
-        add_record_warnings(record, model);
+        add_record_warnings(recorded, model);
         note_start(record, fit, model.data_quality);
     }
     if (search.between_rows) {

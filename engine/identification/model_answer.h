@@ -7,8 +7,9 @@
 
 namespace tunewright {
 
-/// Candidates sorted by criterion, the chosen one's figures, and the warnings that the fit gives rise to.
-IdentifiedModel searched_model(Search search);
+/// Candidates sorted by criterion, the chosen one's figures, and the warnings that the fit gives rise to. `recorded`:
+/// all samples, where the search had block means.
+IdentifiedModel searched_model(Search search, const CleanRecord& recorded);
 
 /// A model by formula: its free run from rest at `v_rest` beside the record, the offset estimated.
 IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, double K, double v_rest);

@@ -18,7 +18,7 @@ struct FactorRange {
 
 /// How far a plant's parameters may lie from their nominal values. K is the whole plant's gain, whatever its type.
 struct Uncertainty {
-    std::optional<FactorRange> K, T, T1, T2, L;
+    std::optional<FactorRange> K = {}, T = {}, T1 = {}, T2 = {}, L = {};
     bool empty() const { return !K && !T && !T1 && !T2 && !L; }
 };
 

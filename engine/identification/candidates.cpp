@@ -14,7 +14,7 @@ namespace tunewright {
 namespace {
 
 constexpr int kStartsRefined = 3;
-constexpr int kThinSamples = 240;
+constexpr int kThinSamples = 160;
 constexpr Effort kCoarse{25, 1e-6};
 constexpr Effort kComparison{60, 1e-7};
 constexpr Effort kFinal{60, 1e-11};
@@ -195,7 +195,7 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     const double reach = 100 * noise * n / context.medium.samples();
     for (Fit& fit : fits) {
         if (fit.determined && fit.sse < best * 1.02 + reach)
-            fit = fit_shape(context.all(), fit.form, fit.shape, {20, 1e-6}, context.stop);
+            fit = fit_shape(context.all(), fit.form, fit.shape, {4, 2e-5}, context.stop);
     }
 }
 

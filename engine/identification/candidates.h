@@ -25,7 +25,7 @@ struct FitContext {
     FitData few() const { return {&thin, anchors}; }
 };
 
-inline constexpr int kMediumSamples = 1500;
+inline constexpr int kMediumSamples = 1000;
 
 FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop);
 

@@ -30,9 +30,15 @@ public:
 
     /// The integral of (y - y0 - slope (t - from)) e^(-st) over [from, to] by trapezoids.
     Complex of_y(double from, double to, Complex s, double y0, double slope) const {
-        auto value = [&](double t, double y) { return (y - y0 - slope * (t - from)) * std::exp(-s * (t - from)); };
+        // e^(-s(t - from)) from sample to sample; evenly spaced ones share their factor.
+        Complex turned = 1, factor = 1;
+        double factor_of = 0, last = from;
+        auto value = [&](double t, double y) {
+            if (std::abs(t - last - factor_of) > 1e-15) factor_of = t - last, factor = std::exp(-s * factor_of);
+            turned *= factor;
+            return (y - y0 - slope * (t - from)) * turned;
+        };
         Complex sum = 0, before = value(from, y_at(from));
-        double last = from;
         auto add = [&](double t, double y) {
             const Complex now = value(t, y);
             sum += 0.5 * (t - last) * (before + now);
@@ -204,19 +210,21 @@ struct Pooled {
 };
 
 Pooled pool(const Signals& signals, const RecordedCycle& cycle, int order) {
-    const double length = cycle.period * cycle.periods, end = cycle.start + length;
     const Complex s(0, order * cycle.omega());
-    Pooled pooled{signals.of_v(cycle.start, end, s, cycle.v_mean) / length,
-                  signals.of_y(cycle.start, end, s, cycle.y_start(), cycle.drift) / length};
-    const Complex G = pooled.Y / pooled.U;
-    double squares = 0;
+    const double n = cycle.periods;
+    Pooled pooled;
+    std::vector<Complex> U, Y;
     for (int p = 0; p < cycle.periods; ++p) {
         const double from = cycle.start + p * cycle.period, to = from + cycle.period;
         const double level = cycle.y_start() + cycle.drift * (from - cycle.start);
-        const Complex y = signals.of_y(from, to, s, level, cycle.drift), v = signals.of_v(from, to, s, cycle.v_mean);
-        squares += std::norm((y - G * v) / cycle.period);
+        U.push_back(signals.of_v(from, to, s, cycle.v_mean) / cycle.period);
+        Y.push_back(signals.of_y(from, to, s, level, cycle.drift) / cycle.period);
+        pooled.U += U.back() / n;
+        pooled.Y += Y.back() / n;
     }
-    const double n = cycle.periods;
+    const Complex G = pooled.Y / pooled.U;
+    double squares = 0;
+    for (std::size_t p = 0; p < U.size(); ++p) squares += std::norm(Y[p] - G * U[p]);
     pooled.scatter = n > 1 ? std::sqrt(squares / (2 * n * (n - 1))) : 0;
     return pooled;
 }

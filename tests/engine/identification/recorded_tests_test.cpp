@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <complex>
+
 #include "engine/identification/identify.h"
+#include "engine/plant/linear_plant.h"
 #include "tests/engine/identification/record_files.h"
 
 namespace tunewright {
@@ -132,6 +136,58 @@ TEST(RecordedTests, HiddenLoadIsFittedAndTold) {
     EXPECT_EQ(model.warnings.front().code, "load-disturbance");
     EXPECT_THAT(model.warnings.front().detail, ::testing::HasSubstr("0.15 of u"));
     EXPECT_THAT(model.warnings.front().detail, ::testing::HasSubstr("t = 10"));
+}
+
+TEST(RecordedTests, RelayTestsOfAFirstOrderPlantAreRecoveredAsWellAsTheyWereRecorded) {
+    expect_fopdt(identified(read_record("relay_ex1_unbiased.csv")), {1, 10, 2}, {1e-4, 1e-4, 1e-4});
+    expect_fopdt(identified(read_record("relay_ex1_truncated.csv")), {1, 10, 2}, {1e-4, 1e-4, 1e-4});
+    expect_fopdt(identified(read_record("relay_ex1_biased_noise.csv")), {1, 10, 2}, {0.05, 0.05, 0.02});
+    expect_fopdt(identified(read_record("relay_ex1_biased_missing.csv")), {1, 10, 2}, {0.02, 0.02, 0.01});
+    expect_fopdt(identified(read_record("relay_ex1_biased_nonuniform.csv")), {1, 10, 2}, {0.06, 0.06, 0.05});
+}
+
+TEST(RecordedTests, TooFewCyclesAreNamedByTheFormulasAndTheFit) {
+    const Record record = read_record("relay_ex1_truncated.csv");
+    IdentifyOptions options;
+    options.method = IdentifyMethod::relay_fourier;
+    const auto formulas = identify(record, options, {});
+    ASSERT_FALSE(formulas);
+    EXPECT_EQ(formulas.error().kind, ErrorKind::not_identifiable);
+    EXPECT_THAT(formulas.error().message, ::testing::HasSubstr("two whole ones"));
+    const IdentifiedModel fitted = identified(record);
+    ASSERT_FALSE(fitted.warnings.empty());
+    EXPECT_FALSE(fitted.limit_cycle);
+}
+
+TEST(RecordedTests, AFirstOrderModelOfAnotherPlantIsHeldToWhatTheRelayShowed) {
+    const IdentifiedModel model = identified(read_record("relay_ex2_biased.csv"), ModelChoice::fopdt);
+    ASSERT_FALSE(model.warnings.empty());
+    EXPECT_EQ(model.warnings.front().code, "structure-mismatch");
+    // The oscillation at Pu = 14.4, and the static gain.
+    const auto found = *LinearPlant::make(model.plant);
+    const auto plant = *LinearPlant::make(TransferFunction{.num = {-1, 1}, .den = {1, 5, 10, 10, 5, 1}, .L = 1});
+    const std::complex<double> s(0, 2 * 3.14159265358979 / 14.4);
+    EXPECT_LT(std::abs(found.at(s) - plant.at(s)), 2e-3 * std::abs(plant.at(s)));
+    EXPECT_NEAR(found.low_frequency_gain(), 1, 2e-3);
+}
+
+TEST(RecordedTests, AnUnbiasedTestOfAnotherPlantLeavesTheStaticGainUnknown) {
+    const IdentifiedModel model = identified(read_record("relay_ex3_unbiased.csv"), ModelChoice::fopdt);
+    ASSERT_FALSE(model.warnings.empty());
+    EXPECT_EQ(model.warnings.front().code, "structure-mismatch");
+    EXPECT_THAT(model.warnings.front().detail, ::testing::HasSubstr("static gain is unknown"));
+    const auto found = *LinearPlant::make(model.plant);
+    const auto plant = *LinearPlant::make(Sopdt{.K = 1, .T1 = 20, .T2 = 2, .L = 1});
+    const std::complex<double> s(0, 2 * 3.14159265358979 / 26.2);
+    EXPECT_LT(std::abs(found.at(s) - plant.at(s)), 2e-3 * std::abs(plant.at(s)));
+}
+
+TEST(RecordedTests, UltimatePointIsThePlants) {
+    // L w + atan(10 w) = pi with L = 2: w = 0.84433, Ku = sqrt(1 + (10 w)^2).
+    const IdentifiedModel model = identified(read_record("relay_ex1_unbiased.csv"));
+    ASSERT_TRUE(model.ultimate_point);
+    EXPECT_NEAR(model.ultimate_point->Pu, 2 * 3.14159265358979 / 0.844335, 1e-3);
+    EXPECT_NEAR(model.ultimate_point->Ku, std::hypot(1.0, 8.44335), 1e-3);
 }
 
 TEST(RecordedTests, LabKitReaches97Point2PercentWithFopdtAndMoreWithAuto) {

@@ -13,10 +13,13 @@
 namespace tunewright {
 namespace {
 
-constexpr int kStartsRefined = 3;
+constexpr int kValleysRefined = 2;  // of the scan; twice as many with a zero, whose sign parts them
+constexpr int kStartsRefined = 2;   // from simpler fits
 constexpr int kThinSamples = 160;
-constexpr Effort kCoarse{25, 1e-6};
+constexpr Effort kCoarse{15, 1e-4};
 constexpr Effort kComparison{60, 1e-7};
+/// From the optimum on fewer samples: what is left after one step is of second order.
+constexpr Effort kOneStep{1, 1e-6};
 constexpr Effort kFinal{60, 1e-11};
 
 Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
@@ -49,14 +52,19 @@ bool same_form(const ModelForm& a, const ModelForm& b) {
 }
 
 Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
-    std::vector<Shape> starts = scan_shapes(context.few(), form, kStartsRefined, context.stop);
-    std::vector<Shape> nested;
+    std::vector<Shape> nested, extended;
     for (const Fit& fit : simpler) {
         const std::vector<Shape> shapes = extend_shape(fit.shape, form.structure);
         if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
-        starts.insert(starts.end(), shapes.begin(), shapes.end());
+        extended.insert(extended.end(), shapes.begin(), shapes.end());
     }
-    Fit fit = best_from(context.few(), form, most_promising(context, form, starts), kCoarse, context.stop);
+    // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
+    std::vector<Shape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
+    if (!extended.empty()) {
+        const std::vector<Shape> best = most_promising(context, form, extended);
+        starts.insert(starts.end(), best.begin(), best.end());
+    }
+    Fit fit = best_from(context.few(), form, starts, kCoarse, context.stop);
     fit = fit_shape(context.some(), form, fit.shape, kComparison, context.stop);
     const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
         return same_form(s.form, form) && !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
@@ -195,7 +203,7 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     const double reach = 100 * noise * n / context.medium.samples();
     for (Fit& fit : fits) {
         if (fit.determined && fit.sse < best * 1.02 + reach)
-            fit = fit_shape(context.all(), fit.form, fit.shape, {4, 2e-5}, context.stop);
+            fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
     }
 }
 
@@ -232,8 +240,8 @@ Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
               double independent_samples) {
     // A handicap makes "must win by" a comparison like any other.
     auto handicapped = [&](int i) {
-        const bool unusual =
-            fits[i].form.structure == Structure::sopdt_zero || fits[i].form.structure == Structure::unstable;
+        const bool unusual = fits[i].form.structure == Structure::sopdt_zero ||
+                             fits[i].form.structure == Structure::unstable || fits[i].form.other_level;
         return criteria[i] + (unusual ? kStrong - kWorthAMention : 0) + (looks_integrating(fits[i]) ? kRuledOut : 0);
     };
     int best = -1;

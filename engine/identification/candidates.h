@@ -25,7 +25,7 @@ struct FitContext {
     FitData few() const { return {&thin, anchors}; }
 };
 
-inline constexpr int kMediumSamples = 1000;
+inline constexpr int kMediumSamples = 600;
 
 FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop);
 
@@ -58,8 +58,9 @@ struct Choice {
     std::string reason;
 };
 
-/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 2 of it; a zero
-/// and an unstable pole must win by 10. `criteria` belong to `fits`; fit_percent only goes into the sentence.
+/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 2 of it; a zero,
+/// an unseen start and an unstable pole must win by 10. `criteria` belong to `fits`; fit_percent only goes into the
+/// sentence.
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
               double independent_samples);
 

@@ -69,7 +69,7 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
     if (structure == Structure::unstable) T = geometric(0.05, 2.0, 12);
     if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};
     // Its denominator has been looked for with sopdt.
-    if (structure == Structure::sopdt_zero) T = geometric(2 * spacing, 2.0, 5), rho = {0.2, 1.5};
+    if (structure == Structure::sopdt_zero) T = geometric(spacing, 2.0, 8), rho = {0.1, 0.25, 1.5};
     if (form.load) load = load_times(r);
     Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size()),
                static_cast<int>(load.size())},

@@ -18,8 +18,8 @@ constexpr int kStartsRefined = 2;   // from simpler fits
 constexpr int kThinSamples = 160;
 constexpr Effort kCoarse{15, 1e-4};
 constexpr Effort kComparison{60, 1e-7};
-/// From the optimum on fewer samples: what is left after one step is of second order.
-constexpr Effort kOneStep{1, 1e-6};
+/// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
+constexpr Effort kOneStep{4, 1e-2};
 constexpr Effort kFinal{60, 1e-11};
 
 Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
@@ -229,10 +229,12 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
     return 100 * (1 - std::sqrt(left / total));
 }
 
-/// A lag of ten record lengths and more cannot be told from an integrator, nor its gain from any other.
+/// A lag of ten record lengths and more (two, where it is unstable) cannot be told from an integrator, nor its gain
+/// from any other.
 bool looks_integrating(const Fit& fit) {
     const Structure structure = fit.form.structure;
     if (structure == Structure::fopdt) return fit.shape.T() > 10;
+    if (structure == Structure::unstable) return fit.shape.T() > 2;
     return (structure == Structure::sopdt || structure == Structure::sopdt_zero) && fit.shape.a1() > 10;
 }
 

@@ -187,6 +187,21 @@ CleanRecord every_few(const CleanRecord& record, int most) {
     return few;
 }
 
+CleanRecord first_part(const CleanRecord& record, double fraction) {
+    CleanRecord part = record;
+    part.scale.t_scale *= fraction;
+    const auto kept = [&](const std::vector<double>& times) {
+        return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), fraction) - times.begin());
+    };
+    part.t.resize(kept(record.t));
+    part.y.resize(part.t.size());
+    part.v_time.resize(kept(record.v_time));
+    part.v_level.resize(part.v_time.size());
+    for (double& t : part.t) t /= fraction;
+    for (double& t : part.v_time) t /= fraction;
+    return part;
+}
+
 CleanRecord block_means(const CleanRecord& record, int most) {
     const int n = record.samples(), block = (n + most - 1) / most;
     if (block <= 1) return record;

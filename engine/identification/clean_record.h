@@ -72,6 +72,9 @@ CleanRecord thin_out(const CleanRecord& record, int most);
 /// Every second, third, ... sample, so that at most `most` are left, with the input as it is.
 CleanRecord every_few(const CleanRecord& record, int most);
 
+/// The record's beginning, `fraction` of its length, again of length 1.
+CleanRecord first_part(const CleanRecord& record, double fraction);
+
 /// At most `most` samples, each the mean of as many neighbours: of a record so dense that a block is nothing beside the
 /// response, it says the same, noise averaged. The input stays as it is.
 CleanRecord block_means(const CleanRecord& record, int most);

@@ -234,13 +234,15 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
         return no_response(record, best, asked_name(options.model));
     }
     const double noise = search.context.noise;
-    const auto cycle = kind == RecordKind::relay ? find_cycle(search.context.record, noise)
+    const bool whole = search.part == 1;
+    const CleanRecord used = whole ? search.context.record : record;
+    const auto cycle = kind == RecordKind::relay ? find_cycle(used, noise)
                                                  : Expected<RecordedCycle>(Error{ErrorKind::unsupported, "", ""});
     std::vector<Warning> warnings;
     const double left = misfit(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
     const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
-    if (cycle && unexplained && cycle->periods > 1 && !search.between_rows) {
+    if (whole && cycle && unexplained && cycle->periods > 1 && !search.between_rows) {
         const std::vector<Anchor> anchors = anchors_of(search, *cycle);
         hold_to(search, anchors, options.model, control);
         if (control.stop.stop_requested()) return cancelled();
@@ -249,15 +251,14 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
     if (options.model != ModelChoice::automatic)
         search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
 
-    const CleanRecord used = search.context.record;
-    const double steady = cycle ? steady_misfit(used, *cycle, search.chosen()) : 0;
+    const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());
     if (cycle) {
         const Expected<double> sigma = shift_of(options, used, *cycle);
         if (!sigma) return sigma.error();
         add_cycle(used, *cycle, {*sigma / used.scale.t_scale, shifted_response(used, *cycle, *sigma)}, model);
-        model.limit_cycle->fit_rms = steady * used.scale.y_scale;
+        if (whole) model.limit_cycle->fit_rms = steady * used.scale.y_scale;
     } else if (kind == RecordKind::relay) {
         model.warnings.push_back({"no-limit-cycle", cycle.error().message});
     }

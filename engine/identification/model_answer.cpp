@@ -105,6 +105,18 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
         add_record_warnings(recorded, model);
         note_start(record, fit, model.data_quality);
     }
+    if (search.part < 1) {
+        model.data_quality.notes.push_back("The model rests on the first " + number_text(100 * search.part, 2) +
+                                           " % of the record: over all of it an unstable plant's free run loses its "
+                                           "digits.");
+    }
+    if (at_shortest_lag(search.chosen())) {
+        model.warnings.push_back(
+            {"record-too-long",
+             "The unstable model's time constant is at the least that a record of this length can "
+             "show (a twentieth of it), so it is only a bound. Give the first few oscillations alone "
+             "(`from`, `to`)."});
+    }
     if (search.between_rows) {
         model.data_quality.notes.push_back(
             "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "

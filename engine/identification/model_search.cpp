@@ -56,7 +56,7 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
     });
-    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false};
+    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false, 1};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
     for (const Fit& fit : search.fits) {
@@ -204,7 +204,31 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
     search.between_rows = between_rows;
 }
 
+/// Of an unstable model, over so many time constants that its free run is all but arbitrary.
+bool runs_too_long(const Fit& fit) { return fit.form.structure == Structure::unstable && fit.shape.T() < 0.12; }
+
+/// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
+void try_beginning(Search& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
+    if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
+    for (const double part : {0.35, 0.12, 0.04}) {
+        if (control.stop.stop_requested()) return;
+        const CleanRecord beginning = first_part(record, part);
+        if (beginning.changes() < 3 || beginning.samples() < 40) return;
+        Search other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
+        if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
+        if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;
+        search = std::move(other);
+        search.part = part;
+        return;
+    }
+}
+
 }  // namespace
+
+bool at_shortest_lag(const Fit& fit) {
+    constexpr double kNear = 0.2;
+    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kShortestUnstable + kNear;
+}
 
 double misfit(const FitContext& context, const Fit& fit) {
     const std::vector<double>& y = context.record.y;
@@ -220,11 +244,14 @@ double misfit(const FitContext& context, const Fit& fit) {
     return std::sqrt(std::max(0.0, left - n * noise * noise) / total);
 }
 
-Search search_models(CleanRecord record, ModelChoice model, bool relay, const RunControl& control) {
-    Search search = fit_all(fit_context(std::move(record), relay, control.stop), model, {}, control);
+Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
+    Search search = fit_all(fit_context(record, relay, control.stop), model, {}, control);
     auto unexplained = [&] {
         return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
     };
+    if (relay && usable(search) && (unexplained() || runs_too_long(search.chosen())))
+        try_beginning(search, record, model, control);
+    if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope)

@@ -19,6 +19,7 @@ struct Search {
     Choice choice;
     Disturbances disturbances;
     bool between_rows = false;  ///< u was taken to change midway between the rows
+    double part = 1;            ///< of the record, from its start: less than all for an unstable plant's long record
 
     const Fit& chosen() const { return fits[static_cast<std::size_t>(choice.index)]; }
 };
@@ -27,11 +28,16 @@ struct Search {
 /// is tried as changing midway between the rows; in one in which u moves more than once (or y creeps before it does), a
 /// drift and a lasting load at an unknown time are tried, and kept if they leave a third of the sum of squares or less
 /// (a thirtieth where a pattern remains).
+/// An unstable plant's free run loses its digits over a long record: in relay tests that no model explains, its
+/// beginning is tried.
 /// Stops early when asked to; the caller looks.
-Search search_models(CleanRecord record, ModelChoice model, bool relay, const RunControl& control);
+Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
 /// The same structures once more, held to measured values of the frequency response.
 void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, const RunControl& control);
+
+/// Whether an unstable model's time constant is about the least that a record can show.
+bool at_shortest_lag(const Fit& fit);
 
 /// Root of the mean square that a fit leaves beyond noise, relative to y's standard deviation.
 double misfit(const FitContext& context, const Fit& fit);

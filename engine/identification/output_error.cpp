@@ -307,8 +307,7 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
     bounds.low = {0, std::log(std::min(0.02 * spacing, 1e-3)), std::log(1e-4), 0};
     bounds.high = {std::max(0.0, record.response_time()), std::log(100.0), std::log(2500.0), 1 - 3 * spacing};
     if (structure == Structure::ipdt_lag) bounds.high[1] = std::log(10.0);
-    // A free run over more than 20 time constants of an unstable plant leaves no digits.
-    if (structure == Structure::unstable) bounds.low[1] = std::log(0.05), bounds.high[1] = std::log(10.0);
+    if (structure == Structure::unstable) bounds.low[1] = kShortestUnstable, bounds.high[1] = std::log(10.0);
     return bounds;
 }
 

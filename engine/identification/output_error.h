@@ -34,6 +34,8 @@ struct ModelForm {
 struct ShapeBounds {
     std::array<double, 4> low{}, high{};
 };
+/// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
+inline constexpr double kShortestUnstable = -2.995732273553991;
 ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
 
 /// A value of the frequency response that the model is held to: a row of the least-squares problem with this weight

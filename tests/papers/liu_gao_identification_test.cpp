@@ -119,6 +119,29 @@ TEST(LiuGaoIdentification, MeasuredFrequencyPointsLieOnThePlant) {
     }
 }
 
+// Over many time constants the free run of an unstable model is arbitrary: the record's beginning must do.
+TEST(LiuGaoIdentification, LongRecordOfAnUnstablePlantIsReadFromItsBeginning) {
+    RelaySettings settings;
+    settings.hysteresis = 0.1;
+    settings.noise_std = 0.005;
+    settings.relay_sample_time = 0.02;
+    settings.cycles = 25;
+    const auto experiment = simulate_relay(Fopdt{.K = -1, .T = -1, .L = 0.3}, settings, {});
+    ASSERT_TRUE(experiment);
+    Record record;
+    record.t = experiment->record.t;
+    record.u = experiment->record.u;
+    record.y = experiment->record.y;
+    ASSERT_GT(record.t.back(), 40);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    ASSERT_TRUE(std::holds_alternative<Fopdt>(model->plant)) << model->choice_reason;
+    const auto& plant = std::get<Fopdt>(model->plant);
+    EXPECT_NEAR(plant.K, -1, 0.06);
+    EXPECT_NEAR(plant.T, -1, 0.06);
+    EXPECT_NEAR(plant.L, 0.3, 0.01);
+}
+
 // 30 seeds of the paper's noisy case (sd 0.0212, relay looking every 0.05 s): unbiased, and no wider than the spread
 // that an independent output-error fit and pooled integrals have (gain 0.027 by the formulas).
 TEST(LiuGaoIdentification, NoisyRelayTestsScatterAroundTheTruth) {

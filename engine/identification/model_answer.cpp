@@ -51,6 +51,23 @@ void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality)
                             "). Give u0 if it is known.");
 }
 
+/// After one step the beginning of a slow response looks like an integrator's.
+void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnings) {
+    constexpr double kPositive = 6, kLongest = 3;
+    if (!is_integrating(search.chosen().form.structure) || search.context.record.changes() > 2) return;
+    for (std::size_t i = 0; i < search.fits.size(); ++i) {
+        const Fit& fit = search.fits[i];
+        const double lead = search.criteria[i] - search.criteria[static_cast<std::size_t>(search.choice.index)];
+        if (fit.form.structure != Structure::fopdt || !fit.determined || lead > kPositive) continue;
+        if (fit.shape.T() > kLongest) continue;
+        warnings.push_back({"slow-or-integrating",
+                            "A first-order response with a time constant of " +
+                                number_text(fit.shape.T() * search.context.record.scale.t_scale, 3) +
+                                " explains this record as well as an integrator: it ends too early to tell. Record "
+                                "longer, or choose the model by what is known of the process."});
+    }
+}
+
 void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.slope && !is_integrating(fit.form.structure)) {
         const double slope = fit.linear[fit.form.slope_index()] * r.scale.y_scale / r.scale.t_scale;
@@ -102,6 +119,7 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
+        warn_slow_or_integrating(search, model.warnings);
         add_record_warnings(recorded, model);
         note_start(record, fit, model.data_quality);
     }

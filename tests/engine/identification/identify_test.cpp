@@ -283,6 +283,20 @@ TEST(Identify, DriftSeenBeforeTheStepIsFittedAndTold) {
     EXPECT_LT(model.standard_errors.at("K"), 0.02);
 }
 
+TEST(Identify, AStepCutShortMayBeSlowOrIntegratingAndSaysSo) {
+    Record record = simulate(even_times(80, 0.25), 0, 0, {{5, 1}}, first_order(1, 30, 3));
+    add_noise(record, 0.02, 6);
+    const IdentifiedModel model = identified(record);
+    if (std::holds_alternative<Ipdt>(model.plant)) {
+        EXPECT_TRUE(warns(model, "slow-or-integrating"));
+    } else {
+        EXPECT_TRUE(warns(model, "unsettled-record"));
+    }
+    Record ramp = simulate(even_times(400, 0.25), 0, 0, {{5, 1}}, testing::ramp(0.05, 3));
+    add_noise(ramp, 0.02, 6);
+    EXPECT_FALSE(warns(identified(ramp), "slow-or-integrating"));
+}
+
 TEST(Identify, MovingBeforeTheStepWarnsWhereTooLittleIsSeenToFitADrift) {
     Record record = simulate(even_times(200, 0.5), 0, 0, {{6, 1}}, first_order(1, 10, 3));
     for (std::size_t i = 0; i < record.t.size(); ++i) record.y[i] += 0.01 * record.t[i];

@@ -103,7 +103,16 @@ test("faults of a plant name their field", () => {
 
 test("plants that no form shows are not forced into one", () => {
   assert.equal(formOf({ type: "nonlinear" }), null);
-  assert.equal(formOf({ type: "fopdt", K: 1, T: 1, L: 1, uncertainty: {} }), null);
+  assert.equal(formOf({ type: "transfer_function", num: [1], den: [1, 1], uncertainty: { K: [0.8, 1.2] } }), null);
+});
+
+test("an uncertain plant is shown and read back as it was", () => {
+  const plant = { type: "fopdt", K: 2, T: 10, L: 3, uncertainty: { K: [0.8, 1.2], L: [0.9, 1.2] } };
+  const form = formOf(plant)!;
+  const texts = Object.fromEntries(
+    form.fields.map((field) => [field.name, field.write((plant as Record<string, unknown>)[field.name])]),
+  );
+  assert.deepEqual(readPlant(form, (name) => texts[name]!), { plant, errors: [] });
 });
 
 test("addresses are read back as the routes they came from", () => {

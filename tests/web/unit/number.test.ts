@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { parseMatrix, parseNumber, parseNumbers, parseRoots } from "../../../web/src/form/number.ts";
+import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots } from "../../../web/src/form/number.ts";
 
 const value = (text: string): unknown => {
   const parsed = parseNumber(text, "K");
@@ -70,4 +70,16 @@ test("roots are real, complex, or pairs", () => {
   ]);
   assert.deepEqual(roots("-1 + 2i"), [[-1, 2]]);
   assert.match(String(roots("-1 q")), /"q" is not a number/);
+});
+
+test("ranges are read by name, and a bad one is shown as typed", () => {
+  assert.deepEqual(parseRanges("K 0.8 1.2; L 0,9 1.2", "uncertainty"), {
+    ok: true,
+    value: { K: [0.8, 1.2], L: [0.9, 1.2] },
+  });
+  for (const text of ["K 0.8", "0.8 1.2", "K 0.8 1.2 1.3", "K low high"]) {
+    const read = parseRanges(text, "uncertainty");
+    assert.equal(read.ok, false, text);
+    assert.ok(!read.ok && read.sentence.includes(`"${text}"`), text);
+  }
 });

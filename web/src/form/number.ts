@@ -46,6 +46,21 @@ export function parseNumbers(text: string, name: string): Parsed<number[]> {
   return { ok: true, value: values };
 }
 
+/** Ranges by name, ended by semicolons: K 0.8 1.2; L 0.9 1.2. */
+export function parseRanges(text: string, name: string): Parsed<Record<string, [number, number]>> {
+  const ranges: Record<string, [number, number]> = {};
+  for (const part of plain(text).split(/[;\n]/)) {
+    const [symbol, ...numbers] = items(part);
+    if (symbol === undefined) continue;
+    const values = numbers.map((item) => parseNumber(item, symbol));
+    const [low, high] = values;
+    if (values.length !== 2 || !low?.ok || !high?.ok || !/^[A-Za-z]/.test(symbol))
+      return fail(`${name}: "${part.trim()}" is not a range. Write K 0.8 1.2; L 0.9 1.2 for example.`);
+    ranges[symbol] = [low.value, high.value];
+  }
+  return { ok: true, value: ranges };
+}
+
 /** A matrix: rows on lines of their own or ended by semicolons, numbers separated by spaces. */
 export function parseMatrix(text: string, name: string): Parsed<number[][]> {
   const rows = plain(text)

@@ -1,6 +1,6 @@
 // The model card's fields: which plants can be entered, and how their parameters are written.
 import type { Plant } from "../api/types.ts";
-import { parseMatrix, parseNumber, parseNumbers, parseRoots } from "./number.ts";
+import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
 
 export interface PlantField {
@@ -39,6 +39,13 @@ const writeMatrix = (value: unknown): string =>
   Array.isArray(value)
     ? value.map((row: unknown) => (Array.isArray(row) ? row.map(String).join(" ") : String(row))).join("; ")
     : writeNumber(value);
+
+const writeRanges = (value: unknown): string =>
+  typeof value === "object" && value !== null
+    ? Object.entries(value)
+        .map(([symbol, range]) => `${symbol} ${writeList(range)}`)
+        .join("; ")
+    : "";
 
 function numberField(
   name: string,
@@ -80,12 +87,28 @@ const gain = numberField("K", "how far y goes for one unit of u, in the end", "g
 const deadTime = numberField("L", "dead time: nothing happens before it", "time", "8");
 const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
 
+/** Factors of the parameters between which the plant may lie. */
+const uncertainty: PlantField = {
+  name: "uncertainty",
+  hint: "least and largest factor, as K 0.8 1.2; L 0.9 1.2. Empty: known exactly",
+  unit: "",
+  example: "",
+  optional: true,
+  read: (text) => parseRanges(text, "uncertainty"),
+  write: writeRanges,
+};
+
 export const PLANT_FORMS: PlantForm[] = [
   {
     id: "fopdt",
     type: "fopdt",
     title: "First order with dead time",
-    fields: [gain, numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"), deadTime],
+    fields: [
+      gain,
+      numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"),
+      deadTime,
+      uncertainty,
+    ],
   },
   {
     id: "sopdt",
@@ -96,6 +119,7 @@ export const PLANT_FORMS: PlantForm[] = [
       numberField("T1", "first time constant", "time", "10"),
       numberField("T2", "second time constant", "time", "5"),
       deadTime,
+      uncertainty,
     ],
   },
   {
@@ -107,6 +131,7 @@ export const PLANT_FORMS: PlantForm[] = [
       numberField("T", "1/natural frequency", "time", "10"),
       numberField("zeta", "damping; below 1 it oscillates", "", "0.4"),
       deadTime,
+      uncertainty,
     ],
   },
   {
@@ -117,6 +142,7 @@ export const PLANT_FORMS: PlantForm[] = [
       numberField("K", "slope of y for one unit of u", "slope", "0.02"),
       deadTime,
       numberField("T", "additional lag; empty is none", "time", "", true),
+      uncertainty,
     ],
   },
   {

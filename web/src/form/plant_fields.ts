@@ -69,7 +69,7 @@ export function plantFields(errors: FormErrors, onChange: () => void): PlantFiel
           unit: unitText(item.unit),
           value: values[item.name] ?? "",
           pointer: () => `/plant/${item.name}`,
-          wide: item.example.includes(" ") || item.name === "num",
+          wide: item.example.includes(" ") || item.name === "num" || item.name === "uncertainty",
         },
         errors,
       ),

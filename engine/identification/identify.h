@@ -115,24 +115,27 @@ struct IdentifiedModel {
 /// squares over gain, time constants, continuous dead time and offset (output error: Ljung 1999, section 4.2). No
 /// resampling: the response to the piecewise constant u is exact at every time stamp.
 ///
-/// - Rows of equal time: the last u counts from that time on, each y is data. Rows with a time before the row above or
-/// without numbers
-///   are dropped; u of a row whose y is no number counts.
+/// - Rows of equal time: the last u counts from that time on, each y is data. Rows out of order or without numbers are
+///   dropped; u of a row whose y is no number counts.
 /// - `u0`: u stepped from u0 to its first value at the first sample. Without it a start that is not at rest is
-/// recognised where the
-///   record shows it, and noted. `y0` is weighed as ten samples of y at rest.
+///   recognised where the record shows it, and noted. `y0` is weighed as ten samples of y at rest.
 /// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are
-/// equal within
-///   noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which u changes
-///   more than twice.
-/// - Standard errors count correlated residuals as the few independent samples they are worth, and rounding of y as its
-/// least noise.
-/// - `fit` has at most 2,000 points. Warning codes: diagnosis.h.
+///   equal within noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which
+///   u changes more than twice.
+/// - A drift and a lasting load are fitted with the model where the record shows them, and told as warnings.
+/// - A relay test also gives `limit_cycle`, `frequency_points`; where no structure fits it, the model is held to the
+///   measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
+/// - `method` relay_fourier: Liu and Gao's formulas alone; two_point: the construction from one settled step. Neither
+///   gives standard errors.
+/// - Standard errors and covariance count correlated residuals as the few independent samples they are worth, and what
+///   rounding of y does.
+/// - `fit` has at most 2,000 points; of more than 100,000 samples means over blocks are fitted. Warning codes:
+///   diagnosis.h, model_answer.cpp, data_quality.h.
 ///
 /// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or
-/// y constant, no response, a step in the last samples); invalid_argument (columns of unequal length, times out of
-/// order); unsupported (`method` relay_fourier, two_point); cancelled.
-
+/// y constant, no response, a step in the last samples, fewer than two cycles for relay_fourier); invalid_argument
+/// (columns of unequal length, times out of order, a shift that is not above 0); unsupported (a model that the method's
+/// formulas do not give); cancelled.
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control);
 
 }  // namespace tunewright

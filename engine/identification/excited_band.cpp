@@ -34,7 +34,7 @@ std::vector<Change> changes_of(const Excitation& excitation) {
 /// |U(j omega)|^2 of the changes alone.
 double input_power(const std::vector<Change>& changes, double omega) {
     std::complex<double> sum = 0;
-    for (const auto& change : changes) sum += std::polar(change.size, -omega * change.t);
+    for (const auto& change : changes) sum += change.size * std::polar(1.0, -omega * change.t);
     return std::norm(sum) / (omega * omega);
 }
 

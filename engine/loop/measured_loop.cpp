@@ -66,7 +66,7 @@ StabilityCount MeasuredLoop::count_unstable_poles() const {
     double angle = 0;
     if (N > 0) {
         // 1 + L tends to low_gain/(j omega)^N for omega -> 0.
-        const Complex direction = std::polar(low_gain > 0 ? 1.0 : -1.0, -0.5 * kPi * N);
+        const Complex direction = (low_gain > 0 ? 1.0 : -1.0) * std::polar(1.0, -0.5 * kPi * N);
         angle = std::arg(before / direction);
     } else {
         angle = std::arg(before / (before.real() < 0 ? -1.0 : 1.0));

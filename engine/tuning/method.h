@@ -43,6 +43,12 @@ struct TuningProblem {
     std::optional<PlantFamily> family = {};
 };
 
+/// Options that make one row of a comparison of all methods.
+struct MethodVariant {
+    std::string name;  ///< e.g. "PI, servo, 20 %"
+    MethodOptions options;
+};
+
 struct TuningMethod {
     std::string id;
     std::string title;
@@ -51,6 +57,9 @@ struct TuningMethod {
     std::string needs;     ///< "any linear plant", "fopdt (others are reduced)", ...
     std::string validity;  ///< the range the source claims
     std::vector<OptionDescription> options;
+    /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
+    /// integral action, or the defaults.
+    std::vector<MethodVariant> variants = {};
     Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
     /// For a plant known by measured points of its frequency response; null: the method needs a model.
     Expected<TunedController> (*tune_on_points)(const MeasuredPlant&, const MethodOptions&,

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "engine/identification/step_reading.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
@@ -22,15 +23,13 @@ struct TimeConstants {
     std::vector<Warning> warnings;
 };
 
-Error not_applicable(const std::string& reason) { return {ErrorKind::unsupported, "reduction/method", reason}; }
-
 Expected<TimeConstants> time_constants(const LinearPlant& plant) {
     TimeConstants found;
     found.delay = plant.dead_time();
     for (const auto pole : plant.poles()) {
         const double zeta = -pole.real() / std::abs(pole);
         if (zeta < kLeastDamping)
-            return not_applicable("the plant has poles with damping " + text(zeta) + " (below 0.5).");
+            return reduction_fails("the plant has poles with damping " + text(zeta) + " (below 0.5).");
         if (zeta < kNearlyReal && pole.imag() > 0)
             found.warnings.push_back({"complex-poles-as-lags", "A pole pair with damping " + text(zeta) + " at " +
                                                                    text(std::abs(pole)) +
@@ -39,7 +38,7 @@ Expected<TimeConstants> time_constants(const LinearPlant& plant) {
         found.lags.push_back(zeta / std::abs(pole));
     }
     for (const auto zero : plant.zeros()) {
-        if (zero.imag() != 0) return not_applicable("the plant has complex zeros.");
+        if (zero.imag() != 0) return reduction_fails("the plant has complex zeros.");
         if (zero.real() > 0)
             found.delay += 1 / zero.real();
         else
@@ -134,7 +133,7 @@ Expected<ReducedModel> half_rule(const LinearPlant& plant, ReducedOrder order) {
     double theta = model.L;
     for (int round = 0; round < 20; ++round) {
         const auto left = cancel_leads(*found, theta);
-        if (!left) return not_applicable("a zero in the left half-plane has no lag to be set against.");
+        if (!left) return reduction_fails("a zero in the left half-plane has no lag to be set against.");
         model = share_out(*found, *left, plant, order);
         if (std::abs(model.L - theta) <= 1e-9 * model.L) break;
         theta = model.L;

@@ -5,6 +5,7 @@
 
 #include "engine/identification/half_rule.h"
 #include "engine/identification/tangent.h"
+#include "engine/identification/two_point_123c.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
@@ -37,13 +38,14 @@ std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder ord
 
 Expected<ReducedModel> reduce_by(ReductionMethod method, const LinearPlant& plant, const ReductionRequest& request) {
     if (method == ReductionMethod::half_rule || plant.integrators() > 1) return half_rule(plant, request.order);
+    if (method == ReductionMethod::two_point_123c) return two_point_123c(plant, request.order);
     return tangent(plant, request.tangent_time);
 }
 
 const char* kCure = "the method robust, which needs no reduction.";
 
 ReductionMethod other_than(ReductionMethod method) {
-    return method == ReductionMethod::tangent ? ReductionMethod::half_rule : ReductionMethod::tangent;
+    return method == ReductionMethod::half_rule ? ReductionMethod::tangent : ReductionMethod::half_rule;
 }
 
 Error named_method_fails(ReductionMethod method, const Error& reason) {
@@ -74,8 +76,15 @@ const char* to_string(ReductionMethod method) {
         case ReductionMethod::automatic: return "auto";
         case ReductionMethod::half_rule: return "half_rule";
         case ReductionMethod::tangent: return "tangent";
+        case ReductionMethod::two_point_123c: return "123c";
     }
     return "auto";
+}
+
+ReductionMethod reduction_method(const std::string& word) {
+    for (const auto method : {ReductionMethod::half_rule, ReductionMethod::tangent, ReductionMethod::two_point_123c})
+        if (word == to_string(method)) return method;
+    return ReductionMethod::automatic;
 }
 
 Plant ReducedModel::plant() const {

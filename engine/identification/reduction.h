@@ -12,13 +12,17 @@
 namespace tunewright {
 
 enum class ReductionMethod {
-    automatic,  ///< the rule's own first, the other where that one does not apply
-    half_rule,  ///< Skogestad (2003): from poles and zeros
-    tangent,    ///< from the exact step response: the tangent at its steepest point
+    automatic,       ///< the rule's own first, the other where that one does not apply
+    half_rule,       ///< Skogestad (2003): from poles and zeros
+    tangent,         ///< from the exact step response: the tangent at its steepest point
+    two_point_123c,  ///< Alfaro (2006): through 25 % and 75 % of the exact step response
 };
 
-/// The contract's word for it: "auto", "half_rule", "tangent".
+/// The contract's word for it: "auto", "half_rule", "tangent", "123c".
 const char* to_string(ReductionMethod method);
+
+/// The method of a word; automatic for any other.
+ReductionMethod reduction_method(const std::string& word);
 
 enum class ReducedOrder { first, second };
 
@@ -55,13 +59,13 @@ struct ReducedModel {
 /// half_rule: the largest neglected lag goes half to the smallest kept one, half to L, smaller ones and
 /// right-half-plane zeros to L entirely; left-half-plane zeros are first cancelled against neighbouring lags (rules T1
 /// to T3, which may change K). A complex pole pair with zeta >= 0.5 counts as two lags zeta T (same first moment), with
-/// a warning. tangent: stable plants: K static; gives first order whatever is asked. Warns where the response is not
-/// essentially monotone.
+/// a warning. tangent, two_point_123c: K static; stable plants get first order whatever is asked. They warn where the
+/// response is not essentially monotone.
 ///
 /// Errors: unsupported (`where` "plant" or "reduction/method") for right-half-plane poles, undamped modes, zeros at the
 /// origin, too many integrators, and where the named method does not apply; the sentence names another. Sources:
 /// Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hagglund & Astrom, J. Process Control 14
-/// (2004), Section 2.
+/// (2004), Section 2; Alfaro, Ciencia y Tecnologia 24 (2006).
 Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request);
 
 }  // namespace tunewright

@@ -10,12 +10,6 @@ namespace {
 
 constexpr double kTfOverTd = 0.1;  // N = 10
 
-ReductionMethod method_of(const std::string& word) {
-    if (word == "half_rule") return ReductionMethod::half_rule;
-    if (word == "tangent") return ReductionMethod::tangent;
-    return ReductionMethod::automatic;
-}
-
 bool given_as_model(const Plant& plant) {
     return std::holds_alternative<Fopdt>(plant) || std::holds_alternative<Sopdt>(plant) ||
            std::holds_alternative<Ipdt>(plant);
@@ -41,10 +35,10 @@ OptionDescription reduction_option(const std::string& automatic) {
     method.sentence =
         "half_rule: Skogestad's half rule, from poles and zeros; tangent: steepest tangent of the step response and "
         "its 63 % time "
-        "(asymptote of an integrating plant). auto: " +
+        "(asymptote of an integrating plant); 123c: Alfaro's two points, 25 % and 75 % of the step response. auto: " +
         automatic;
     method.default_value = std::string("auto");
-    method.choices = {"auto", "half_rule", "tangent"};
+    method.choices = {"auto", "123c", "half_rule", "tangent"};
     OptionDescription option;
     option.name = "reduction";
     option.type = OptionType::object;
@@ -84,7 +78,7 @@ Filter chosen_filter(const MethodOptions& options, FilterType type, double Td) {
 
 Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options,
                                   ReductionRequest request) {
-    request.method = method_of(options.text("reduction/method").value_or("auto"));
+    request.method = reduction_method(options.text("reduction/method").value_or("auto"));
     return reduce(problem.linear, request);
 }
 

@@ -6,7 +6,7 @@
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/tuning/local_minimum.h"
+#include "engine/identification/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
 

@@ -152,8 +152,54 @@ TEST(Tangent, RefusesAResponseThatJumps) {
     EXPECT_THAT(model.error().message, HasSubstr("Choose the reduction half_rule, or the method robust"));
 }
 
+// Arrieta, Vilanova & Alfaro's process: 1/((s + 1)(0.5 s + 1)(0.25 s + 1)(0.125 s + 1)); published 1.247, 0.691. The
+// times follow from the closed-form response by bisection: t25 = 1.049808, t75 = 2.419805.
+TEST(TwoPoint123c, ReproducesThePublishedFourthOrderModel) {
+    const Zpk plant{.K = 64, .zeros = {}, .poles = {-1.0, -2.0, -4.0, -8.0}};
+    const auto model = reduced(plant, ReductionMethod::two_point_123c);
+    expect_model(model, 0, 1, 0.9103 * (2.419805 - 1.049808), 0, 1.2620 * 1.049808 - 0.2620 * 2.419805, 2e-6);
+    EXPECT_NEAR(model->T1, 1.24711, 1e-4);
+    EXPECT_NEAR(model->L, 0.69087, 1e-4);
+    EXPECT_TRUE(model->warnings.empty());
+    EXPECT_FALSE(model->exact);
+}
+
+TEST(TwoPoint123c, DeadTimeGainAndTimeScaleCarryOver) {
+    const Zpk plant{.K = -3 * 64, .zeros = {}, .poles = {-0.1, -0.2, -0.4, -0.8}, .L = 7};
+    // Ten times slower, so K of the zpk is 1e-4 of it.
+    Zpk slow = plant;
+    slow.K *= 1e-4;
+    expect_model(reduced(slow, ReductionMethod::two_point_123c), 0, -3, 12.47109, 0, 7 + 6.908683, 2e-6);
+}
+
+TEST(TwoPoint123c, IntegratingPlantKeepsItsSlopeAndItsLagWhereAsked) {
+    const Zpk plant{.K = 128, .zeros = {}, .poles = {0.0, -1.0, -2.0, -4.0, -8.0}, .L = 1};
+    // The ramp's asymptote: dead time plus lags; with a lag: the two points of the slope.
+    expect_model(reduced(plant, ReductionMethod::two_point_123c), 1, 2, 0, 0, 1 + 1.875);
+    expect_model(reduced(plant, ReductionMethod::two_point_123c, ReducedOrder::second), 1, 2, 1.247109, 0, 1.6908683,
+                 2e-6);
+}
+
+TEST(TwoPoint123c, RefusesResponsesThatLeadTheStep) {
+    const auto jumps = reduced(TransferFunction{.num = {4, 2}, .den = {4, 2.2}}, ReductionMethod::two_point_123c);
+    ASSERT_FALSE(jumps);
+    EXPECT_THAT(jumps.error().message, HasSubstr("123c does not apply: the step response jumps past 75 %"));
+    EXPECT_THAT(jumps.error().message, HasSubstr("Choose the reduction half_rule"));
+    // A fast rise to 70 %, then a slow tail.
+    const auto tailed = reduced(TransferFunction{.num = {7, 1}, .den = {1, 10.1, 1}}, ReductionMethod::two_point_123c);
+    ASSERT_FALSE(tailed);
+    EXPECT_THAT(tailed.error().message, HasSubstr("which gives a negative dead time, -"));
+}
+
+TEST(Reduction, EveryMethodIsFoundByItsWord) {
+    for (const auto method : {ReductionMethod::automatic, ReductionMethod::half_rule, ReductionMethod::tangent,
+                              ReductionMethod::two_point_123c})
+        EXPECT_EQ(reduction_method(to_string(method)), method);
+}
+
 TEST(Reduction, APlantOfTheFormIsTakenAsItIsByEveryMethod) {
-    for (const auto method : {ReductionMethod::automatic, ReductionMethod::half_rule, ReductionMethod::tangent}) {
+    for (const auto method : {ReductionMethod::automatic, ReductionMethod::half_rule, ReductionMethod::tangent,
+                              ReductionMethod::two_point_123c}) {
         const auto model = reduced(Fopdt{.K = -2, .T = 10, .L = 3}, method);
         expect_model(model, 0, -2, 10, 0, 3);
         EXPECT_TRUE(model->exact);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/evaluate.h"
-#include "engine/tuning/local_minimum.h"
+#include "engine/identification/local_minimum.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep.h"
 

@@ -1,4 +1,4 @@
-#include "engine/tuning/local_minimum.h"
+#include "engine/identification/local_minimum.h"
 
 #include <nlopt.h>
 

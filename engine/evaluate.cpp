@@ -47,10 +47,7 @@ std::optional<Error> check_options(const EvaluateOptions& o) {
 Equivalents equivalents_of(const Controller& controller) {
     Equivalents equivalents;
     equivalents.parallel = gains(controller);
-    const auto ideal = std::holds_alternative<Pid>(controller) ? Expected<Pid>(std::get<Pid>(controller))
-                       : std::holds_alternative<SeriesPid>(controller)
-                           ? Expected<Pid>(to_ideal(std::get<SeriesPid>(controller)))
-                           : to_ideal(std::get<ParallelPid>(controller));
+    const auto ideal = to_ideal(controller);
     if (!ideal) {
         equivalents.why_no_series = ideal.error().message;
         return equivalents;

@@ -12,7 +12,7 @@ namespace tunewright {
 
 /// The best feasible design so far.
 struct BestSoFar {
-    Pid controller;
+    Controller controller;
     double load_IAE = 0;
     double Ms = 0;
     double Mt = 0;

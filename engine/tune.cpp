@@ -261,7 +261,7 @@ TuningEntry Run::entry(const Planned& planned, double from, double to) {
     entry.surface = tuned->surface;
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
-    evaluate_into(entry, tuned->controller, tuned->warnings);
+    evaluate_into(entry, answered(*tuned), tuned->warnings);
     if (entry.evaluation) {
         warn_of_region(*entry.evaluation, planned, result_.model && !held_);
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
@@ -291,7 +291,7 @@ void Run::keep_best(const TuningEntry& entry) {
     if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
     if (best_ && best_->load_IAE <= *load.IAE) return;
     best_ =
-        BestSoFar{std::get<Pid>(entry.evaluation->controller), *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
+        BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
 }
 
 Error all_failed(const std::vector<TuningEntry>& entries) {

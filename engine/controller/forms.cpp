@@ -94,10 +94,21 @@ Expected<SeriesPid> to_series(const Pid& pid) {
     return series;
 }
 
+Expected<Pid> to_ideal(const Controller& controller) {
+    struct Conversion {
+        Expected<Pid> operator()(const Pid& pid) const { return pid; }
+        Expected<Pid> operator()(const Npid& npid) const { return npid.linear_part(); }
+        Expected<Pid> operator()(const ParallelPid& pid) const { return to_ideal(pid); }
+        Expected<Pid> operator()(const SeriesPid& pid) const { return to_ideal(pid); }
+    };
+    return std::visit(Conversion{}, controller);
+}
+
 namespace {
 
 ParallelPid gains_of(const Pid& pid) { return to_parallel(pid); }
 ParallelPid gains_of(const ParallelPid& pid) { return pid; }
+ParallelPid gains_of(const Npid& npid) { return to_parallel(npid.linear_part()); }
 
 ParallelPid gains_of(const SeriesPid& pid) {
     const double Tf = lead_filter(pid.filter);

@@ -2,6 +2,8 @@
 //
 //   u = Kp [ (b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f) ]
 //
+// The nonlinear PID differs from it (b = 1, c = 0) in what its integral is fed with alone: exp(-e^2/(2 delta_r^2)) e.
+//
 // Units: Kp in u per y, Ti, Td, Tf in the plant's time unit.
 #pragma once
 
@@ -60,8 +62,22 @@ struct SeriesPid {
     double b_equivalent = 1;  ///< Ti'/Ti of the ideal form: what b = 1 in the series form amounts to
 };
 
-/// A controller as given by the user (`baseline`, `evaluate`).
-using Controller = std::variant<Pid, ParallelPid, SeriesPid>;
+/// u = Kp [ e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt ], e = r - y: the integral sees little of a large
+/// error. Source: Jin & Son, Studies in Informatics and Control 28 (2019) 157-166, Eqs. 3-5, with the size of the
+/// set-point change held and no derivative of the set-point step.
+struct Npid {
+    double Kp = 0;
+    double Ti = std::numeric_limits<double>::infinity();
+    double Td = 0;
+    std::optional<double> delta_r = {};  ///< > 0; empty: the size of the set-point step that it is evaluated with
+    Filter filter = {};                  ///< none or derivative
+
+    /// The law for small errors, to which everything over frequency refers.
+    Pid linear_part() const { return {.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter}; }
+};
+
+/// Any controller: as given by the user (`baseline`, `evaluate`), as answered by a method.
+using Controller = std::variant<Pid, ParallelPid, SeriesPid, Npid>;
 
 /// Ki = Kp/Ti, Kd = Kp Td; exact.
 ParallelPid to_parallel(const Pid& pid);
@@ -73,12 +89,16 @@ Expected<Pid> to_ideal(const ParallelPid& pid);
 /// Errors: Ti = 0; Ti + Td = Tf with a derivative filter (no proportional part is left).
 Expected<Pid> to_ideal(const SeriesPid& pid);
 
+/// Of any form; of the nonlinear PID its linear part. Errors: as above.
+Expected<Pid> to_ideal(const Controller& controller);
+
 /// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it
 /// exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
 /// which rule fails.
 Expected<SeriesPid> to_series(const Pid& pid);
 
-/// The gains of any form, which the loop and the simulation work with: exact and total (Ti != 0).
+/// The gains of any form, which the loop and the simulation work with: exact and total (Ti != 0). Of the nonlinear PID
+/// those of its linear part.
 ParallelPid gains(const Controller& controller);
 
 }  // namespace tunewright

@@ -26,12 +26,20 @@ struct CostSurface {
 
 struct TunedController {
     Pid controller;
+    bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
     std::optional<CostSurface> surface;
     std::optional<RimcReport> rimc;
     bool partial = false;  ///< stopped early: the best feasible design so far
 };
+
+/// The controller that the method answers.
+inline Controller answered(const TunedController& tuned) {
+    const Pid& pid = tuned.controller;
+    if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
+    return pid;
+}
 
 /// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
 /// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/identification/half_rule.h"
+#include "engine/identification/min_error.h"
 #include "engine/identification/tangent.h"
 #include "engine/identification/two_point_123c.h"
 #include "engine/number_text.h"
@@ -36,9 +37,15 @@ std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder ord
     return std::nullopt;
 }
 
+bool has_horizon(ReductionMethod method) {
+    return method == ReductionMethod::min_ise || method == ReductionMethod::min_iae ||
+           method == ReductionMethod::min_itae;
+}
+
 Expected<ReducedModel> reduce_by(ReductionMethod method, const LinearPlant& plant, const ReductionRequest& request) {
     if (method == ReductionMethod::half_rule || plant.integrators() > 1) return half_rule(plant, request.order);
     if (method == ReductionMethod::two_point_123c) return two_point_123c(plant, request.order);
+    if (has_horizon(method)) return min_error(plant, request);
     return tangent(plant, request.tangent_time);
 }
 
@@ -52,6 +59,12 @@ Error named_method_fails(ReductionMethod method, const Error& reason) {
     return {ErrorKind::unsupported, reason.where,
             std::string(to_string(method)) + " does not apply: " + reason.message + " Choose the reduction " +
                 to_string(other_than(method)) + ", or " + kCure};
+}
+
+Error horizon_unused(ReductionMethod method) {
+    return {ErrorKind::invalid_argument, "reduction/horizon",
+            std::string("horizon is given, but the reduction ") + to_string(method) +
+                " has none: leave it out, or choose min_ise, min_iae or min_itae."};
 }
 
 Error both_fail(ReductionMethod preferred, const Error& first, const Error& second) {
@@ -77,12 +90,16 @@ const char* to_string(ReductionMethod method) {
         case ReductionMethod::half_rule: return "half_rule";
         case ReductionMethod::tangent: return "tangent";
         case ReductionMethod::two_point_123c: return "123c";
+        case ReductionMethod::min_ise: return "min_ise";
+        case ReductionMethod::min_iae: return "min_iae";
+        case ReductionMethod::min_itae: return "min_itae";
     }
     return "auto";
 }
 
 ReductionMethod reduction_method(const std::string& word) {
-    for (const auto method : {ReductionMethod::half_rule, ReductionMethod::tangent, ReductionMethod::two_point_123c})
+    for (const auto method : {ReductionMethod::half_rule, ReductionMethod::tangent, ReductionMethod::two_point_123c,
+                              ReductionMethod::min_ise, ReductionMethod::min_iae, ReductionMethod::min_itae})
         if (word == to_string(method)) return method;
     return ReductionMethod::automatic;
 }
@@ -96,9 +113,11 @@ Plant ReducedModel::plant() const {
 
 Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request) {
     if (const auto error = beyond_reduction(plant, request.order)) return *error;
+    if (request.horizon && !has_horizon(request.method)) return horizon_unused(request.method);
     if (has_form(plant, request.order)) return half_rule(plant, request.order);
     if (request.method != ReductionMethod::automatic) {
         auto model = reduce_by(request.method, plant, request);
+        if (!model && model.error().kind == ErrorKind::invalid_argument) return model;
         return model ? model : named_method_fails(request.method, model.error());
     }
     auto first = reduce_by(request.preferred, plant, request);

@@ -1,6 +1,7 @@
 // Any linear plant as one of the few forms that tuning rules are written for.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,12 @@ enum class ReductionMethod {
     half_rule,       ///< Skogestad (2003): from poles and zeros
     tangent,         ///< from the exact step response: the tangent at its steepest point
     two_point_123c,  ///< Alfaro (2006): through 25 % and 75 % of the exact step response
+    min_ise,
+    min_iae,
+    min_itae,  ///< least integrated difference of the step responses: min_error.h
 };
 
-/// The contract's word for it: "auto", "half_rule", "tangent", "123c".
+/// The contract's word for it: "auto", "half_rule", "tangent", "123c", "min_ise", "min_iae", "min_itae".
 const char* to_string(ReductionMethod method);
 
 /// The method of a word; automatic for any other.
@@ -37,6 +41,7 @@ struct ReductionRequest {
     ReductionMethod method = ReductionMethod::automatic;
     ReductionMethod preferred = ReductionMethod::half_rule;  ///< what `automatic` tries first
     TangentTime tangent_time = TangentTime::at_63_percent;
+    std::optional<double> horizon = {};  ///< of min_*: where their integral ends; empty: settled
 };
 
 /// K e^(-Ls) / (s^integrators (T1 s + 1)(T2 s + 1)) with T1 >= T2 >= 0, L >= 0; with an integrator T2 = 0, with two T1
@@ -63,9 +68,10 @@ struct ReducedModel {
 /// response is not essentially monotone.
 ///
 /// Errors: unsupported (`where` "plant" or "reduction/method") for right-half-plane poles, undamped modes, zeros at the
-/// origin, too many integrators, and where the named method does not apply; the sentence names another. Sources:
-/// Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hagglund & Astrom, J. Process Control 14
-/// (2004), Section 2; Alfaro, Ciencia y Tecnologia 24 (2006).
+/// origin, too many integrators, and where the named method does not apply; the sentence names another.
+/// invalid_argument, `where` "reduction/horizon", for a horizon with a method that has none, or one before the response
+/// moves. Sources: Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hagglund & Astrom, J. Process
+/// Control 14 (2004), Section 2; Alfaro, Ciencia y Tecnologia 24 (2006).
 Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request);
 
 }  // namespace tunewright

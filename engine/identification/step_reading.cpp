@@ -52,10 +52,15 @@ std::vector<Warning> monotonicity_warnings(const std::vector<StepSample>& sample
                                  ", below 0.8): a first-order model describes it poorly. Check Ms, or use robust."}};
 }
 
+double ramp_delay(const LinearPlant& plant) {
+    double delay = plant.dead_time();
+    for (const auto pole : plant.poles()) delay += (-1.0 / pole).real();
+    for (const auto zero : plant.zeros()) delay -= (-1.0 / zero).real();
+    return delay;
+}
+
 Expected<ReducedModel> ramp_asymptote(const LinearPlant& plant) {
-    ReducedModel model{.integrators = 1, .K = plant.low_frequency_gain(), .L = plant.dead_time()};
-    for (const auto pole : plant.poles()) model.L += (-1.0 / pole).real();
-    for (const auto zero : plant.zeros()) model.L -= (-1.0 / zero).real();
+    ReducedModel model{.integrators = 1, .K = plant.low_frequency_gain(), .L = ramp_delay(plant)};
     if (model.L < 0)
         return reduction_fails("the zeros of the plant outweigh its lags, the ramp leads the step by " +
                                text(-model.L) + ".");

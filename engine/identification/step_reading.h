@@ -20,6 +20,9 @@ double time_at(const LinearPlant& plant, const std::vector<StepSample>& samples,
 /// 2006, Section 2.6).
 std::vector<Warning> monotonicity_warnings(const std::vector<StepSample>& samples, double static_gain);
 
+/// Where the asymptote of an integrating plant's ramp starts: the dead time plus lags minus leads.
+double ramp_delay(const LinearPlant& plant);
+
 /// K/s e^(-Ls) whose ramp is the asymptote of an integrating plant's: L is the dead time plus lags minus leads,
 /// exactly. Errors: unsupported where that is negative.
 Expected<ReducedModel> ramp_asymptote(const LinearPlant& plant);

@@ -104,6 +104,10 @@ double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double
     for (Index i = 1; i < nodes.size(); ++i) {
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
+        if (h <= 0 && (target - a.y < 0) != (target - b.y < 0)) {  // a jump across the target
+            sum += std::abs(a.error_integral - last);
+            last = a.error_integral;
+        }
         if (h <= 0 || !may_change_sign(a, b, target, h)) continue;
         const Cubic e = Cubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
         signed_pieces(e, [&](double, double to) {

@@ -35,15 +35,24 @@ OptionDescription reduction_option(const std::string& automatic) {
     method.sentence =
         "half_rule: Skogestad's half rule, from poles and zeros; tangent: steepest tangent of the step response and "
         "its 63 % time "
-        "(asymptote of an integrating plant); 123c: Alfaro's two points, 25 % and 75 % of the step response. auto: " +
+        "(asymptote of an integrating plant); 123c: Alfaro's two points, 25 % and 75 % of the step response; min_ise, "
+        "min_iae, min_itae: the least integral of the difference of the step responses, "
+        "squared, absolute, or absolute times time. auto: " +
         automatic;
     method.default_value = std::string("auto");
-    method.choices = {"auto", "123c", "half_rule", "tangent"};
+    method.choices = {"auto", "123c", "half_rule", "tangent", "min_ise", "min_iae", "min_itae"};
+    OptionDescription horizon;
+    horizon.name = "horizon";
+    horizon.sentence =
+        "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, with "
+        "the plant's static gain.";
+    horizon.unit = "time";
+    horizon.exclusive_minimum = 0;
     OptionDescription option;
     option.name = "reduction";
     option.type = OptionType::object;
     option.sentence = "How a plant that is not of the rule's form is reduced to it.";
-    option.fields = {method};
+    option.fields = {method, horizon};
     return option;
 }
 
@@ -79,6 +88,7 @@ Filter chosen_filter(const MethodOptions& options, FilterType type, double Td) {
 Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options,
                                   ReductionRequest request) {
     request.method = reduction_method(options.text("reduction/method").value_or("auto"));
+    request.horizon = options.number("reduction/horizon");
     return reduce(problem.linear, request);
 }
 

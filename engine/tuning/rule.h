@@ -12,7 +12,7 @@ namespace tunewright {
 /// Option `controller` with the forms that the source gives; "PID" is the default where it is among them.
 OptionDescription controller_option(std::vector<std::string> choices);
 
-/// Option `reduction {method}`; `automatic` says what "auto" does for this rule.
+/// Option `reduction {method, horizon}`; `automatic` says what "auto" does for this rule.
 OptionDescription reduction_option(const std::string& automatic);
 
 /// Option `filter {Tf_over_Td | Tf}` of a PID; `law` says what is filtered.
@@ -23,7 +23,7 @@ std::string chosen_controller(const MethodOptions& options);  ///< "P", "PI" or 
 /// The filter of a PID with this Td: Tf as given or Tf_over_Td Td (default 0.1); 0 gives `none`.
 Filter chosen_filter(const MethodOptions& options, FilterType type, double Td);
 
-/// The model that the rule works on, by option `reduction/method`. Errors: those of reduce().
+/// The model that the rule works on, by option `reduction`. Errors: those of reduce().
 Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options, ReductionRequest request);
 
 /// L/(L + T1): 0 lag-dominated, 1 dead-time-dominated; 0 with an integrator.

@@ -42,8 +42,8 @@ template <class Disturb>
 double coverage(const Truth& plant, int samples, double spacing, double step_time, const Disturb& disturb) {
     int inside = 0;
     for (int seed = 1; seed <= kSeeds; ++seed) {
-        Record record = simulate(even_times(samples, spacing), 0, 0, {{step_time, 1}},
-                                 first_order(plant.K, plant.T, plant.L));
+        Record record =
+            simulate(even_times(samples, spacing), 0, 0, {{step_time, 1}}, first_order(plant.K, plant.T, plant.L));
         disturb(record, seed);
         IdentifyOptions options;
         options.model = ModelChoice::fopdt;

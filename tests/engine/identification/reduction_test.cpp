@@ -193,7 +193,8 @@ TEST(TwoPoint123c, RefusesResponsesThatLeadTheStep) {
 
 TEST(Reduction, EveryMethodIsFoundByItsWord) {
     for (const auto method : {ReductionMethod::automatic, ReductionMethod::half_rule, ReductionMethod::tangent,
-                              ReductionMethod::two_point_123c})
+                              ReductionMethod::two_point_123c, ReductionMethod::min_ise, ReductionMethod::min_iae,
+                              ReductionMethod::min_itae})
         EXPECT_EQ(reduction_method(to_string(method)), method);
 }
 

@@ -30,7 +30,8 @@ struct EvaluateOptions {
     int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
-    double rank_Ms = 2.0;  ///< entries with Ms above it rank last
+    double rank_Ms = 2.0;               ///< entries with Ms above it rank last
+    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.

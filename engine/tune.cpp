@@ -4,35 +4,25 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/league.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear_plant.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kNoticeable = 1.01;    // of a limit, before a warning
+constexpr double kNoticeable = 1.01;  // of a limit, before a warning
+constexpr const char* kAll = "all";
 constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
+constexpr double kRowsShare = 0.3;      // of what then remains, where optima are computed for every row
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
 
-// A method's request with its place in the answer's errors ("tune/2", or "" for the parts of "all").
+// A row to come, with its place in the answer's errors ("tune/2").
 struct Planned {
-    const TuningMethod* method;
-    MethodOptions options;
+    LeagueRow row;
     std::string where;
-    bool optional_part = false;  // of "all": left out where it does not apply
 };
-
-// Of "all", each method takes those options that it knows.
-MethodOptions known_options(const MethodOptions& given, const TuningMethod& method) {
-    MethodOptions known;
-    for (const auto& [path, value] : given.values()) {
-        const std::string name = path.substr(0, path.find('/'));
-        if (std::ranges::find(method.options, name, &OptionDescription::name) != method.options.end())
-            known.set(path, value);
-    }
-    return known;
-}
 
 Error unknown_method(const std::string& id, const std::string& where) {
     std::string known;
@@ -46,14 +36,13 @@ Expected<std::vector<Planned>> plan(const std::vector<MethodRequest>& requests) 
     for (size_t i = 0; i < requests.size(); ++i) {
         const auto& [id, options] = requests[i];
         const std::string where = "tune/" + std::to_string(i);
-        if (id == "all") {
-            for (const auto& method : method_registry())
-                planned.push_back({&method, known_options(options, method), where, true});
+        if (id == kAll) {
+            for (LeagueRow& row : league_rows(options)) planned.push_back({std::move(row), where});
             continue;
         }
         const TuningMethod* method = find_method(id);
         if (!method) return unknown_method(id, where);
-        planned.push_back({method, options, where});
+        planned.push_back({{method, options, method->title, {}}, where});
     }
     if (planned.empty())
         return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
@@ -61,15 +50,6 @@ Expected<std::vector<Planned>> plan(const std::vector<MethodRequest>& requests) 
 }
 
 bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
-
-bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms) {
-    const auto key = [&](const Evaluation& e) {
-        const bool within = e.robustness.stable && e.robustness.Ms && *e.robustness.Ms <= rank_Ms;
-        const auto& IAE = e.performance.load.IAE;
-        return std::tuple(!within, !e.robustness.stable, IAE ? *IAE : std::numeric_limits<double>::infinity());
-    };
-    return key(a) < key(b);
-}
 
 std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms) {
     std::vector<int> order;
@@ -92,7 +72,7 @@ std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& 
 }
 
 void warn_of_region(Evaluation& evaluation, const Planned& planned, bool identified) {
-    const auto limit = Ms_limit(*planned.method, planned.options);
+    const auto limit = Ms_limit(*planned.row.method, planned.row.options);
     if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
     const double worst = *evaluation.region->worst_Ms;
     if (worst <= kNoticeable * *limit) return;
@@ -133,6 +113,9 @@ private:
     Expected<TunedController> tuned_with(const Planned& planned, const RunControl& control) const;
     TuningEntry entry(const Planned& planned, double from, double to);
     TuningEntry baseline() const;
+    bool tune_rows(const std::vector<Planned>& planned, double from, double to);
+    bool wants_optima() const;
+    void compare_with_optima(double from);
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const;
     Error placed(Error error, const std::string& where) const;
     void keep_best(const TuningEntry& entry);
@@ -237,9 +220,11 @@ std::optional<Error> Run::state_problem() {
 }
 
 Expected<TunedController> Run::tuned_with(const Planned& planned, const RunControl& control) const {
-    const TuningMethod& method = *planned.method;
-    if (!measured_) return method.tune(*problem_, planned.options, control);
-    if (method.tune_on_points) return method.tune_on_points(*measured_, planned.options, control);
+    const TuningMethod& method = *planned.row.method;
+    const MethodOptions& options = planned.row.options;
+    if (planned.row.refusal) return *planned.row.refusal;
+    if (!measured_) return method.tune(*problem_, options, control);
+    if (method.tune_on_points) return method.tune_on_points(*measured_, options, control);
     return Error{ErrorKind::unsupported, "",
                  "The method " + method.id +
                      " needs a model of the plant; points of a frequency response serve the method robust."};
@@ -247,10 +232,10 @@ Expected<TunedController> Run::tuned_with(const Planned& planned, const RunContr
 
 TuningEntry Run::entry(const Planned& planned, double from, double to) {
     TuningEntry entry;
-    entry.method = planned.method->id;
-    entry.title = planned.method->title;
-    entry.source = planned.method->source;
-    entry.options = planned.options;
+    entry.method = planned.row.method->id;
+    entry.title = planned.row.title;
+    entry.source = planned.row.method->source;
+    entry.options = planned.row.options;
     const double started = now_ms();
     auto tuned = tuned_with(planned, share(from, to));
     if (!tuned) {
@@ -294,13 +279,57 @@ void Run::keep_best(const TuningEntry& entry) {
         BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
 }
 
+// Reasons that several methods share are told once.
 Error all_failed(const std::vector<TuningEntry>& entries) {
+    std::vector<std::pair<std::string, std::string>> told;  // methods, reason
+    for (const auto& entry : entries) {
+        const auto at = std::ranges::find(told, entry.error->message, &std::pair<std::string, std::string>::second);
+        if (at == told.end())
+            told.emplace_back(entry.method, entry.error->message);
+        else if (!(", " + at->first).ends_with(", " + entry.method))
+            at->first += ", " + entry.method;
+    }
     Error error = *entries.front().error;
-    const auto same = [&](const TuningEntry& entry) { return entry.error->message == error.message; };
-    if (std::ranges::all_of(entries, same)) return error;
+    if (told.size() == 1) return error;
     error.message = "No method gave a controller.";
-    for (const auto& entry : entries) error.message += " " + entry.method + ": " + entry.error->message;
+    for (const auto& [methods, reason] : told) error.message += " " + methods + ": " + reason;
     return error;
+}
+
+// False: stopped before the last row.
+bool Run::tune_rows(const std::vector<Planned>& planned, double from, double to) {
+    const double share_of_one = (to - from) / static_cast<double>(planned.size());
+    for (const Planned& next : planned) {
+        if (stopped()) return false;
+        report(from, "tune", "Tuning with " + next.row.title + ".");
+        TuningEntry entry = this->entry(next, from, from + share_of_one);
+        if (entry.error && entry.error->kind == ErrorKind::cancelled) return false;
+        keep_best(entry);
+        result_.controllers.push_back(std::move(entry));
+        if (result_.partial) return false;
+        from += share_of_one;
+    }
+    return true;
+}
+
+// The column "how far from the optimum at the same Ms".
+void Run::compare_with_optima(double from) {
+    RobustOptima optima(*problem_, request_.evaluate);
+    const double share_of_one = (1 - from) / static_cast<double>(result_.controllers.size());
+    for (TuningEntry& entry : result_.controllers) {
+        if (stopped()) {
+            result_.partial = true;
+            return;
+        }
+        report(from, "tune", "Looking for the optimum at the same Ms as " + entry.title + ".");
+        if (entry.evaluation) entry.optimum_at_Ms = optima.beside(*entry.evaluation, control_);
+        from += share_of_one;
+    }
+}
+
+bool Run::wants_optima() const {
+    const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.method == kAll; });
+    return !measured_ && request_.evaluate.optimum_at_Ms.value_or(league);
 }
 
 Expected<TuningResult> Run::result() {
@@ -310,40 +339,19 @@ Expected<TuningResult> Run::result() {
     if (!measured_)
         if (const auto error = state_problem()) return *error;
 
-    const double start = result_.model ? kIdentifyShare : 0,
-                 share_of_one = (1 - start) / static_cast<double>(planned->size());
-    std::vector<TuningEntry> left_out;
-    for (size_t i = 0; i < planned->size() && !result_.partial; ++i) {
-        const Planned& next = (*planned)[i];
-        if (stopped()) {
-            result_.partial = true;
-            break;
-        }
-        const double from = start + share_of_one * static_cast<double>(i);
-        report(from, "tune", "Tuning with " + next.method->title + ".");
-        TuningEntry entry = this->entry(next, from, from + share_of_one);
-        if (entry.error && entry.error->kind == ErrorKind::cancelled) {
-            result_.partial = true;
-            break;
-        }
-        keep_best(entry);
-        const bool inapplicable = next.optional_part && entry.error && entry.error->kind == ErrorKind::unsupported;
-        (inapplicable ? left_out : result_.controllers).push_back(std::move(entry));
-    }
-
+    const double start = result_.model ? kIdentifyShare : 0;
+    const double tuned = wants_optima() ? start + (1 - start) * kRowsShare : 1;
+    if (!tune_rows(*planned, start, tuned)) result_.partial = true;
     const bool found =
         std::ranges::any_of(result_.controllers, [](const TuningEntry& e) { return e.evaluation.has_value(); });
-    if (!found) {
-        if (result_.partial) return cancelled();
-        result_.controllers.insert(result_.controllers.end(), left_out.begin(), left_out.end());
-        return all_failed(result_.controllers);
-    }
+    if (!found) return result_.partial ? cancelled() : all_failed(result_.controllers);
     if (request_.baseline) {
         if (stopped())
             result_.partial = true;
         else
             result_.controllers.push_back(baseline());
     }
+    if (wants_optima() && !result_.partial) compare_with_optima(tuned);
     result_.ranking = ranking(result_.controllers, request_.evaluate.rank_Ms);
     if (result_.model && !result_.ranking.empty())
         result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;

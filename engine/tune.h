@@ -7,6 +7,7 @@
 
 #include "engine/evaluate.h"
 #include "engine/identification/identify.h"
+#include "engine/optimum_at_ms.h"
 #include "engine/progress.h"
 #include "engine/rimc_entry.h"
 #include "engine/tuning/method.h"
@@ -14,7 +15,7 @@
 namespace tunewright {
 
 struct MethodRequest {
-    std::string method = "robust";  ///< or "all": every method that applies to the plant, with those options it knows
+    std::string method = "robust";  ///< or "all": every method in all its variants, each with those options it knows
     MethodOptions options;
 };
 
@@ -37,6 +38,7 @@ struct TuningEntry {
     std::optional<Plant> reduced_model;
     std::optional<CostSurface> surface;
     std::optional<RimcEntry> rimc;
+    std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 };

@@ -91,25 +91,45 @@ std::vector<std::string> method_ids() {
     return ids;
 }
 
-// Of "all", each method takes the options that it knows: one of them must, and the value must suit every one that does.
+std::vector<std::string> names_of_all() {
+    std::vector<std::string> names;
+    for (const TuningMethod& method : method_registry())
+        for (const OptionDescription& option : method.options) names.push_back(option.name);
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+// The description of an option by the first method that takes this value for it; null if none does, but `named` if one
+// knows the option.
+const OptionDescription* taking(const std::string& name, const Json& value, const Reader& reader,
+                                const OptionDescription*& named) {
+    for (const TuningMethod& method : method_registry()) {
+        for (const OptionDescription& option : method.options) {
+            if (option.name != name) continue;
+            if (named == nullptr) named = &option;
+            Reader trial = reader;
+            MethodOptions ignored;
+            read_option(value, option, name, ignored, trial);
+            if (trial.clean_since(reader.count())) return &option;
+        }
+    }
+    return nullptr;
+}
+
+// Of "all", each method takes the options that it knows. A value must suit one of them; the others will say why it does
+// not suit them.
 void read_options_of_all(const Json& value, MethodOptions& target, Reader& reader) {
     for (const auto& [name, member] : value.items()) {
         if (name == "method") continue;
         const Reader::At at(reader, name);
-        const std::size_t before = reader.count();
-        bool known = false;
-        std::vector<std::string> names;
-        for (const TuningMethod& method : method_registry()) {
-            for (const OptionDescription& option : method.options) {
-                names.push_back(option.name);
-                if (option.name != name || !reader.clean_since(before)) continue;
-                known = true;
-                read_option(member, option, name, target, reader);
-            }
+        const OptionDescription* named = nullptr;
+        const OptionDescription* suits = taking(name, member, reader, named);
+        if (named == nullptr) {
+            reader.fault(unknown_option(name, "any method", names_of_all()));
+            continue;
         }
-        std::sort(names.begin(), names.end());
-        names.erase(std::unique(names.begin(), names.end()), names.end());
-        if (!known) reader.fault(unknown_option(name, "any method", names));
+        read_option(member, suits ? *suits : *named, name, target, reader);
     }
 }
 
@@ -175,13 +195,18 @@ Json methods_schema(SchemaBook& book) {
     for (const TuningMethod& method : method_registry()) {
         const Json options = options_schema(method.options)["properties"];
         for (const auto& [name, option] : options.items()) {
-            if (!of_all.contains(name)) of_all[name] = option;
-            of_all[name].erase("default");
+            Json any = option;
+            any.erase("default");
+            Json& known = of_all[name]["anyOf"];
+            if (std::find(known.begin(), known.end(), any) == known.end()) known.push_back(std::move(any));
         }
         add(method.id, method_schema(method.id, method.title, method.formula + " Source: " + method.source, options));
     }
-    add(kAll, method_schema(kAll, "Every method",
-                            "Every method that applies to the plant, with those options that it knows.", of_all));
+    add(kAll,
+        method_schema(kAll, "Every method",
+                      "Every method in all its variants, each with those options that it knows. One that does not "
+                      "apply is an entry with its reason.",
+                      of_all));
     book.components["Method"] = {
         {"title", "Method"}, {"description", "A tuning method with its options."}, {"oneOf", std::move(choices)}};
     return {{"$ref", "#/components/schemas/Method"}};

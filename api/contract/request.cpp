@@ -202,7 +202,10 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                                 {"properties", {{"Ms", {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", 2}}}}},
                                 {"additionalProperties", false}};
                 },
-                "Entries above these limits rank last.");
+                "Entries above these limits rank last.")
+            .field("optimum_at_Ms", &EvaluateOptions::optimum_at_Ms, maybe(boolean()),
+                   "Whether each entry is compared with the robust PID of the least load IAE at the same Ms. Default: "
+                   "true with the method all, else false.");
         return d;
     }();
     return description;

@@ -6,6 +6,7 @@
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant.h"
+#include "api/contract/optimum_at_ms.h"
 #include "api/contract/rimc.h"
 
 namespace tunewright::api {
@@ -108,6 +109,8 @@ const Description<TuningEntry>& entry_contract() {
                 "Cost over the (Ti, Td) plane, where asked for.");
         d.field("rimc", &TuningEntry::rimc, maybe(answer(rimc_contract())),
                 "Of the method rimc: what its design achieves on the model.");
+        d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
+                "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },

@@ -1,5 +1,9 @@
 #include "engine/tuning/options.h"
 
+#include <algorithm>
+
+#include "engine/number_text.h"
+
 namespace tunewright {
 namespace {
 
@@ -10,7 +14,63 @@ std::optional<T> find(const std::map<std::string, OptionValue>& values, const st
     return std::get<T>(at->second);
 }
 
+std::string shown(const OptionValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return text(*number);
+    if (const auto* word = std::get_if<std::string>(&value)) return *word;
+    return std::get<bool>(value) ? "true" : "false";
+}
+
+std::optional<std::string> number_misfit(const OptionDescription& option, double value) {
+    const bool above = (!option.minimum || value >= *option.minimum) &&
+                       (!option.exclusive_minimum || value > *option.exclusive_minimum);
+    if (above && (!option.maximum || value <= *option.maximum)) return std::nullopt;
+    std::string range;
+    if (option.minimum) range += " at least " + text(*option.minimum);
+    if (option.exclusive_minimum) range += " above " + text(*option.exclusive_minimum);
+    if (option.maximum) range += (range.empty() ? " at most " : " and at most ") + text(*option.maximum);
+    return option.name + " is " + text(value) + "; it must be" + range + ".";
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string list;
+    for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+    return list;
+}
+
+std::optional<std::string> value_misfit(const OptionDescription& option, const OptionValue& value) {
+    const auto* number = std::get_if<double>(&value);
+    const auto* word = std::get_if<std::string>(&value);
+    if (word && std::ranges::find(option.choices, *word) != option.choices.end()) return std::nullopt;
+    switch (option.type) {
+        case OptionType::number:
+        case OptionType::integer:
+            if (number) return number_misfit(option, *number);
+            return option.name + " is " + shown(value) + "; it must be a number.";
+        case OptionType::boolean:
+            if (std::holds_alternative<bool>(value)) return std::nullopt;
+            return option.name + " is " + shown(value) + "; it must be true or false.";
+        case OptionType::choice:
+            return option.name + " is " + shown(value) + "; it must be one of " + listed(option.choices) + ".";
+        case OptionType::object: return option.name + " must be an object.";
+    }
+    return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<std::string> misfit(const std::vector<OptionDescription>& options, const std::string& path,
+                                  const OptionValue& value) {
+    const std::size_t slash = path.find('/');
+    const std::string name = path.substr(0, slash);
+    const auto option = std::ranges::find(options, name, &OptionDescription::name);
+    if (option == options.end()) {
+        std::vector<std::string> names;
+        for (const OptionDescription& known : options) names.push_back(known.name);
+        return name + " is none of " + listed(names) + ".";
+    }
+    if (slash == std::string::npos) return value_misfit(*option, value);
+    return misfit(option->fields, path.substr(slash + 1), value);
+}
 
 std::optional<double> MethodOptions::number(const std::string& path) const { return find<double>(values_, path); }
 std::optional<bool> MethodOptions::boolean(const std::string& path) const { return find<bool>(values_, path); }

@@ -41,4 +41,8 @@ private:
     std::map<std::string, OptionValue> values_;
 };
 
+/// What in the value at `path` ("Ms", "filter/Tf") contradicts the description, as a sentence; empty if it suits.
+std::optional<std::string> misfit(const std::vector<OptionDescription>& options, const std::string& path,
+                                  const OptionValue& value);
+
 }  // namespace tunewright

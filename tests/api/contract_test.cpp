@@ -172,6 +172,15 @@ TEST(Requests, AllIsAWordOrAMethodWithAnyMethodsOptions) {
               std::vector<std::string>{});
 }
 
+TEST(Requests, AnOptionOfAllNeedSuitOneMethodOnly) {
+    const auto decoded =
+        decode<JobRequest>(job_contract(), request_with(R"("tune": [{"method": "all", "controller": "P"}])"));
+    ASSERT_TRUE(decoded.faults.empty()) << detail_at(decoded.faults, "none");
+    EXPECT_EQ(decoded.value.tune.at(0).options.text("controller"), "P");
+    EXPECT_EQ(schema_faults(Json::parse(R"({"method": "all", "controller": "P"})"), "Method"),
+              std::vector<std::string>{});
+}
+
 TEST(Requests, EvaluateOptionsGoToTheirPlaces) {
     const auto decoded = decode<JobRequest>(
         job_contract(),

@@ -103,24 +103,6 @@ TEST(Tune, OptionErrorsCarryTheirPlaceInTheRequest) {
     EXPECT_EQ(result->controllers[1].error->where, "tune/1/reduction/method");
 }
 
-TEST(Tune, AllTakesEveryMethodThatAppliesAndPassesKnownOptions) {
-    const auto result =
-        tune(request_for(Fopdt{.K = 1, .T = 5, .L = 0}, {method("all", {{"lambda", 2.0}, {"tau_c", 4.0}})}), {});
-    ASSERT_TRUE(result);
-    const auto ids = methods_of(*result);
-    EXPECT_THAT(ids, testing::Contains("simc"));
-    EXPECT_THAT(ids, testing::Contains("lambda"));
-    EXPECT_THAT(ids, testing::Not(testing::Contains("amigo")));
-    for (const auto& entry : result->controllers) {
-        if (entry.method == "lambda") {
-            EXPECT_EQ(std::get<Pid>(entry.evaluation->controller).Kp, 2.5);
-        }
-        if (entry.method == "simc") {
-            EXPECT_FALSE(entry.options.has("lambda"));
-        }
-    }
-}
-
 TEST(Tune, RefusesRequestsThatAreNoneWithAPlace) {
     auto request = request_for(kPlant, {method("imaginary")});
     auto refused = tune(request, {});

@@ -41,6 +41,7 @@ public:
                                                      "enum",
                                                      "const",
                                                      "oneOf",
+                                                     "anyOf",
                                                      "not",
                                                      "minimum",
                                                      "maximum",
@@ -76,6 +77,7 @@ public:
         if (schema.contains("not") && SchemaCheck(document_).holds(value, schema["not"]))
             fault(at, "is " + schema["not"].dump());
         if (schema.contains("oneOf")) check_one_of(value, schema["oneOf"], at);
+        if (schema.contains("anyOf")) check_any_of(value, schema["anyOf"], at);
         if (value.is_number()) check_number(value.get<double>(), schema, at);
         if (value.is_string() && schema.contains("maxLength") &&
             value.get<std::string>().size() > schema["maxLength"].get<std::size_t>())
@@ -115,6 +117,12 @@ private:
         else
             for (const Json& one : type) good = good || is_type(value, one);
         if (!good) fault(at, "is not " + type.dump());
+    }
+
+    void check_any_of(const Json& value, const Json& choices, const std::string& at) {
+        for (const Json& choice : choices)
+            if (SchemaCheck(document_).holds(value, choice)) return;
+        fault(at, "fits none of anyOf");
     }
 
     void check_one_of(const Json& value, const Json& choices, const std::string& at) {

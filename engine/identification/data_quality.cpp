@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "engine/identification/record_kind.h"
+#include "engine/identification/statistics.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
 namespace {
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings;
@@ -112,19 +108,14 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     const auto n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
     // A relay that works from the first sample on leaves no part at rest.
     const bool at_work = quality.kind == RecordKind::relay && on_a_level(two_levels(input_levels(r)), 0);
-    double t_mean = 0, y_mean = 0;
-    for (int i = 0; i < n; ++i) t_mean += r.t[i] / n, y_mean += r.y[i] / n;
-    if (n == 0 || at_work) y_mean = r.y.front();
+    const std::span t(r.t.data(), static_cast<std::size_t>(n)), y(r.y.data(), static_cast<std::size_t>(n));
+    const Line line = straight_line(t, y);
+    const double y_mean = n == 0 || at_work ? r.y.front() : line.y_mean;
     quality.y0 = r.scale.y_origin + r.scale.y_scale * r.y_rest.value_or(y_mean);
-    if (n < 2 || r.t[n - 1] <= r.t[0] || at_work) return;
-    double tt = 0, ty = 0, yy = 0;
-    for (int i = 0; i < n; ++i) {
-        tt += (r.t[i] - t_mean) * (r.t[i] - t_mean);
-        ty += (r.t[i] - t_mean) * (r.y[i] - y_mean);
-        yy += (r.y[i] - y_mean) * (r.y[i] - y_mean);
-    }
-    const double slope = ty / tt, duration = r.t[n - 1] - r.t[0];
-    const double error = n > 2 ? std::sqrt(std::max(0.0, yy - slope * ty) / (n - 2) / tt) : std::abs(slope);
+    if (n < 2 || t.back() <= t.front() || at_work) return;
+    const double duration = t.back() - t.front();
+    // Two samples determine a line without telling its error.
+    const double slope = line.slope, error = n > 2 ? line.slope_std : std::abs(slope);
     constexpr double kMoved = 0.03, kErrors = 5;
     PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
     pretest.at_rest = std::abs(slope) * duration < kMoved || std::abs(slope) < kErrors * error;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "engine/identification/statistics.h"
 #include "engine/identification/uncertainty.h"
 #include "engine/identification/wording.h"
 
@@ -82,17 +84,10 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
 void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
     const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
     if (n < 5 || r.t[n - 1] <= r.t[0]) return;
-    const double t_mean = std::accumulate(r.t.begin(), r.t.begin() + n, 0.0) / n,
-                 y_mean = std::accumulate(r.y.begin(), r.y.begin() + n, 0.0) / n;
-    double tt = 0, ty = 0, yy = 0;
-    for (int i = 0; i < n; ++i) {
-        tt += (r.t[i] - t_mean) * (r.t[i] - t_mean);
-        ty += (r.t[i] - t_mean) * (r.y[i] - y_mean);
-        yy += (r.y[i] - y_mean) * (r.y[i] - y_mean);
-    }
-    const double slope = ty / tt, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
-    const double error = std::sqrt(std::max(0.0, yy - slope * ty) / (n - 2) / tt);
-    if (moved < 0.03 || std::abs(slope) < 5 * error) return;
+    const auto rest = static_cast<std::size_t>(n);
+    const Line line = straight_line(std::span(r.t).first(rest), std::span(r.y).first(rest));
+    const double slope = line.slope, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
+    if (moved < 0.03 || std::abs(slope) < 5 * line.slope_std) return;
     warnings.push_back(
         {"not-at-rest",
          "y already moves by " + number_text(moved * r.scale.y_scale, 3) + " before u changes, " +

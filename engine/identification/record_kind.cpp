@@ -4,23 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/identification/statistics.h"
+
 namespace tunewright {
 namespace {
 
 constexpr int kFewestSwitches = 3;
 constexpr int kMostSteps = 20;
-
-double mean(const std::vector<double>& x) {
-    return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
-
-double deviation(const std::vector<double>& x) {
-    if (x.size() < 2) return 0;
-    const double middle = mean(x);
-    double squares = 0;
-    for (const double value : x) squares += (value - middle) * (value - middle);
-    return std::sqrt(squares / static_cast<double>(x.size() - 1));
-}
 
 double spread(const std::vector<double>& x) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "engine/identification/record_kind.h"
+#include "engine/identification/statistics.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
@@ -110,13 +110,6 @@ std::vector<Period> whole_periods(const Signals& signals, const std::vector<doub
     return periods;
 }
 
-double scatter(const std::vector<double>& values) {
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    double squares = 0;
-    for (const double value : values) squares += (value - mean) * (value - mean);
-    return values.size() < 2 ? 0 : std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
 /// The first of the last periods that repeat each other: length, mean and swing differ from those of the later half by
 /// no more than sampling and noise do. A steady creep of the mean is no reason to leave a period out.
 std::size_t first_steady(const std::vector<Period>& periods, double spacing, double noise, int samples_a_period) {
@@ -127,14 +120,11 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
         halves.push_back(periods[k].half);
         if (k > 0) steps.push_back(periods[k].mean - periods[k - 1].mean);
     }
-    auto mean = [](const std::vector<double>& v) {
-        return v.empty() ? 0 : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-    };
     const double length = mean(lengths), half = mean(halves), step = mean(steps);
-    const double length_tolerance = 1.5 * spacing + 4 * scatter(lengths) + 2e-3 * length;
-    const double half_tolerance = 0.01 * half + 2 * noise + 4 * scatter(halves);
+    const double length_tolerance = 1.5 * spacing + 4 * deviation(lengths) + 2e-3 * length;
+    const double half_tolerance = 0.01 * half + 2 * noise + 4 * deviation(halves);
     const double step_tolerance = 0.01 * half + 4 * noise / std::sqrt(std::max(1, samples_a_period)) +
-                                  4 * scatter(steps) + std::abs(step) + spacing / length * half;
+                                  4 * deviation(steps) + std::abs(step) + spacing / length * half;
     std::size_t first = n - 1;
     for (std::size_t k = n; k-- > 0;) {
         const Period& p = periods[k];
@@ -147,25 +137,15 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
     return first;
 }
 
-struct Line {
-    double slope = 0, slope_std = 0;
-};
-
+/// How the mean of y moves from period to period; of three periods at least.
 Line creep(const std::vector<Period>& periods, std::size_t first) {
-    const std::size_t n = periods.size() - first;
-    if (n < 3) return {};
-    double t_mean = 0, y_mean = 0;
+    if (periods.size() - first < 3) return {};
+    std::vector<double> middles, means;
     for (std::size_t k = first; k < periods.size(); ++k) {
-        t_mean += 0.5 * (periods[k].from + periods[k].to) / static_cast<double>(n);
-        y_mean += periods[k].mean / static_cast<double>(n);
+        middles.push_back(0.5 * (periods[k].from + periods[k].to));
+        means.push_back(periods[k].mean);
     }
-    double tt = 0, ty = 0, yy = 0;
-    for (std::size_t k = first; k < periods.size(); ++k) {
-        const double t = 0.5 * (periods[k].from + periods[k].to) - t_mean, y = periods[k].mean - y_mean;
-        tt += t * t, ty += t * y, yy += y * y;
-    }
-    const double slope = ty / tt;
-    return {slope, std::sqrt(std::max(0.0, yy - slope * ty) / static_cast<double>(n - 2) / tt)};
+    return straight_line(middles, means);
 }
 
 /// The mean of y before the plant has answered: up to the relay's start; or, where the record starts with it, of the
@@ -246,15 +226,14 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
     cycle.start = periods[first].from;
     cycle.period = (periods.back().to - cycle.start) / cycle.periods;
     const Line line = creep(periods, first);
-    cycle.drift_std = line.slope_std;
     const double length = cycle.period * cycle.periods;
     std::vector<double> lengths, halves;
     for (std::size_t k = first; k < periods.size(); ++k) {
         lengths.push_back(periods[k].to - periods[k].from);
         halves.push_back(periods[k].half);
     }
-    cycle.period_scatter = scatter(lengths);
-    cycle.y_half = std::accumulate(halves.begin(), halves.end(), 0.0) / static_cast<double>(halves.size());
+    cycle.period_scatter = deviation(lengths);
+    cycle.y_half = mean(halves);
     const bool creeps = cycle.periods >= 4 && std::abs(line.slope) > 6 * line.slope_std &&
                         std::abs(line.slope) * length > 0.01 * cycle.y_half;
     cycle.drift = creeps ? line.slope : 0;

@@ -35,7 +35,7 @@ struct RecordedCycle {
     double v_mean = 0, y_mean = 0;    ///< over the steady periods
     double v_middle = 0;              ///< of the relay's two levels
     double v_half = 0, y_half = 0;    ///< half the swing of v and of y
-    double drift = 0, drift_std = 0;  ///< slope of y's mean from period to period
+    double drift = 0;  ///< slope of y's mean from period to period
     bool reversed = false;            ///< y is high when u switches up: the relay of a plant with negative gain
     RestPoint rest;
     std::vector<Harmonic> harmonics;  ///< the first, then those that the relay excites and the noise leaves visible

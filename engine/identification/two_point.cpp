@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "engine/identification/record_kind.h"
+#include "engine/identification/statistics.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
 namespace {
-
-double mean(std::span<const double> values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 /// When the moving average of y first passes `level`, from `y0`'s side.
 double crossing(const CleanRecord& r, std::size_t first, std::size_t window, double y0, double level) {

@@ -1,0 +1,38 @@
+// The league table on a FOPDT plant as a browser asks for it: every method in all its variants, traces of 400 points.
+#include <benchmark/benchmark.h>
+
+#include "engine/tune.h"
+
+namespace tunewright {
+namespace {
+
+TuningRequest league(double L_over_T) {
+    TuningRequest request;
+    request.plant = Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T});
+    request.tune = {{.method = "all", .options = {}}};
+    return request;
+}
+
+void run(benchmark::State& state, bool with_optima) {
+    TuningRequest request = league(static_cast<double>(state.range(0)) / 100);
+    request.evaluate.optimum_at_Ms = with_optima;
+    int rows = 0;
+    for (auto _ : state) {
+        const auto result = tune(request, {});
+        if (!result) return state.SkipWithError(result.error().message.c_str());
+        rows = static_cast<int>(result->ranking.size());
+    }
+    state.counters["rows"] = rows;
+}
+
+// The argument is 100 L/T.
+void league_table(benchmark::State& state) { run(state, false); }
+BENCHMARK(league_table)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+
+void league_table_with_optima(benchmark::State& state) { run(state, true); }
+BENCHMARK(league_table_with_optima)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tunewright
+
+BENCHMARK_MAIN();

@@ -5,32 +5,14 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/loop/log_root.h"
+
 namespace tunewright {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
-
-/// Root of f in log omega between two points of opposite sign: Illinois' false position, to rounding.
-double crossing(const std::function<double(double)>& f, double left, double right, double f_left, double f_right) {
-    double a = std::log(left), b = std::log(right);
-    for (int i = 0; i < 60 && b - a > 1e-13; ++i) {
-        const double x = (a * f_right - b * f_left) / (f_right - f_left);
-        const double fx = f(std::exp(x));
-        if (fx == 0) return std::exp(x);
-        if ((fx < 0) == (f_right < 0)) {
-            b = x;
-            f_right = fx;
-            f_left /= 2;
-        } else {
-            a = x;
-            f_left = fx;
-            f_right /= 2;
-        }
-        if (b - x < 1e-13 && x - a < 1e-13) break;
-    }
-    return std::exp(0.5 * (a + b));
-}
+constexpr double kToRounding = 1e-13;  // of ln omega
 
 /// L (real and negative) at some frequency: the factor 1/|L| brings it to -1.
 void note_real_crossing(Margins& margins, double real, double omega) {
@@ -86,12 +68,14 @@ Margins find_interior_margins(const std::function<std::complex<double>(double)>&
         const bool resolved = right <= grid.resolved_to;
         if (!std::isfinite(std::abs(a)) || !std::isfinite(std::abs(b))) continue;
         if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
-            const double omega = crossing(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b));
+            const double omega =
+                log_root(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b), kToRounding);
             note_real_crossing(margins, open_loop(omega).real(), omega);
         }
         if (!resolved && 1 / std::abs(b) > 1) note_real_crossing(margins, -std::abs(b), right);
         if ((std::abs(a) < 1) != (std::abs(b) < 1)) {
-            const double omega = crossing(log_gain, left, right, std::log(std::abs(a)), std::log(std::abs(b)));
+            const double omega =
+                log_root(log_gain, left, right, std::log(std::abs(a)), std::log(std::abs(b)), kToRounding);
             note_unit_crossing(margins, open_loop(omega), omega);
         }
     }

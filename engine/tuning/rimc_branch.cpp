@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "engine/loop/dead_time_tolerance.h"
+#include "engine/loop/log_root.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
@@ -18,6 +19,7 @@ constexpr double kSmallest = 1e-4, kLargest = 1e3;    // lambda/tau that are loo
 constexpr double kStep = 0.8, kFineStep = 0.9;        // from one lambda to the next on the way down
 constexpr double kOfNoDeadTime = 1.4142135623730951;  // theta = 0: |S| <= 1 as long as lambda <= sqrt(2) tau
 constexpr double kLimitAccuracy = 1e-7;               // of the stability limit, relative
+constexpr double kRootTolerance = 1e-11;              // of ln lambda
 constexpr int kPointsPerDecade = 60;                  // of the sweep that finds the branch
 
 /// Where `holds` ends between a point at which it does and one at which it does not.
@@ -27,29 +29,6 @@ double boundary(const std::function<bool(double)>& holds, double inside, double 
         (holds(middle) ? inside : outside) = middle;
     }
     return inside;
-}
-
-/// Root of f in ln x between two points of opposite sign: Illinois' false position.
-double root(const std::function<double(double)>& f, double left, double right, double f_left, double f_right) {
-    double a = std::log(left), b = std::log(right), last = b;
-    for (int i = 0; i < 80; ++i) {
-        const bool finite = std::isfinite(f_left) && std::isfinite(f_right);
-        const double x = finite && i < 40 ? (a * f_right - b * f_left) / (f_right - f_left) : 0.5 * (a + b);
-        if (std::abs(x - last) < 1e-11) break;
-        last = x;
-        const double fx = f(std::exp(x));
-        if (fx == 0) break;
-        if ((fx < 0) == (f_right < 0)) {
-            b = x;
-            f_right = fx;
-            f_left /= 2;
-        } else {
-            a = x;
-            f_left = fx;
-            f_right /= 2;
-        }
-    }
-    return std::exp(last);
 }
 
 LinearPlant scaled_plant(const Fopdt& model) { return *LinearPlant::make(Fopdt{1, 1, model.L / model.T}); }
@@ -199,7 +178,7 @@ RimcBranch::Reach RimcBranch::descend(const Figure& figure, double target, bool 
     while (x > lowest) {
         const double next = std::max(x * step, lowest);
         const double f_next = excess(next);
-        if (f_next >= 0) return {.x = root(excess, next, x, f_next, f)};
+        if (f_next >= 0) return {.x = log_root(excess, next, x, f_next, f, kRootTolerance)};
         best = std::max(best, f_next);
         x = next;
         f = f_next;
@@ -235,7 +214,7 @@ Expected<double> RimcBranch::lambda_for_Ms(double Ms) const {
         if (next == near) return refused("from " + text(least_Ms_) + " to " + text(f + Ms));
         f_next = excess(next);
     }
-    return root(excess, near, next, f, f_next) * model_.T;
+    return log_root(excess, near, next, f, f_next, kRootTolerance) * model_.T;
 }
 
 Expected<double> RimcBranch::lambda_for_disturbance_peak(double peak) const {

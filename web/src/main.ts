@@ -3,15 +3,18 @@ import { getExamples, getJob, getMethods, getRecentJobs, postJob, postJobAndWait
 import { isFinal } from "./api/types.ts";
 import type { FieldError, IdentifyRequest, Job, TuningRequest } from "./api/types.ts";
 import { h } from "./dom.ts";
+import { byAllMethods } from "./form/retune.ts";
 import type { TuneSubject } from "./form/tune_subject.ts";
 import { formatRoute, parseRoute } from "./routes.ts";
 import type { Route } from "./routes.ts";
 import { createStore } from "./store.ts";
 import { applyTheme, themeButton } from "./theme.ts";
+import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
 import { relayView } from "./views/relay.ts";
 import type { RelayView } from "./views/relay.ts";
 import { identifyView } from "./views/identify.ts";
+import { methodsView } from "./views/methods.ts";
 import { noRecordView } from "./views/no_record.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
@@ -22,6 +25,7 @@ const store = createStore({
   jobTrouble: "",
   selected: null,
   drawn: null,
+  sort: "",
   test: null,
   methods: [],
   examples: [],
@@ -38,6 +42,8 @@ const links = {
   identify: h("a", { href: "#/identify" }, "Identify"),
   relay: h("a", { href: "#/relay" }, "Relay test"),
   design: h("a", { href: "#/", hidden: true }, "Design"),
+  compare: h("a", { href: "#/", hidden: true }, "Compare"),
+  methods: h("a", { href: "#/methods" }, "Methods"),
 };
 const skip = h("a", { class: "skip", href: "#main" }, "Skip to the content");
 const stage = h("div", { class: "stage" });
@@ -78,7 +84,7 @@ function mount(next: View, title: string, focus: boolean): void {
 /** The start screen is kept: what was typed is still there when one comes back. */
 function startScreen(): StartView {
   start ??= startView(store, {
-    onJob: openJob,
+    onJob: (job, all) => openJob(job, all ? "compare" : "design"),
     onRecord: openRecord,
     onRelay(form, values) {
       location.hash = formatRoute({ screen: "relay", plant: form, values });
@@ -102,9 +108,18 @@ function relayScreen(): RelayView {
   return relay;
 }
 
-function openJob(job: Job): void {
-  store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null }));
-  location.hash = formatRoute({ screen: "design", job: job.id, entry: null });
+type JobScreen = "design" | "compare";
+const addressOf = (job: string, screen: JobScreen): string =>
+  formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });
+
+function openJob(job: Job, screen: JobScreen = "design"): void {
+  store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
+  location.hash = addressOf(job.id, screen);
+}
+
+/** Every method on what this request is about. */
+async function compareAll(request: TuningRequest): Promise<void> {
+  openJob(await postJob(byAllMethods(request)), "compare");
 }
 
 /** A job in the place of the one that is shown: the screen stays, Back leads where it led before. */
@@ -117,7 +132,7 @@ async function retune(request: TuningRequest, index: number): Promise<void> {
   const route: Route = { ...from, job: job.id };
   store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
   history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));
-  links.design.href = formatRoute({ ...route, entry: null });
+  linkScreens(job.id);
   if (!isFinal(job.status)) follow(job.id);
 }
 
@@ -129,10 +144,10 @@ function openRecord(test: IdentifyRequest): void {
 }
 
 /** What Identify found goes to the tuner with the methods and settings that stand on Start. */
-async function tuneSubject(subject: TuneSubject): Promise<FieldError[]> {
-  const { request, faults } = startScreen().compose(subject);
+async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
+  const { request, faults } = startScreen().compose(subject, all);
   if (faults.length > 0) return faults;
-  openJob(await postJob(request));
+  openJob(await postJob(request), all ? "compare" : "design");
   return [];
 }
 
@@ -177,11 +192,12 @@ function follow(id: string): void {
   });
 }
 
+const showsJob = (route: Route): route is Extract<Route, { screen: JobScreen }> =>
+  route.screen === "design" || route.screen === "compare";
+
 function takeJob(job: Job): void {
   store.set((workspace) =>
-    workspace.route.screen === "design" && workspace.route.job === job.id
-      ? { ...workspace, job, jobTrouble: "" }
-      : workspace,
+    showsJob(workspace.route) && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace,
   );
 }
 
@@ -225,26 +241,41 @@ function markCurrent(route: Route): void {
   }
 }
 
+function linkScreens(job: string): void {
+  for (const screen of ["design", "compare"] as const) {
+    links[screen].href = addressOf(job, screen);
+    links[screen].hidden = false;
+  }
+}
+
+function openJobScreen(route: Extract<Route, { screen: JobScreen }>, focus: boolean): void {
+  const before = store.get();
+  const same = before.job?.id === route.job;
+  const kept = same ? before : { job: null, selected: null, drawn: null, sort: "" };
+  store.set((workspace) => ({
+    ...workspace,
+    job: kept.job,
+    jobTrouble: "",
+    selected: (route.screen === "design" ? route.entry : null) ?? kept.selected,
+    drawn: (route.screen === "compare" ? route.rows : null) ?? kept.drawn,
+    sort: route.screen === "compare" ? route.sort : kept.sort,
+  }));
+  linkScreens(route.job);
+  if (route.screen === "design") {
+    const events = { onJob: takeJob, onRetune: retune, onCompareAll: compareAll };
+    mount(designView(store, announce, events), "Design · Tunewright", focus);
+  } else {
+    mount(compareView(store, announce, { onJob: takeJob, onCompareAll: compareAll }), "Compare · Tunewright", focus);
+  }
+  follow(route.job);
+}
+
 function go(first: boolean): void {
   const route = parseRoute(location.hash);
   const before = store.get();
   store.set((workspace) => ({ ...workspace, route }));
   markCurrent(route);
-  if (route.screen === "design") {
-    const same = before.job?.id === route.job;
-    store.set((workspace) => ({
-      ...workspace,
-      job: same ? workspace.job : null,
-      jobTrouble: "",
-      selected: route.entry ?? (same ? workspace.selected : null),
-      drawn: same ? workspace.drawn : null,
-    }));
-    links.design.href = formatRoute({ ...route, entry: null });
-    links.design.hidden = false;
-    mount(designView(store, announce, { onJob: takeJob, onRetune: retune }), "Design · Tunewright", !first);
-    follow(route.job);
-    return;
-  }
+  if (showsJob(route)) return openJobScreen(route, !first);
   stopWatching?.();
   stopWatching = null;
   if (route.screen === "identify") {
@@ -259,20 +290,30 @@ function go(first: boolean): void {
     screen.open(route.plant, route.values);
     return;
   }
+  if (route.screen === "methods") {
+    mount(methodsView(store, route.id), "Methods · Tunewright", !first);
+    return;
+  }
   mount(startScreen(), "Tunewright", !first);
   void loadForm(route);
   void refreshRecent();
 }
 
-// The address follows the chosen entry, and the title the loop's name.
+// The address follows what is chosen, and the title the loop's name.
 store.subscribe((workspace, previous) => {
   const route = workspace.route;
-  if (route.screen !== "design") return;
-  if (workspace.selected !== previous.selected && workspace.job?.id === previous.job?.id) {
-    history.replaceState(null, "", formatRoute({ ...route, entry: workspace.selected }));
-  }
+  if (!showsJob(route)) return;
+  const { selected, drawn, sort } = workspace;
+  const changed = selected !== previous.selected || drawn !== previous.drawn || sort !== previous.sort;
+  if (changed && workspace.job?.id === previous.job?.id)
+    history.replaceState(
+      null,
+      "",
+      formatRoute(route.screen === "design" ? { ...route, entry: selected } : { ...route, sort, rows: drawn }),
+    );
   const name = workspace.job?.name || workspace.job?.request?.name;
-  document.title = name ? `${name} · Design · Tunewright` : "Design · Tunewright";
+  const screen = route.screen === "design" ? "Design" : "Compare";
+  document.title = name ? `${name} · ${screen} · Tunewright` : `${screen} · Tunewright`;
 });
 
 async function loadLists(): Promise<void> {

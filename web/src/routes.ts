@@ -8,7 +8,11 @@ export type Route =
   /** A recorded test: of that job, or the one at hand. */
   | { screen: "identify"; job: string | null }
   | { screen: "relay"; plant: string; values: Record<string, string> }
-  | { screen: "design"; job: string; entry: number | null };
+  | { screen: "design"; job: string; entry: number | null }
+  /** The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. */
+  | { screen: "compare"; job: string; sort: string; rows: number[] | null }
+  /** What the service can do, or one method of it. */
+  | { screen: "methods"; id: string };
 
 /** The route of a location hash; anything unknown is the start. */
 export function parseRoute(hash: string): Route {
@@ -19,7 +23,17 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
   if (parts[0] === "identify") return { screen: "identify", job: null };
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
+  if (parts[0] === "methods") return { screen: "methods", id: parts[1] ?? "" };
   if (parts[0] === "jobs" && parts[1]) {
+    if (parts[2] === "compare") {
+      const rows = values["rows"] ?? "";
+      return {
+        screen: "compare",
+        job: parts[1],
+        sort: values["sort"] ?? "",
+        rows: /^\d+(\.\d+)*$/.test(rows) ? rows.split(".").map(Number) : null,
+      };
+    }
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
     const entry = /^\d+$/.test(values["entry"] ?? "") ? Number(values["entry"]) : null;
@@ -45,6 +59,13 @@ export function formatRoute(route: Route): string {
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":
       return `#/jobs/${encodeURIComponent(route.job)}/edit`;
+    case "methods":
+      return route.id === "" ? "#/methods" : `#/methods/${encodeURIComponent(route.id)}`;
+    case "compare": {
+      const rows = route.rows && route.rows.length > 0 ? `rows=${route.rows.join(".")}` : "";
+      const query = [route.sort && `sort=${encodeURIComponent(route.sort)}`, rows].filter(Boolean).join("&");
+      return `#/jobs/${encodeURIComponent(route.job)}/compare${query ? `?${query}` : ""}`;
+    }
     case "design":
       return `#/jobs/${encodeURIComponent(route.job)}/design${route.entry === null ? "" : `?entry=${route.entry}`}`;
   }

@@ -11,6 +11,8 @@ export interface Workspace {
   selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;
+  /** Order of the league table: a column's id, with a minus where it falls; "" is the ranking. */
+  sort: string;
   /** The recorded test that is being looked at. */
   test: IdentifyRequest | null;
   methods: Method[];

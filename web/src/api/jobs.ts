@@ -18,6 +18,11 @@ export async function cancelJob(id: string): Promise<Job> {
   return (await call("POST", `${jobPath(id)}/cancel`)).data as Job;
 }
 
+/** A job that has ended. */
+export async function deleteJob(id: string): Promise<void> {
+  await call("DELETE", jobPath(id));
+}
+
 export async function getJob(id: string): Promise<Job> {
   return (await call("GET", jobPath(id))).data as Job;
 }

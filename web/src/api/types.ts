@@ -54,6 +54,7 @@ export interface TuningRequest {
   evaluate?: {
     setpoint_step?: number;
     load_step?: number;
+    rank_limits?: { Ms?: number };
     actuator?: { min?: number | null; max?: number | null };
     [key: string]: unknown;
   };
@@ -93,6 +94,8 @@ export interface Controller {
   Td: number | null;
   b?: number;
   c?: number;
+  /** Of the nonlinear form: errors far beyond it do not feed the integral. */
+  delta_r?: number | null;
   action?: string;
   filter?: Filter;
   why_null?: WhyNull;
@@ -161,6 +164,40 @@ export interface Rimc {
   why_null?: WhyNull;
 }
 
+/** The load IAE of the best PID at an entry's own Ms, and how far the entry lies above it. */
+export interface OptimumAtMs {
+  IAE: number | null;
+  excess_percent: number | null;
+  why_null?: WhyNull;
+}
+
+/** Servo against regulation. Indices are normalised by the model's K and T; Deg is 1 - I_perf. */
+export interface TradeoffFigures {
+  J_r: number | null;
+  J_d: number | null;
+  J_rd: number | null;
+  J_r_opt: number | null;
+  J_d_opt: number | null;
+  I_perf: number | null;
+  Deg: number | null;
+  Ms: number | null;
+  why_null?: WhyNull;
+}
+
+/** A point of what the rule does on the model, by what it was asked for. */
+export type TradeoffPoint = Omit<TradeoffFigures, "J_r_opt" | "J_d_opt"> & {
+  Ms_design?: number;
+  degradation?: number;
+};
+
+export interface Tradeoff {
+  /** On the first-order model that the design rests on. */
+  model?: TradeoffFigures;
+  plant?: TradeoffFigures;
+  profile?: { by_Ms: TradeoffPoint[]; by_degradation: TradeoffPoint[] };
+  why_null?: WhyNull;
+}
+
 export interface Entry {
   method: string;
   title?: string;
@@ -178,6 +215,8 @@ export interface Entry {
   verification?: Record<string, unknown>;
   region?: Region;
   rimc?: Rimc;
+  optimum_at_Ms?: OptimumAtMs;
+  tradeoff?: Tradeoff;
   compute_ms?: number;
   partial?: boolean;
 }

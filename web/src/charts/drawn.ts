@@ -17,6 +17,9 @@ export function entryNames(entries: Entry[]): string[] {
   const distinguishing = base.map((name, index) => {
     if (base.filter((other) => other === name).length < 2) return name;
     const twins = entries.filter((_, at) => base[at] === name);
+    const variants = twins.map(variantOf);
+    if (variants.every((variant, at) => variant !== "" && variants.indexOf(variant) === at))
+      return `${name} ${variantOf(entries[index]!)}`;
     const options = entries[index]!.options ?? {};
     const telling = Object.entries(options).find(
       ([key, value]) =>
@@ -30,7 +33,10 @@ export function entryNames(entries: Entry[]): string[] {
   });
 }
 
-const drawable = (entry: Entry | undefined): boolean =>
+/** What stands in the last brackets of a title: which of a method's variants the entry is. */
+const variantOf = (entry: Entry): string => /\(([^()]*)\)$/.exec(entry.title ?? "")?.[1] ?? "";
+
+export const drawable = (entry: Entry | undefined): boolean =>
   Boolean(entry && !entry.error && (entry.responses || entry.frequency));
 
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
@@ -46,9 +52,19 @@ export function defaultDrawn(result: Result): number[] {
   return [...chosen].sort((a, b) => a - b);
 }
 
+/** The two best of the ranking, or the best beside today's settings. */
+export function defaultOverlay(result: Result): number[] {
+  const best = [...(result.ranking ?? []), ...result.controllers.keys()].filter((index) =>
+    drawable(result.controllers[index]),
+  );
+  const today = best.find((index) => result.controllers[index]!.method === "baseline");
+  const others = [...new Set(best)].filter((index) => index !== today);
+  const chosen = today === undefined ? others.slice(0, 2) : [today, ...others.slice(0, 1)];
+  return chosen.sort((a, b) => a - b);
+}
+
 /** Looks: today's settings are always series 2, the others take 1, 3, 4 (and 2 if it is free) in order. */
-export function drawnEntries(result: Result, indices: number[]): Drawn[] {
-  const names = entryNames(result.controllers);
+export function drawnEntries(result: Result, indices: number[], names = entryNames(result.controllers)): Drawn[] {
   const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MOST_DRAWN);
   const hasToday = shown.some((index) => result.controllers[index]!.method === "baseline");
   const free: Look[] = hasToday ? [1, 3, 4] : [1, 2, 3, 4];

@@ -86,12 +86,16 @@ export function frameToRows(frame: Frame): { header: string[]; rows: (string | n
 }
 
 export function frameToCsv(frame: Frame): string {
+  const { header, rows } = frameToRows(frame);
+  return csvText([header, ...rows]);
+}
+
+export function csvText(rows: (string | number | null)[][]): string {
   const quote = (cell: string | number | null): string => {
     const text = cell === null ? "" : String(cell);
     return /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   };
-  const { header, rows } = frameToRows(frame);
-  return [header, ...rows].map((row) => row.map(quote).join(",")).join("\r\n") + "\r\n";
+  return rows.map((row) => row.map(quote).join(",")).join("\r\n") + "\r\n";
 }
 
 /** Lets the browser save a file. */

@@ -19,7 +19,8 @@ export interface CandidatesCard {
 
 export interface CandidatesEvents {
   onChoose(): void;
-  onTune(): void;
+  /** `all`: by every method. */
+  onTune(all: boolean): void;
 }
 
 /** `methods`: names of those that Use and tune will use. */
@@ -30,7 +31,8 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
   const title = h("h2", { id: uniqueId("candidates") }, "Model candidates");
   const list = h("fieldset", { class: "candidates" });
   const reason = h("p", { class: "hint" });
-  const tune = h("button", { type: "button", class: "primary", onclick: () => events.onTune() }, "Use and tune");
+  const tune = h("button", { type: "button", class: "primary", onclick: () => events.onTune(false) }, "Use and tune");
+  const all = h("button", { type: "button", onclick: () => events.onTune(true) }, "Compare all methods");
   const whole = h("input", { type: "checkbox", id: uniqueId("region"), checked: region });
   const element = h(
     "section",
@@ -45,6 +47,7 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
       h("label", { for: whole.id }, "Hold the limits on all that the record leaves possible"),
     ),
     h("div", { class: "actions" }, tune),
+    h("div", { class: "actions" }, all),
     methods.length > 0
       ? h("p", { class: "hint" }, `By ${methods.join(", ")}; `, h("a", { href: "#/" }, "choose methods on Start"), ".")
       : null,
@@ -114,6 +117,7 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
     onRegion: () => whole.checked,
     setBusy(busy) {
       tune.disabled = busy;
+      all.disabled = busy;
     },
   };
 }

@@ -34,7 +34,8 @@ export interface IdentifyEvents {
   /** The record and how it is read, each time the reader changes something. */
   onChange(request: IdentifyRequest): void;
   /** Starts a tuning job; returns what keeps it from starting. */
-  onTune(subject: TuneSubject): Promise<FieldError[]>;
+  /** `all`: by every method. */
+  onTune(subject: TuneSubject, all: boolean): Promise<FieldError[]>;
 }
 
 export function identifyView(
@@ -96,7 +97,7 @@ export function identifyView(
       const chosen = candidates.chosen();
       if (chosen) announce(`${structureTitle(chosen.plant)}, fit ${formatNumber(chosen.fit_percent)} %.`);
     },
-    onTune: () => void tune(),
+    onTune: (all) => void tune(all),
   });
   const quality = qualityCard();
   const cycle = cycleCard();
@@ -189,14 +190,14 @@ export function identifyView(
     slot.replaceChildren(plot.element);
   }
 
-  async function tune(): Promise<void> {
+  async function tune(all: boolean): Promise<void> {
     if (!model) return;
     errors.clear();
     candidates.setBusy(true);
     try {
       const subject = tuneSubject(request().request, model, candidates.chosen());
       const uncertainty = candidates.onRegion() ? ("identified" as const) : undefined;
-      const faults = await events.onTune("plant" in subject ? subject : { ...subject, uncertainty });
+      const faults = await events.onTune("plant" in subject ? subject : { ...subject, uncertainty }, all);
       if (faults.length > 0) errors.show(faults);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};

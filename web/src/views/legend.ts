@@ -8,7 +8,8 @@ import type { Store } from "../store.ts";
 
 export interface Legend {
   element: HTMLElement;
-  show(entries: Entry[], names: string[], drawn: Drawn[], selected: number): void;
+  /** `listed`: indices of the entries that have a place here. */
+  show(entries: Entry[], listed: number[], names: string[], drawn: Drawn[], selected: number): void;
 }
 
 export function createLegend(store: Store): Legend {
@@ -46,18 +47,18 @@ export function createLegend(store: Store): Legend {
 
   return {
     element,
-    show(entries, names, drawn, selected) {
+    show(entries, listed, names, drawn, selected) {
       // The controls are made anew; whoever stood on one stands on it again.
       const focused = controls().findIndex((control) => control === document.activeElement);
       const indices = drawn.map((item) => item.index);
       element.hidden = entries.length === 1;
       element.replaceChildren(
         h("legend", { class: "visually-hidden" }, "Which controllers to draw, and whose settings to show"),
-        ...entries.map((entry, index) =>
+        ...listed.map((index) =>
           h(
             "span",
             { class: index === selected ? "legend-item selected" : "legend-item" },
-            drawBox(entry, index, names[index]!, indices),
+            drawBox(entries[index]!, index, names[index]!, indices),
             chooseButton(
               index,
               names[index]!,
@@ -66,7 +67,10 @@ export function createLegend(store: Store): Legend {
             ),
           ),
         ),
-        entries.length > MOST_DRAWN ? h("span", { class: "hint" }, `At most ${MOST_DRAWN} are drawn.`) : "",
+        listed.length > MOST_DRAWN ? h("span", { class: "hint" }, `At most ${MOST_DRAWN} are drawn.`) : "",
+        entries.length > listed.length
+          ? h("span", { class: "hint" }, `${entries.length - listed.length} more stand in the league table.`)
+          : "",
       );
       if (focused >= 0) controls()[focused]?.focus();
     },

@@ -1,11 +1,14 @@
 // The choice of methods with their options, built from what GET /v1/methods says.
 import type { FieldError, Method, TuneEntry } from "../api/types.ts";
-import { h } from "../dom.ts";
+import { h, uniqueId } from "../dom.ts";
 import { choiceField, textField } from "../form/controls.ts";
 import type { Field } from "../form/controls.ts";
 import type { Control, FormErrors } from "../form/errors.ts";
+import { asksForAll } from "../form/retune.ts";
 import { fieldsOf, pick, place, readField, typedText } from "../form/fields.ts";
 import type { FieldSpec } from "../form/fields.ts";
+import { formatRoute } from "../routes.ts";
+import { mentions } from "../words/methods.ts";
 import { namedUnit, unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
@@ -13,14 +16,16 @@ export interface MethodsCard {
   element: HTMLElement;
   setMethods(methods: Method[]): void;
   setUnits(units: UnitNames): void;
-  read(): { tune: TuneEntry[] | string; errors: FieldError[] };
+  read(): { tune: TuneEntry[]; errors: FieldError[] };
   load(tune: TuneEntry[] | string | undefined): void;
 }
 
 /** Options that decide what comes out: shown at once, the others on request. */
 const MAIN_OPTIONS = ["controller", "Ms", "Mt", "Mks", "tau_c", "lambda"];
 /** What the page draws, and the service computes only if it is asked to. */
-const DRAWN_OPTIONS: Record<string, string> = { rimc: "curve" };
+const DRAWN_OPTIONS = ["curve", "profile"];
+/** More methods than these are searched, not looked through. */
+const SEARCHED_FROM = 10;
 const DEFAULT_TUNE: TuneEntry[] = [{ method: "robust", Ms: 1.4, Mt: 1.4 }];
 
 interface Row {
@@ -36,7 +41,7 @@ interface Row {
 export function methodsCard(errors: FormErrors): MethodsCard {
   let rows: Row[] = [];
   let units = unitNames(undefined);
-  let wanted: TuneEntry[] | string = DEFAULT_TUNE;
+  let wanted: TuneEntry[] = DEFAULT_TUNE;
   const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
   const element = h(
     "section",
@@ -49,6 +54,25 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     ),
     list,
   );
+
+  const search = h("input", { type: "text", id: uniqueId("search"), autocomplete: "off", spellcheck: "false" });
+  const found = h("span", { class: "hint", role: "status" });
+  const searchLine = h(
+    "div",
+    { class: "method-search" },
+    h("label", { for: search.id }, "Find a method"),
+    search,
+    found,
+  );
+  search.addEventListener("input", filter);
+
+  /** What is chosen stays in sight, whatever is searched for. */
+  function filter(): void {
+    const others = rows.slice(1);
+    for (const row of others) row.element.hidden = !row.chosen.checked && !mentions(row.method, search.value);
+    const chosen = others.filter((row) => row.chosen.checked).length;
+    found.textContent = `${others.filter((row) => !row.element.hidden).length} shown, ${chosen} chosen`;
+  }
 
   /** Position of a row among the chosen ones, which is its index in `tune`. */
   const position = (row: Row): number => rows.filter((other) => other.chosen.checked).indexOf(row);
@@ -92,10 +116,13 @@ export function methodsCard(errors: FormErrors): MethodsCard {
           .filter(Boolean)
           .join(" ")
           .replaceAll("..", "."),
+        " ",
+        h("a", { href: formatRoute({ screen: "methods", id: method.id }) }, `About ${method.title}`),
       ),
     );
     chosen.addEventListener("change", () => {
       row.options.hidden = !chosen.checked;
+      filter();
     });
     row.element = h(
       "div",
@@ -127,12 +154,12 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   }
 
   function show(): void {
-    const entries = typeof wanted === "string" ? rows.map((row) => ({ method: row.method.id })) : wanted;
     for (const row of rows)
       fill(
         row,
-        entries.find((entry) => entry.method === row.method.id),
+        wanted.find((entry) => entry.method === row.method.id),
       );
+    filter();
   }
 
   return {
@@ -151,7 +178,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
                 "details",
                 { class: "rules" },
                 h("summary", {}, `Compare with ${others.length} other ${others.length === 1 ? "method" : "methods"}`),
-                ...others,
+                others.length > SEARCHED_FROM ? searchLine : null,
+                h("div", { class: "method-rows" }, others),
               ),
             ]
           : []),
@@ -176,19 +204,19 @@ export function methodsCard(errors: FormErrors): MethodsCard {
             if (parsed.ok) place(entry, spec.path, parsed.value);
             else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
           }
-          const drawn = DRAWN_OPTIONS[row.method.id];
-          if (drawn && entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn))
-            entry[drawn] = true;
+          for (const drawn of DRAWN_OPTIONS)
+            if (entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn))
+              entry[drawn] = true;
           return entry;
         });
       if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });
       return { tune, errors: faults };
     },
     load(tune) {
-      wanted = tune ?? DEFAULT_TUNE;
+      // A comparison of all methods is a button, not a choice of each.
+      wanted = tune === undefined || asksForAll(tune) ? DEFAULT_TUNE : (tune as TuneEntry[]);
       show();
-      if (typeof wanted === "string" || wanted.length > 1)
-        list.querySelector("details.rules")?.setAttribute("open", "");
+      if (wanted.length > 1) list.querySelector("details.rules")?.setAttribute("open", "");
     },
   };
 }

@@ -17,6 +17,8 @@ export interface ModelCard {
 
 export interface ModelCardEvents {
   onTune(): void;
+  /** By every method. */
+  onCompare(): void;
   /** The form's id and the texts as typed: what the address keeps. */
   onChange(form: string, values: Record<string, string>): void;
   /** What a relay test on this plant would show. */
@@ -46,6 +48,7 @@ export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCar
     h(
       "div",
       { class: "actions" },
+      h("button", { type: "button", onclick: () => events.onCompare() }, "Compare all methods"),
       h("button", { type: "button", class: "quiet", onclick: relay }, "What would a relay test on it show?"),
     ),
   );

@@ -19,6 +19,8 @@ export interface RecordCardEvents {
   onIdentify(): void;
   /** Straight to the controller. */
   onTune(): void;
+  /** By every method. */
+  onCompare(): void;
 }
 
 export function recordCard(errors: FormErrors, events: RecordCardEvents): RecordCard {
@@ -62,6 +64,16 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       { class: "actions" },
       h("button", { type: "submit", class: "primary" }, "Identify this test"),
       h("button", { type: "button", onclick: () => events.onTune() }, "Tune at once"),
+    ),
+    h(
+      "div",
+      { class: "actions" },
+      h(
+        "button",
+        { type: "button", class: "quiet", onclick: () => events.onCompare() },
+        "Compare all methods",
+        h("span", { class: "visually-hidden" }, " on this record"),
+      ),
     ),
   );
 

@@ -5,9 +5,7 @@ import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../charts
 import { h, uniqueId } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { slider } from "../form/slider.ts";
-import type { Frame } from "../plot/frame.ts";
-import { createPlot } from "../plot/plot.ts";
-import type { Plot } from "../plot/plot.ts";
+import { plotGrid } from "../plot/grid.ts";
 import { DASH, formatNumber } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
@@ -22,7 +20,6 @@ export interface RimcCard {
 export function rimcCard(announce: (sentence: string) => void, retune: (lambda: number) => Promise<void>): RimcCard {
   let shown: { entry: Entry; tau: number; units: UnitNames } | null = null;
   const errors = new FormErrors();
-  const plots = new Map<string, Plot>();
   const title = h("h2", { id: uniqueId("rimc") }, "Revised IMC: speed against robustness");
   const table = h("div", {});
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
@@ -31,7 +28,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
     { type: "button", onclick: () => void release(shown!.entry.rimc!.lambda) },
     "Draw the chart",
   );
-  const charts = h("div", { class: "plots" });
+  const charts = plotGrid(announce);
   const lambda = slider(
     {
       label: "λ",
@@ -54,7 +51,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
       h("div", { class: "rimc-controls" }, lambda.element, drawButton, trouble),
       table,
     ),
-    charts,
+    charts.element,
   );
 
   /** What the curve says of a lambda that was not designed yet. */
@@ -81,27 +78,11 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
     }
   }
 
-  function showPlot(key: string, frame: Frame | null): void {
-    const plot = plots.get(key);
-    if (!frame) {
-      plot?.element.remove();
-      plot?.dispose();
-      plots.delete(key);
-    } else if (plot) {
-      plot.update(frame);
-    } else {
-      const made = createPlot(frame, announce);
-      plots.set(key, made);
-      charts.append(made.element);
-    }
-  }
-
   function draw(): void {
     if (!shown?.entry.rimc) return;
     const { entry, tau, units } = shown;
-    showPlot("curve", rimcFrame(entry.rimc!, tau, lambda.value(), units));
-    showPlot("load", fullControllerFrame(entry.rimc!, entry.responses?.load, units));
-    charts.hidden = plots.size === 0;
+    charts.show("curve", rimcFrame(entry.rimc!, tau, lambda.value(), units));
+    charts.show("load", fullControllerFrame(entry.rimc!, entry.responses?.load, units));
   }
 
   function showTable(): void {
@@ -167,8 +148,6 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
       }
       draw();
     },
-    dispose() {
-      for (const plot of plots.values()) plot.dispose();
-    },
+    dispose: charts.dispose,
   };
 }

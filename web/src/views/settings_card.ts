@@ -5,7 +5,7 @@ import { filterWords } from "../words/figures.ts";
 import { formatSetting, plainSetting, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
-export type SettingsForm = "ideal" | "parallel" | "series";
+export type SettingsForm = "ideal" | "parallel" | "series" | "npid";
 
 export interface Setting {
   name: string;
@@ -22,11 +22,15 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   const times = gain ? `${gain} ${units.time}` : units.time;
   const filter: Setting[] =
     typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
-  if (form === "ideal") {
+  if (form === "ideal" || form === "npid") {
+    const { delta_r } = controller;
+    const delta: Setting[] =
+      form === "npid" && typeof delta_r === "number" ? [{ name: "delta_r", unit: units.y, value: delta_r }] : [];
     return [
       { name: "Kp", unit: gain, value: controller.Kp },
       { name: "Ti", unit: units.time, value: controller.Ti },
       { name: "Td", unit: units.time, value: controller.Td ?? 0 },
+      ...delta,
       ...filter,
     ];
   }
@@ -69,6 +73,7 @@ const FORMULAS: Record<SettingsForm, string> = {
   ideal: "Kp (1 + 1/(Ti s) + Td s)",
   parallel: "Kp + Ki/s + Kd s",
   series: "Kp (1 + 1/(Ti s)) (1 + Td s)",
+  npid: "Kp (e + 1/Ti ∫ exp(−e²/(2 delta_r²)) e dt + Td de/dt), the derivative without kick",
 };
 
 export interface SettingsCard {
@@ -77,7 +82,8 @@ export interface SettingsCard {
 }
 
 export function settingsCard(announce: (sentence: string) => void): SettingsCard {
-  let form: SettingsForm = "ideal";
+  /** As chosen; a nonlinear controller has its own form only. */
+  let chosen: SettingsForm = "ideal";
   let shown: { entry: Entry; name: string; units: UnitNames } | null = null;
   const titleId = uniqueId("settings-title");
   const group = uniqueId("form");
@@ -85,24 +91,23 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
   const body = h("div", {});
   const copy = h("button", { type: "button", onclick: () => void copySettings() }, "Copy");
   const radios = (["ideal", "parallel", "series"] as const).map((name) => {
-    const input = h("input", { type: "radio", name: group, value: name, checked: name === form });
+    const input = h("input", { type: "radio", name: group, value: name, checked: name === chosen });
     input.addEventListener("change", () => {
-      form = name;
+      chosen = name;
       write();
     });
     return h("label", {}, input, h("span", {}, name));
   });
-  const element = h(
-    "section",
-    { class: "card settings", "aria-labelledby": titleId },
-    title,
-    h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios),
-    body,
-  );
+  const segments = h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios);
+  const element = h("section", { class: "card settings", "aria-labelledby": titleId }, title, segments, body);
+
+  const formOf = (entry: Entry): SettingsForm => (entry.controller?.form === "npid" ? "npid" : chosen);
 
   function write(): void {
     if (!shown) return;
     title.textContent = `Settings to enter: ${shown.name}`;
+    const form = formOf(shown.entry);
+    segments.hidden = form === "npid";
     const settings = settingsOf(shown.entry, form, shown.units);
     if (typeof settings === "string") {
       body.replaceChildren(h("p", {}, settings));
@@ -139,6 +144,7 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
 
   async function copySettings(): Promise<void> {
     if (!shown) return;
+    const form = formOf(shown.entry);
     const settings = settingsOf(shown.entry, form, shown.units);
     if (typeof settings === "string") return;
     const text = settingsText(form, settings);

@@ -4,6 +4,7 @@ import { postJob } from "../api/jobs.ts";
 import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import { byAllMethods, EVERY_METHOD } from "../form/retune.ts";
 import type { TuneSubject } from "../form/tune_subject.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
@@ -21,7 +22,8 @@ export interface View {
 }
 
 export interface StartEvents {
-  onJob(job: Job): void;
+  /** `all`: of every method. */
+  onJob(job: Job, all: boolean): void;
   /** The model as typed, for the address. */
   onModel(form: string, values: Record<string, string>): void;
   /** A record to look at. */
@@ -34,8 +36,8 @@ export interface StartView extends View {
   load(request: TuningRequest): void;
   loadTyped(form: string, values: Record<string, string>): void;
   loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
-  /** A tuning request about this, with the methods, units and settings that stand in the form. */
-  compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] };
+  /** A tuning request about this, with the methods (or all of them), units and settings that stand in the form. */
+  compose(subject: TuneSubject, all?: boolean): { request: TuningRequest; faults: FieldError[] };
   units(): Units;
   /** Names of the chosen methods. */
   methods(): string[];
@@ -52,11 +54,16 @@ export function startView(store: Store, events: StartEvents): StartView {
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
   const model = modelCard(errors, {
-    onTune: () => void tuneModel(),
+    onTune: () => void tuneModel(false),
+    onCompare: () => void tuneModel(true),
     onChange: events.onModel,
     onRelay: events.onRelay,
   });
-  const record = recordCard(errors, { onIdentify: identifyRecord, onTune: () => void tuneRecord() });
+  const record = recordCard(errors, {
+    onIdentify: identifyRecord,
+    onTune: () => void tuneRecord(false),
+    onCompare: () => void tuneRecord(true),
+  });
   const methods = methodsCard(errors);
   const today = todayCard(errors, () => {
     const units = unitNames(today.readUnits());
@@ -93,14 +100,14 @@ export function startView(store: Store, events: StartEvents): StartView {
     h("div", { class: "cards two" }, methods.element, today.element),
   );
 
-  async function send(request: TuningRequest, faults: FieldError[]): Promise<void> {
+  async function send(request: TuningRequest, faults: FieldError[], all: boolean): Promise<void> {
     errors.clear();
     if (faults.length > 0) return errors.show(faults);
     if (busy) return;
     busy = true;
     element.setAttribute("aria-busy", "true");
     try {
-      events.onJob(await postJob(request));
+      events.onJob(await postJob(request), all);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
       const listed = problem.errors ?? [];
@@ -111,10 +118,10 @@ export function startView(store: Store, events: StartEvents): StartView {
     }
   }
 
-  function common(): { request: TuningRequest; faults: FieldError[] } {
+  function common(all: boolean): { request: TuningRequest; faults: FieldError[] } {
     const units = today.readUnits();
     const baseline = today.read();
-    const chosen = methods.read();
+    const chosen = all ? { tune: EVERY_METHOD, errors: [] } : methods.read();
     const { plant: _plant, record: _record, identify: _identify, ...kept } = base;
     const request: TuningRequest = { ...kept };
     delete request.name;
@@ -127,21 +134,21 @@ export function startView(store: Store, events: StartEvents): StartView {
     return { request, faults: [...chosen.errors, ...baseline.errors] };
   }
 
-  function compose(subject: TuneSubject): { request: TuningRequest; faults: FieldError[] } {
-    const { request, faults } = common();
+  function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
+    const { request, faults } = common(all);
     return { request: { ...request, ...subject }, faults };
   }
 
-  async function tuneModel(): Promise<void> {
+  async function tuneModel(all: boolean): Promise<void> {
     const reading = model.read();
-    const { request, faults } = compose({ plant: reading.plant });
-    await send(request, [...reading.errors, ...faults]);
+    const { request, faults } = compose({ plant: reading.plant }, all);
+    await send(request, [...reading.errors, ...faults], all);
   }
 
-  async function tuneRecord(): Promise<void> {
+  async function tuneRecord(all: boolean): Promise<void> {
     const reading = record.read();
-    const { request, faults } = compose({ record: reading.record, identify: reading.identify });
-    await send(request, [...reading.errors, ...faults]);
+    const { request, faults } = compose({ record: reading.record, identify: reading.identify }, all);
+    await send(request, [...reading.errors, ...faults], all);
   }
 
   function identifyRecord(): void {
@@ -170,7 +177,9 @@ export function startView(store: Store, events: StartEvents): StartView {
       status.textContent = workspace.serviceTrouble;
       status.hidden = false;
     }
-    const elements = workspace.examples.map((example) => exampleElement(example, () => void send(example.request, [])));
+    const elements = workspace.examples.map((example) =>
+      exampleElement(example, (all) => void send(all ? byAllMethods(example.request) : example.request, [], all)),
+    );
     const [first, others] = [elements.slice(0, EXAMPLES_SHOWN), elements.slice(EXAMPLES_SHOWN)];
     examples.replaceChildren(
       ...first,
@@ -213,12 +222,12 @@ export function startView(store: Store, events: StartEvents): StartView {
     units: today.readUnits,
     methods() {
       const { tune } = methods.read();
-      return typeof tune === "string" ? ["all methods"] : tune.map((entry) => entry.method.replaceAll("_", " "));
+      return tune.map((entry) => entry.method.replaceAll("_", " "));
     },
   };
 }
 
-function exampleElement(example: Example, tune: () => void): HTMLElement {
+function exampleElement(example: Example, tune: (all: boolean) => void): HTMLElement {
   return h(
     "div",
     { class: "example" },
@@ -227,7 +236,17 @@ function exampleElement(example: Example, tune: () => void): HTMLElement {
     h(
       "p",
       { class: "actions" },
-      h("button", { type: "button", onclick: tune, "aria-label": `Tune: ${example.title}` }, "Tune"),
+      h("button", { type: "button", onclick: () => tune(false), "aria-label": `Tune: ${example.title}` }, "Tune"),
+      h(
+        "button",
+        {
+          type: "button",
+          class: "quiet",
+          onclick: () => tune(true),
+          "aria-label": `Compare all methods: ${example.title}`,
+        },
+        "Compare all",
+      ),
       h(
         "a",
         { href: formatRoute({ screen: "example", id: example.id }), "aria-label": `See in the form: ${example.title}` },

@@ -17,6 +17,7 @@ const FORMS = [
   ["ideal", "ideal"],
   ["parallel", "parallel"],
   ["series", "series"],
+  ["npid", "nonlinear (NPID)"],
 ] as const;
 
 export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
@@ -36,6 +37,14 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     { label: "Tf", hint: "filter of the derivative; empty is none", pointer: () => "/baseline/filter/Tf" },
     errors,
   );
+  const delta = textField(
+    {
+      label: "delta_r",
+      hint: "errors well beyond it do not feed the integral; empty is the set-point step",
+      pointer: () => "/baseline/delta_r",
+    },
+    errors,
+  );
   // What a loaded request had and no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
 
@@ -47,6 +56,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       const element = slots[index]!.element.querySelector("label")!;
       element.firstChild!.textContent = text;
     });
+    delta.element.hidden = form.input.value !== "npid";
   }
   // A label starts with its text node; give the empty ones theirs.
   for (const slot of slots) slot.element.querySelector("label")!.prepend("Kp");
@@ -58,7 +68,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     { class: "card", "aria-labelledby": "today-title" },
     h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
     h("p", { class: "hint" }, "What the controller runs with now: drawn and counted beside every proposal."),
-    h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), filter.element),
+    h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
     h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
     h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
@@ -88,6 +98,11 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
         if (parsed.ok) baseline[key] = parsed.value;
         else faults.push({ pointer: `/baseline/${key}`, detail: parsed.sentence });
       });
+      if (baseline.form === "npid" && delta.input.value.trim() !== "") {
+        const parsed = parseNumber(delta.input.value, "delta_r");
+        if (parsed.ok) baseline["delta_r"] = parsed.value;
+        else faults.push({ pointer: "/baseline/delta_r", detail: parsed.sentence });
+      }
       if (filter.input.value.trim() !== "") {
         const parsed = parseNumber(filter.input.value, "Tf");
         if (parsed.ok)
@@ -108,9 +123,10 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       names().forEach((key, index) => {
         slots[index]!.input.value = text(baseline?.[key]);
       });
+      delta.input.value = text(baseline?.["delta_r"]);
       filter.input.value = text((baseline?.["filter"] as { Tf?: unknown } | undefined)?.Tf);
       rest = Object.fromEntries(
-        Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && !names().includes(key)),
+        Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && key !== "delta_r" && !names().includes(key)),
       );
       onUnits();
     },

@@ -1,11 +1,18 @@
 // The verdict of the chosen controller, or why a job has none.
-import type { Entry, Job, Result } from "../api/types.ts";
+import type { Job, Result } from "../api/types.ts";
 import { h } from "../dom.ts";
+import { reasonOf } from "../words/league.ts";
 import { verdictOf } from "../words/verdict.ts";
 
-const reasonOf = (entry: Entry): string => entry.error?.detail ?? entry.error?.title ?? "It gave no reason.";
-
-export function showVerdict(card: HTMLElement, job: Job, result: Result, names: string[], selected: number): void {
+/** `listed`: the entries whose failures are worth a line here. */
+export function showVerdict(
+  card: HTMLElement,
+  job: Job,
+  result: Result,
+  names: string[],
+  selected: number,
+  listed: number[],
+): void {
   const entries = result.controllers;
   const today = entries.find((candidate) => candidate.method === "baseline");
   const words = verdictOf(entries[selected]!, today, job.request);
@@ -14,7 +21,9 @@ export function showVerdict(card: HTMLElement, job: Job, result: Result, names: 
     sentences.unshift("Stopped early: this is the best found until then.");
   const who = entries.length > 1 ? h("span", { class: "who" }, `${names[selected]}: `) : null;
   const failures = entries.flatMap((entry, index) =>
-    entry.error && index !== selected ? [h("li", {}, h("strong", {}, `${names[index]}: `), reasonOf(entry))] : [],
+    entry.error && index !== selected && listed.includes(index)
+      ? [h("li", {}, h("strong", {}, `${names[index]}: `), reasonOf(entry))]
+      : [],
   );
   card.className = `verdict ${words.level}`;
   card.replaceChildren(h("h2", {}, who, words.head), h("p", {}, sentences.join(" ")));

@@ -53,8 +53,8 @@ export function filterWords(type: string | undefined): string {
   }
 }
 
-/** `region`: with the figures of controllers that serve more than one plant. */
-export function figureGroups(units: UnitNames, region = false): FigureGroup[] {
+/** `region`: with the figures of controllers that serve more than one plant; `nonlinear`: with those of nonlinear ones. */
+export function figureGroups(units: UnitNames, region = false, nonlinear = false): FigureGroup[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);
   const controller = (label: string, name: string, meaning: string, absent: string): FigureRow => ({
@@ -86,6 +86,16 @@ export function figureGroups(units: UnitNames, region = false): FigureGroup[] {
         controller(withUnit("Ti", units.time), "Ti", "integral time", "no integral action"),
         controller(withUnit("Td", units.time), "Td", "derivative time", "no derivative action"),
         { label: withUnit("Tf", units.time), meaning: "filter time constant", value: (entry) => filterTime(entry) },
+        ...(nonlinear
+          ? [
+              controller(
+                withUnit("delta_r", units.y),
+                "delta_r",
+                "errors well beyond it do not feed the integral",
+                "a linear controller",
+              ),
+            ]
+          : []),
       ],
     },
     {

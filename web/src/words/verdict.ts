@@ -47,6 +47,7 @@ export function verdictOf(entry: Entry, today: Entry | undefined, request: Tunin
     ...regionHeading(entry, heading(entry)),
     sentences: [
       ...limitSentences(entry, units.time),
+      ...nonlinearSentences(entry),
       ...regionSentences(entry),
       ...toleranceSentences(entry, units.time),
       ...costSentences(entry, today, units),
@@ -123,6 +124,14 @@ function limitSentences(entry: Entry, time: string): string[] {
     : [
         `The sensitivity peak Ms is ${formatNumber(Ms)}${at(robustness.omega_Ms)}${Mt === null ? "" : `, Mt is ${formatNumber(Mt)}`}.`,
       ];
+}
+
+function nonlinearSentences(entry: Entry): string[] {
+  return entry.controller?.form === "npid"
+    ? [
+        "Ms and all margins belong to its linear part, where errors are small against delta_r; the responses are those of these steps and change with their size.",
+      ]
+    : [];
 }
 
 function toleranceSentences(entry: Entry, time: string): string[] {

@@ -1,0 +1,26 @@
+// Figures of given controllers on a plant, at once; and what a method does over its whole range.
+import { call } from "./client.ts";
+import { deleteJob, postJobAndWait } from "./jobs.ts";
+import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
+
+/** The servo/regulation trade-off of controllers, without traces; in their order. */
+export async function tradeoffsOf(plant: Plant, controllers: Controller[]): Promise<(Tradeoff | undefined)[]> {
+  // What the service adds to a controller is not part of its settings.
+  const given = controllers.map(({ action: _action, why_null: _why, ...settings }) => settings);
+  const request = { plant, controllers: given, evaluate: { points: 0, tradeoff: true } };
+  const answer = (await call("POST", "v1/evaluate", request)).data as { controllers: Entry[] };
+  return answer.controllers.map((entry) => entry.tradeoff);
+}
+
+const PROFILE_METHOD = "arrieta_ms";
+const LONGEST_WAIT_S = 20;
+
+/** What the trade-off's tuning rule does on this plant over its range. The job that finds it out leaves no trace. */
+export async function tradeoffProfile(plant: Plant): Promise<Tradeoff["profile"]> {
+  const tune = [{ method: PROFILE_METHOD, profile: true }];
+  const job = await postJobAndWait({ plant, tune, evaluate: { points: 0 } }, LONGEST_WAIT_S);
+  void deleteJob(job.id).catch(() => undefined);
+  const failure = job.error ?? job.result?.controllers[0]?.error;
+  if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such profile.");
+  return job.result?.controllers[0]?.tradeoff?.profile;
+}

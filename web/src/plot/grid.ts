@@ -1,0 +1,39 @@
+// Several plots side by side, each known by a key: made when it is first shown, written to afterwards.
+import { h } from "../dom.ts";
+import type { Frame } from "./frame.ts";
+import { createPlot } from "./plot.ts";
+import type { Announce, Plot } from "./plot.ts";
+
+export interface PlotGrid {
+  element: HTMLElement;
+  /** Null takes the plot away. */
+  show(key: string, frame: Frame | null): void;
+  dispose(): void;
+}
+
+export function plotGrid(announce: Announce): PlotGrid {
+  const plots = new Map<string, Plot>();
+  const element = h("div", { class: "plots" });
+  const remove = (key: string): void => {
+    const plot = plots.get(key);
+    plot?.element.remove();
+    plot?.dispose();
+    plots.delete(key);
+    element.hidden = plots.size === 0;
+  };
+  return {
+    element,
+    show(key, frame) {
+      const plot = plots.get(key);
+      if (!frame) return remove(key);
+      if (plot) return plot.update(frame);
+      const made = createPlot(frame, announce);
+      plots.set(key, made);
+      element.append(made.element);
+      element.hidden = false;
+    },
+    dispose() {
+      for (const key of [...plots.keys()]) remove(key);
+    },
+  };
+}

@@ -1,0 +1,212 @@
+// Compare: every method on this plant as a league table, and the chosen rows together in every plot.
+import { cancelJob } from "../api/jobs.ts";
+import { isFinal } from "../api/types.ts";
+import type { Job, Result, TuningRequest } from "../api/types.ts";
+import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
+import type { Drawn } from "../charts/drawn.ts";
+import { nyquistFrame } from "../charts/nyquist.ts";
+import { responseFrame } from "../charts/responses.ts";
+import { sensitivityFrame } from "../charts/sensitivities.ts";
+import { h } from "../dom.ts";
+import { asksForAll } from "../form/retune.ts";
+import { csvText, download } from "../plot/export.ts";
+import { plotGrid } from "../plot/grid.ts";
+import { swatch } from "../plot/swatch.ts";
+import { formatRoute } from "../routes.ts";
+import type { Store, Workspace } from "../store.ts";
+import {
+  leagueColumns,
+  leagueNames,
+  leagueRows,
+  leagueTable as tableOf,
+  orderOf,
+  RANK_MS,
+  sortText,
+} from "../words/league.ts";
+import type { LeagueColumn } from "../words/league.ts";
+import { commonLimits } from "../words/limits.ts";
+import { unitNames } from "../words/numbers.ts";
+import { leagueControls } from "./league_controls.ts";
+import { leagueTable } from "./league_table.ts";
+import { progressCard } from "./progress_card.ts";
+import type { View } from "./start.ts";
+import { titleCard } from "./title_card.ts";
+import { tradeoffCard } from "./tradeoff_card.ts";
+import { showFailure } from "./verdict_card.ts";
+
+export interface CompareEvents {
+  onJob(job: Job): void;
+  /** Runs every method on this request's plant or record. */
+  onCompareAll(request: TuningRequest): Promise<void>;
+}
+
+export function compareView(store: Store, announce: (sentence: string) => void, events: CompareEvents): View {
+  let shown: Result | null = null;
+  let columns: LeagueColumn[] = [];
+  const designLink = h("a", { href: "#/" }, "Settings and verdict");
+  const all = h("button", { type: "button", onclick: () => void compareAll() }, "Compare all methods");
+  const title = titleCard("Compare", designLink);
+  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const failure = h("section", { class: "verdict", "aria-label": "Verdict" });
+  const progress = progressCard(announce, () => void cancel());
+  const heading = h("h2", { id: "league-title" });
+  const controls = leagueControls({ onChange: arrange, onColumns: rebuild, onExport: exportTable });
+  const table = leagueTable({ onSort: sortBy, onDraw: choose });
+  const star = h("p", { class: "hint" }, "* the least load IAE that any PID reaches on this plant at the same Ms.");
+  const legend = h("p", { class: "pane-legend overlay-legend" });
+  const plots = plotGrid(announce);
+  const tradeoff = tradeoffCard(announce);
+  const league = h(
+    "section",
+    { class: "card league", "aria-labelledby": heading.id },
+    h("div", { class: "league-head" }, heading, controls.element),
+    table.element,
+    star,
+    all,
+  );
+  const overlay = h(
+    "section",
+    { class: "main-column", "aria-labelledby": "overlay-title" },
+    h("div", { class: "overlay-head" }, h("h2", { id: "overlay-title" }, "Chosen rows, together"), legend),
+    plots.element,
+    tradeoff.element,
+  );
+  const element = h(
+    "main",
+    { class: "compare", id: "main" },
+    title.element,
+    trouble,
+    failure,
+    progress.element,
+    league,
+    overlay,
+  );
+
+  function complain(error: unknown): void {
+    trouble.textContent = error instanceof Error ? error.message : String(error);
+    trouble.hidden = false;
+  }
+
+  async function cancel(): Promise<void> {
+    const job = store.get().job;
+    if (job) await cancelJob(job.id).then(events.onJob, complain);
+  }
+
+  async function compareAll(): Promise<void> {
+    const request = store.get().job?.request;
+    if (!request) return;
+    all.disabled = true;
+    await events.onCompareAll(request).catch(complain);
+    all.disabled = false;
+  }
+
+  function sortBy(column: string): void {
+    const order = orderOf(store.get().sort);
+    const sort = sortText({ column, falling: order.column === column && !order.falling });
+    store.set((workspace) => ({ ...workspace, sort }));
+    const label = columns.find((candidate) => candidate.id === column)?.label ?? column;
+    announce(`Sorted by ${label}, ${orderOf(sort).falling ? "falling" : "rising"}.`);
+  }
+
+  function drawnNow(workspace: Workspace, result: Result): Drawn[] {
+    return drawnEntries(result, workspace.drawn ?? defaultOverlay(result), leagueNames(result.controllers));
+  }
+
+  function choose(index: number, draw: boolean): void {
+    const workspace = store.get();
+    const result = workspace.job?.result;
+    if (!result) return;
+    const others = drawnNow(workspace, result)
+      .map((item) => item.index)
+      .filter((other) => other !== index);
+    const drawn = draw ? [...others, index].sort((a, b) => a - b) : others;
+    store.set((current) => ({ ...current, drawn }));
+  }
+
+  function exportTable(): void {
+    const job = store.get().job;
+    if (!job?.result) return;
+    const every = leagueColumns(unitNames(job.request?.units));
+    const rows = leagueRows(job.result, controls.limit());
+    const blob = new Blob([csvText(tableOf(rows, every))], { type: "text/csv" });
+    download(blob, "league-table.csv");
+  }
+
+  function arrange(): void {
+    table.arrange(orderOf(store.get().sort), controls.limit(), controls.onlyStable());
+  }
+
+  function rebuild(): void {
+    const job = store.get().job;
+    const result = job?.result;
+    if (!job || !result) return;
+    const every = leagueColumns(unitNames(job.request?.units));
+    controls.setColumns(every);
+    columns = every.filter((column) => controls.shows(column.id));
+    star.hidden = !controls.shows("excess");
+    const step = job.request?.evaluate?.setpoint_step ?? 1;
+    table.build(result, columns, step, (entry) => formatRoute({ screen: "design", job: job.id, entry }));
+    arrange();
+    table.mark(drawnNow(store.get(), result));
+  }
+
+  function showPlots(job: Job, drawn: Drawn[]): void {
+    const request = job.request;
+    const responses = drawn.some((item) => item.entry.responses);
+    const frequency = drawn.some((item) => item.entry.frequency);
+    const limits = commonLimits(drawn.map((item) => item.entry));
+    plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request) : null);
+    plots.show("load", responses ? responseFrame("load", drawn, request) : null);
+    plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
+    plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
+    tradeoff.show(drawn, job.result?.model?.plant ?? request?.plant);
+  }
+
+  function showResult(job: Job, result: Result, workspace: Workspace): void {
+    const drawn = drawnNow(workspace, result);
+    if (shown !== result) {
+      shown = result;
+      const methods = result.controllers.filter((entry) => entry.method !== "baseline");
+      const refused = methods.filter((entry) => entry.error).length;
+      const answers = methods.length - refused;
+      heading.textContent = `${answers} ${answers === 1 ? "tuning" : "tunings"} of this plant${refused > 0 ? `, ${refused} that do not apply` : ""}`;
+      all.hidden = asksForAll(job.request?.tune);
+      rebuild();
+      announce(`${heading.textContent}.`);
+    }
+    arrange();
+    table.mark(drawn);
+    legend.replaceChildren(...drawn.map((item) => h("span", {}, swatch(item.look), item.name)));
+    showPlots(job, drawn);
+  }
+
+  function show(workspace: Workspace): void {
+    const job = workspace.job;
+    if (workspace.jobTrouble) complain(workspace.jobTrouble);
+    else trouble.hidden = true;
+    title.show(job);
+    const result = job?.result && job.result.controllers.length > 0 ? job.result : null;
+    progress.element.hidden = !job || isFinal(job.status);
+    failure.hidden = !job || !isFinal(job.status) || result !== null;
+    league.hidden = !job || !isFinal(job.status) || result === null;
+    overlay.hidden = league.hidden;
+    if (!job) return;
+    designLink.href = formatRoute({ screen: "design", job: job.id, entry: workspace.selected });
+    if (!isFinal(job.status)) progress.show(job);
+    else if (result) showResult(job, result, workspace);
+    else showFailure(failure, job);
+  }
+
+  controls.setLimit(store.get().job?.request?.evaluate?.rank_limits?.Ms ?? RANK_MS);
+  show(store.get());
+  const leave = store.subscribe(show);
+  return {
+    element,
+    heading: title.heading,
+    dispose() {
+      leave();
+      plots.dispose();
+      tradeoff.dispose();
+    },
+  };
+}

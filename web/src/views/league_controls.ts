@@ -1,0 +1,95 @@
+// What stands above the league table: the limit on Ms, only stable rows, which columns, the table as a file.
+import { h, uniqueId } from "../dom.ts";
+import { parseNumber } from "../form/number.ts";
+import type { LeagueColumn } from "../words/league.ts";
+import { RANK_MS } from "../words/league.ts";
+
+export interface LeagueControls {
+  element: HTMLElement;
+  limit(): number;
+  setLimit(Ms: number): void;
+  onlyStable(): boolean;
+  setColumns(columns: LeagueColumn[]): void;
+  /** Whether a column is to be seen. */
+  shows(id: string): boolean;
+}
+
+export interface LeagueControlEvents {
+  onChange(): void;
+  onColumns(): void;
+  onExport(): void;
+}
+
+export function leagueControls(events: LeagueControlEvents): LeagueControls {
+  let limit = RANK_MS;
+  /** What the reader chose otherwise than it stands at first. */
+  const chosen = new Map<string, boolean>();
+  let columns: LeagueColumn[] = [];
+  const input = h("input", {
+    type: "text",
+    id: uniqueId("rank-Ms"),
+    autocomplete: "off",
+    value: String(RANK_MS),
+    "aria-describedby": "rank-error",
+  });
+  const error = h("span", { class: "error", id: "rank-error", role: "status" });
+  const stable = h("input", { type: "checkbox", id: uniqueId("only-stable") });
+  const list = h("div", { class: "menu-items columns" });
+  const menu = h("details", { class: "menu" }, h("summary", {}, "Columns"), list);
+
+  input.addEventListener("change", () => {
+    const parsed = parseNumber(input.value, "Ms");
+    const sentence = !parsed.ok ? parsed.sentence : parsed.value > 1 ? "" : `Ms is ${input.value}; it must be above 1.`;
+    error.textContent = sentence;
+    input.removeAttribute("aria-invalid");
+    if (sentence !== "" || !parsed.ok) return input.setAttribute("aria-invalid", "true");
+    limit = parsed.value;
+    events.onChange();
+  });
+  stable.addEventListener("change", () => events.onChange());
+  menu.addEventListener("focusout", (event) => {
+    if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
+  });
+  menu.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    menu.open = false;
+    menu.querySelector("summary")?.focus();
+  });
+
+  const shows = (id: string): boolean => chosen.get(id) ?? columns.find((column) => column.id === id)?.main ?? false;
+
+  return {
+    element: h(
+      "div",
+      { class: "league-controls" },
+      h("label", { for: input.id }, "ranked by load IAE among Ms ≤"),
+      input,
+      error,
+      h("span", { class: "check" }, stable, h("label", { for: stable.id }, "only stable")),
+      menu,
+      h("button", { type: "button", class: "quiet", onclick: () => events.onExport() }, "Export CSV"),
+    ),
+    limit: () => limit,
+    setLimit(Ms) {
+      limit = Ms;
+      input.value = String(Ms);
+    },
+    onlyStable: () => stable.checked,
+    setColumns(next) {
+      const known = columns.map((column) => column.label).join();
+      columns = next;
+      if (known === columns.map((column) => column.label).join()) return;
+      list.replaceChildren(
+        ...columns.map((column) => {
+          const box = h("input", { type: "checkbox", id: uniqueId("column"), checked: shows(column.id) });
+          box.addEventListener("change", () => {
+            chosen.set(column.id, box.checked);
+            events.onColumns();
+          });
+          return h("span", { class: "check" }, box, h("label", { for: box.id, title: column.meaning }, column.label));
+        }),
+      );
+    },
+    shows,
+  };
+}

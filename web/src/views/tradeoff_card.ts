@@ -1,0 +1,154 @@
+// Servo against regulation on Design and Compare: charts and figures of controllers that have them, computed on request for others.
+import { tradeoffProfile, tradeoffsOf } from "../api/evaluate.ts";
+import type { Entry, Plant, Tradeoff } from "../api/types.ts";
+import {
+  degradationFrame,
+  figuresOf,
+  levelsFrame,
+  profileOf,
+  tradeoffFrame,
+  TRADEOFF_ROWS,
+} from "../charts/tradeoff.ts";
+import type { TradeoffItem } from "../charts/tradeoff.ts";
+import { h, uniqueId } from "../dom.ts";
+import { plotGrid } from "../plot/grid.ts";
+import { DASH, formatNumber } from "../words/numbers.ts";
+
+export interface TradeoffCard {
+  element: HTMLElement;
+  show(shown: { name: string; entry: Entry }[], plant: Plant | undefined): void;
+  dispose(): void;
+}
+
+export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard {
+  let shown: { name: string; entry: Entry }[] = [];
+  let plant: Plant | undefined;
+  // What was computed here, for as long as the page shows this job.
+  const computed = new WeakMap<Entry, Tradeoff>();
+  const profiles = new Map<string, Tradeoff["profile"]>();
+  const title = h("h2", { id: uniqueId("tradeoff") }, "Set point against load");
+  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const button = h("button", { type: "button", onclick: () => void compute() }, "Compute the trade-off");
+  const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Trade-off figures" });
+  const charts = plotGrid(announce);
+  const element = h(
+    "section",
+    { class: "card tradeoff", "aria-labelledby": title.id },
+    h(
+      "div",
+      { class: "tradeoff-head" },
+      title,
+      h(
+        "p",
+        { class: "hint" },
+        "What a controller gives up: J_r and J_d are the errors of a set-point and a load step, beside the least that each can be alone; Deg is the share of performance paid for robustness (Arrieta et al.).",
+      ),
+      h("div", { class: "actions" }, button),
+      trouble,
+      table,
+    ),
+    charts.element,
+  );
+
+  const items = (): TradeoffItem[] => {
+    const profile = profiles.get(JSON.stringify(plant));
+    return shown.map(({ name, entry }) => {
+      const tradeoff = entry.tradeoff ?? computed.get(entry);
+      return { name, tradeoff: tradeoff && profile ? { ...tradeoff, profile: tradeoff.profile ?? profile } : tradeoff };
+    });
+  };
+
+  async function compute(): Promise<void> {
+    if (!plant) return;
+    const asked = plant;
+    const missing = shown.filter(({ entry }) => !entry.tradeoff && !computed.has(entry) && entry.controller);
+    trouble.hidden = true;
+    button.disabled = true;
+    try {
+      if (missing.length > 0) {
+        const answers = await tradeoffsOf(
+          asked,
+          missing.map(({ entry }) => entry.controller!),
+        );
+        answers.forEach((tradeoff, index) => tradeoff && computed.set(missing[index]!.entry, tradeoff));
+      }
+      if (!profileOf(items())) profiles.set(JSON.stringify(asked), await tradeoffProfile(asked));
+    } catch (error) {
+      trouble.textContent = error instanceof Error ? error.message : String(error);
+      trouble.hidden = false;
+    } finally {
+      button.disabled = false;
+      draw();
+    }
+  }
+
+  function draw(): void {
+    const list = items();
+    const known = list.filter((item) => figuresOf(item));
+    button.hidden = known.length === list.length && profileOf(known) !== null;
+    charts.show("plane", tradeoffFrame(known));
+    charts.show("degradation", degradationFrame(known));
+    charts.show("levels", levelsFrame(known));
+    table.hidden = known.length === 0;
+    table.replaceChildren(...(known.length > 0 ? [figuresTable(known)] : []));
+  }
+
+  return {
+    element,
+    show(next, on) {
+      shown = next.filter(({ entry }) => entry.controller && !entry.error);
+      plant = on;
+      // Without a model of first order there is nothing to compare with.
+      element.hidden = shown.length === 0 || !plant;
+      trouble.hidden = true;
+      draw();
+    },
+    dispose: charts.dispose,
+  };
+}
+
+const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
+
+/** One column for each controller, two where its plant is not the model itself. */
+function figuresTable(items: TradeoffItem[]): HTMLElement {
+  const columns = items.flatMap(({ name, tradeoff }) => {
+    const { model, plant } = tradeoff ?? {};
+    if (!model || !plant || same(model, plant)) return [{ name, figures: model ?? plant }];
+    return [
+      { name: `${name}, on the model`, figures: model },
+      { name: `${name}, on the plant`, figures: plant },
+    ];
+  });
+  return h(
+    "table",
+    { class: "figures" },
+    h("caption", { class: "visually-hidden" }, "Figures of the trade-off"),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        h("td", {}),
+        columns.map((column) => h("th", { scope: "col" }, column.name)),
+      ),
+    ),
+    h(
+      "tbody",
+      {},
+      TRADEOFF_ROWS.map((row) =>
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row", class: "explained" }, row.label, h("span", {}, row.meaning)),
+          columns.map(({ figures }) => {
+            const value = figures?.[row.name];
+            return typeof value === "number"
+              ? h("td", {}, formatNumber(value))
+              : h("td", { title: figures?.why_null?.[row.name] ?? "The service gave no figure." }, DASH);
+          }),
+        ),
+      ),
+    ),
+  );
+}

@@ -1,0 +1,243 @@
+// The league table of a comparison as data: its rows in order, its columns with their figures. No DOM.
+import type { Entry, Result, WhyNull } from "../api/types.ts";
+import { formatNumber, product, quotient, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+
+export interface LeagueRow {
+  /** Of the entry in the result. */
+  index: number;
+  name: string;
+  entry: Entry;
+  /** From 1 among the methods within the limit on Ms; null beyond it, for today's settings and without an answer. */
+  rank: number | null;
+  /** Why there is no rank, or "". */
+  why: string;
+}
+
+export interface LeagueFigure {
+  value: number | null;
+  /** As it is read; "" where there is no number. */
+  text: string;
+  /** Why there is no number, or "". */
+  why: string;
+}
+
+export interface LeagueColumn {
+  id: string;
+  label: string;
+  meaning: string;
+  /** Among the columns that are shown at first. */
+  main: boolean;
+  figure(entry: Entry): LeagueFigure;
+}
+
+export interface LeagueOrder {
+  /** A column's id, "rank" or "method". */
+  column: string;
+  falling: boolean;
+}
+
+/** Entries above this Ms are not ranked unless the reader says otherwise; the service ranks by the same. */
+export const RANK_MS = 2;
+
+type Part = { why_null?: WhyNull } | undefined;
+
+const NOT_GIVEN = "The service gave no figure.";
+
+function figureOf(part: Part, name: string, absent: string, format = (value: number) => formatNumber(value)) {
+  const value = (part as Record<string, unknown> | undefined)?.[name];
+  if (typeof value === "number" && Number.isFinite(value)) return { value, text: format(value), why: "" };
+  return { value: null, text: "", why: part?.why_null?.[name] ?? absent };
+}
+
+/** A share below this is what rounding leaves. */
+const NO_PERCENT = 0.005;
+
+/** "+12.3"; the optimum itself, to what its search leaves open, is "0". */
+export function excessText(percent: number): string {
+  if (Math.abs(percent) < NO_PERCENT) return "0";
+  return percent > 0 ? `+${formatNumber(percent)}` : formatNumber(percent);
+}
+
+const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
+const load = (entry: Entry): number => {
+  const value = entry.performance?.load?.["IAE"];
+  return typeof value === "number" ? value : Infinity;
+};
+
+/** Every column but rank, method and notes, in the order in which they stand. */
+export function leagueColumns(units: UnitNames): LeagueColumn[] {
+  const gain = quotient(units.u, units.y);
+  const error = product(units.y, units.time);
+  const column = (
+    id: string,
+    label: string,
+    meaning: string,
+    main: boolean,
+    figure: (entry: Entry) => LeagueFigure,
+  ): LeagueColumn => ({ id, label, meaning, main, figure });
+  const of = (part: (entry: Entry) => Part, name: string, absent = NOT_GIVEN, format?: (value: number) => string) => {
+    return (entry: Entry): LeagueFigure =>
+      !entry.error && !stable(entry) && absent === NOT_GIVEN
+        ? { value: null, text: "", why: part(entry)?.why_null?.[name] ?? "The loop is unstable." }
+        : figureOf(part(entry), name, absent, format);
+  };
+  const controller = (entry: Entry): Part => entry.controller;
+  const robustness = (entry: Entry): Part => entry.robustness;
+  const loadStep = (entry: Entry): Part => entry.performance?.load;
+  const setpoint = (entry: Entry): Part => entry.performance?.setpoint;
+  return [
+    column("Kp", withUnit("Kp", gain), "proportional gain", true, of(controller, "Kp", "no proportional action")),
+    column("Ti", withUnit("Ti", units.time), "integral time", true, of(controller, "Ti", "no integral action")),
+    column("Td", withUnit("Td", units.time), "derivative time", true, of(controller, "Td", "no derivative action")),
+    column("Tf", withUnit("Tf", units.time), "filter time constant", false, filterTime),
+    column("Ms", "Ms", "peak of |S|: 1.4 is calm, 2 is sharp", true, of(robustness, "Ms")),
+    column("Mt", "Mt", "peak of |T|", true, of(robustness, "Mt")),
+    column("gain_margin", "Gain margin", "the loop gain may grow by this factor", true, of(robustness, "gain_margin")),
+    column("phase_margin", "Phase margin (°)", "smallest of all crossings", true, of(robustness, "phase_margin_deg")),
+    column(
+      "delay_margin",
+      withUnit("Delay margin", units.time),
+      "so much more dead time is stable",
+      false,
+      of(robustness, "delay_margin"),
+    ),
+    column(
+      "load_IAE",
+      withUnit("IAE load", error),
+      "integrated absolute error after a load step",
+      true,
+      of(loadStep, "IAE"),
+    ),
+    column(
+      "excess",
+      "+% over optimum*",
+      "of the load IAE, over the least that any PID reaches on this plant at the same Ms",
+      true,
+      (entry) => figureOf(entry.optimum_at_Ms, "excess_percent", "It was not compared with the optimum.", excessText),
+    ),
+    column("load_peak", withUnit("Load peak", units.y), "largest deviation, signed", false, of(loadStep, "peak")),
+    column("load_TV", withUnit("TV load", units.u), "total movement of u after a load step", false, of(loadStep, "TV")),
+    column(
+      "setpoint_IAE",
+      withUnit("IAE set point", error),
+      "integrated absolute error after a set-point step",
+      true,
+      of(setpoint, "IAE"),
+    ),
+    column(
+      "overshoot",
+      "Overshoot (%)",
+      "of the set-point step",
+      true,
+      of(setpoint, "overshoot_percent", NOT_GIVEN, (value) => formatNumber(value < NO_PERCENT ? 0 : value)),
+    ),
+    column(
+      "settling",
+      withUnit("Settling", units.time),
+      "last time outside 2 % of the set-point step",
+      false,
+      of(setpoint, "settling_time"),
+    ),
+    column("TV", withUnit("TV", units.u), "total movement of u after a set-point step", true, of(setpoint, "TV")),
+    column("Mks", withUnit("Mks", gain), "peak of |CS|: how much noise may reach u", true, of(robustness, "Mks")),
+  ];
+}
+
+function filterTime(entry: Entry): LeagueFigure {
+  const { filter, Td } = entry.controller ?? {};
+  const value =
+    typeof filter?.Tf === "number"
+      ? filter.Tf
+      : typeof filter?.N === "number" && filter.N > 0 && typeof Td === "number"
+        ? Td / filter.N
+        : null;
+  return value === null ? { value, text: "", why: "no filter" } : { value, text: formatNumber(value), why: "" };
+}
+
+/** Names as the table writes them: the method's title with its variant. */
+export function leagueNames(entries: Entry[]): string[] {
+  const titles = entries.map((entry) =>
+    entry.method === "baseline" ? "Today's settings" : entry.title || entry.method.replaceAll("_", " "),
+  );
+  return titles.map((title, index) => {
+    const earlier = titles.slice(0, index).filter((other) => other === title).length;
+    return earlier === 0 ? title : `${title} #${earlier + 1}`;
+  });
+}
+
+/** Rows in the order of their rank: within the limit on Ms by load IAE, then stable ones beyond it, unstable, unanswered. */
+export function leagueRows(result: Result, limit: number): LeagueRow[] {
+  const names = leagueNames(result.controllers);
+  const group = (entry: Entry): number => {
+    if (entry.error) return 3;
+    if (!stable(entry)) return 2;
+    const Ms = entry.robustness?.Ms;
+    return typeof Ms === "number" && Ms <= limit ? 0 : 1;
+  };
+  const order = result.controllers.map((entry, index) => ({ entry, index, group: group(entry) }));
+  order.sort((a, b) => a.group - b.group || compare(load(a.entry), load(b.entry)) || a.index - b.index);
+  let last = 0;
+  return order.map(({ entry, index, group: at }): LeagueRow => {
+    const ranked = at === 0 && entry.method !== "baseline";
+    if (ranked) last += 1;
+    return { index, name: names[index]!, entry, rank: ranked ? last : null, why: ranked ? "" : noRank(at, limit) };
+  });
+}
+
+function noRank(group: number, limit: number): string {
+  if (group === 0) return "Today's settings are no method.";
+  return group === 1 ? `Ms is above ${formatNumber(limit)}.` : group === 2 ? "The loop is unstable." : "No answer.";
+}
+
+const compare = (a: number, b: number): number => (a === b ? 0 : a < b ? -1 : 1);
+
+/** The rows that have an answer, by a column; rows without a number there stand last in either direction. */
+export function sortRows(rows: LeagueRow[], order: LeagueOrder, columns: LeagueColumn[]): LeagueRow[] {
+  const sign = order.falling ? -1 : 1;
+  if (order.column === "rank") return order.falling ? [...rows].reverse() : rows;
+  if (order.column === "method") return [...rows].sort((a, b) => sign * a.name.localeCompare(b.name, "en"));
+  const column = columns.find((candidate) => candidate.id === order.column);
+  if (!column) return rows;
+  const value = new Map(rows.map((row) => [row, column.figure(row.entry).value]));
+  return [...rows].sort((a, b) => {
+    const [p, q] = [value.get(a) ?? null, value.get(b) ?? null];
+    if (p === null || q === null) return p === q ? 0 : p === null ? 1 : -1;
+    return sign * compare(p, q);
+  });
+}
+
+/** "outside validity, no derivative": what the remarks of an entry are about; "unstable" first. */
+export function notesSummary(entry: Entry): string {
+  const words = (entry.warnings ?? []).map((warning) => warning.code.replaceAll(/[-_]/g, " "));
+  return [...new Set([...(entry.robustness && !stable(entry) ? ["unstable"] : []), ...words])].join(", ");
+}
+
+/** Why a method has no answer. */
+export const reasonOf = (entry: Entry): string => entry.error?.detail ?? entry.error?.title ?? "It gave no reason.";
+
+/** The whole table for a file: every column, all digits, remarks and reasons in words. */
+export function leagueTable(rows: LeagueRow[], columns: LeagueColumn[]): (string | number | null)[][] {
+  const header = ["rank", "method", "title", ...columns.map((column) => column.label.replace("*", "")), "notes"];
+  const notes = (entry: Entry): string =>
+    entry.error ? reasonOf(entry) : (entry.warnings ?? []).map((warning) => warning.detail).join(" ");
+  return [
+    header,
+    ...rows.map((row) => [
+      row.rank,
+      row.entry.method,
+      row.name,
+      ...columns.map((column) => (row.entry.error ? null : column.figure(row.entry).value)),
+      notes(row.entry),
+    ]),
+  ];
+}
+
+/** The order that an address names: "Ms" rises, "-Ms" falls, "" is the ranking. */
+export function orderOf(text: string): LeagueOrder {
+  const falling = text.startsWith("-");
+  return { column: (falling ? text.slice(1) : text) || "rank", falling };
+}
+
+export const sortText = ({ column, falling }: LeagueOrder): string =>
+  column === "rank" && !falling ? "" : `${falling ? "-" : ""}${column}`;

@@ -6,6 +6,7 @@ import { createRequire } from "node:module";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import path from "node:path";
+import { after, before } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
@@ -164,6 +165,48 @@ export async function withPage(service, browser, address, options, body, expecte
     await opened.close();
   }
 }
+
+/** Starts the service and the browser before a file's tests and ends them afterwards. Both are there once a test runs. */
+export function browserTests() {
+  const shared = { service: null, browser: null };
+  before(async () => {
+    shared.service = await startService();
+    shared.browser = await launchBrowser();
+  });
+  after(async () => {
+    await shared.browser?.close();
+    await shared.service?.stop();
+  });
+  return {
+    get service() {
+      return shared.service;
+    },
+    get browser() {
+      return shared.browser;
+    },
+    /** A page at an address below the service; see withPage. */
+    withPage: (address, options, body, expected) =>
+      withPage(shared.service, shared.browser, address, options, body, expected),
+    /** The answer of the API for the job that the page's address names. */
+    async jobOf(page) {
+      const id = /#\/jobs\/([^/]+)\/(?:design|compare)/.exec(page.url())?.[1];
+      if (!id) throw new Error(`There is no job in ${page.url()}.`);
+      return (await fetch(`${shared.service.base}/v1/jobs/${id}`)).json();
+    },
+  };
+}
+
+/** Windows that every screen is tried in. */
+export const WINDOWS = [
+  ["desktop", {}],
+  ["dark desktop", { scheme: "dark" }],
+  ["tablet", { width: 834, height: 1194 }],
+  ["phone", { width: 400, height: 860 }],
+];
+
+/** By how many pixels the page is wider than its window. */
+export const overflow = (page) =>
+  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
 /** Lets go of a text file over an element. */
 export async function dropFile(page, selector, name, text) {

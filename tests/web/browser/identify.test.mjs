@@ -1,31 +1,11 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
-import test, { after, before } from "node:test";
-import {
-  accessibilityViolations,
-  drawnTraces,
-  dropFile,
-  launchBrowser,
-  root,
-  startService,
-  withPage as open,
-} from "../harness.mjs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, drawnTraces, dropFile, overflow, root, WINDOWS } from "../harness.mjs";
 
-let service;
-let browser;
-
-before(async () => {
-  service = await startService();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await service?.stop();
-});
-
-const withPage = (address, options, body, expected) => open(service, browser, address, options, body, expected);
+const tests = browserTests();
+const { withPage } = tests;
 
 const shown = (value, digits = 3) => Number(Number(value).toPrecision(digits));
 const candidatesShown = (page) => page.getByRole("heading", { name: "Model candidates" }).waitFor();
@@ -44,7 +24,7 @@ const disturbedTest = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5
 );
 
 const job = async (page) =>
-  (await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
+  (await fetch(`${tests.service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
 
 test("a dropped record is identified at once, and Use and tune leads to its design", async () => {
   await withPage("", {}, async (page) => {
@@ -297,12 +277,7 @@ test("Identify without a record says where to get one", async () => {
   });
 });
 
-for (const [name, options] of [
-  ["desktop", {}],
-  ["dark desktop", { scheme: "dark" }],
-  ["tablet", { width: 834, height: 1194 }],
-  ["phone", { width: 400, height: 860 }],
-]) {
+for (const [name, options] of WINDOWS) {
   test(`Identify on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage("", options, async (page) => {
       await dropFile(page, ".drop", "step.csv", stepTest);
@@ -310,10 +285,7 @@ for (const [name, options] of [
       for (const summary of ["How the record is read", "What was found in the record"])
         await page.getByText(summary).click();
       assert.deepEqual(await accessibilityViolations(page), []);
-      assert.equal(
-        await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
-        0,
-      );
+      assert.equal(await overflow(page), 0);
     });
   });
 }

@@ -1,21 +1,8 @@
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
-import { accessibilityViolations, drawnTraces, launchBrowser, startService, withPage as open } from "../harness.mjs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
 
-let service;
-let browser;
-
-before(async () => {
-  service = await startService();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await service?.stop();
-});
-
-const withPage = (address, options, body, expected) => open(service, browser, address, options, body, expected);
+const { withPage } = browserTests();
 
 const simulated = (page) =>
   page.waitForResponse((response) => response.url().endsWith("/v1/experiments/relay") && response.status() === 200);
@@ -133,20 +120,12 @@ test("a relay that cannot oscillate says why at its field", async () => {
   );
 });
 
-for (const [name, options] of [
-  ["desktop", {}],
-  ["dark desktop", { scheme: "dark" }],
-  ["tablet", { width: 834, height: 1194 }],
-  ["phone", { width: 400, height: 860 }],
-]) {
+for (const [name, options] of WINDOWS) {
   test(`the relay test on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage("#/relay", options, async (page) => {
       await page.getByRole("heading", { name: "The test as it would be recorded" }).waitFor();
       assert.deepEqual(await accessibilityViolations(page), []);
-      assert.equal(
-        await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
-        0,
-      );
+      assert.equal(await overflow(page), 0);
     });
   });
 }

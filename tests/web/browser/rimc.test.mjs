@@ -1,24 +1,8 @@
 import assert from "node:assert/strict";
-import test, { after, before } from "node:test";
-import { accessibilityViolations, drawnTraces, launchBrowser, startService, withPage as open } from "../harness.mjs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
 
-let service;
-let browser;
-
-before(async () => {
-  service = await startService();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await service?.stop();
-});
-
-const withPage = (address, options, body, expected) => open(service, browser, address, options, body, expected);
-
-const jobOf = async (page) =>
-  (await fetch(`${service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
+const { withPage, jobOf } = browserTests();
 
 /** Tunes the plant by robust and rimc, and shows rimc. */
 async function showRimc(page) {
@@ -138,20 +122,12 @@ test("a lambda out of reach is refused in the service's words, and the design st
   );
 });
 
-for (const [name, options] of [
-  ["desktop", {}],
-  ["dark desktop", { scheme: "dark" }],
-  ["tablet", { width: 834, height: 1194 }],
-  ["phone", { width: 400, height: 860 }],
-]) {
+for (const [name, options] of WINDOWS) {
   test(`revised IMC on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage("#/new/fopdt?K=1&T=10&L=2", options, async (page) => {
       await showRimc(page);
       assert.deepEqual(await accessibilityViolations(page), []);
-      assert.equal(
-        await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth),
-        0,
-      );
+      assert.equal(await overflow(page), 0);
     });
   });
 }

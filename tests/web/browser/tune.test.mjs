@@ -1,37 +1,11 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
-import test, { after, before } from "node:test";
-import {
-  accessibilityViolations,
-  drawnTraces,
-  launchBrowser,
-  openPage,
-  startService,
-  withPage as open,
-} from "../harness.mjs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, drawnTraces, openPage, overflow } from "../harness.mjs";
 
-let service;
-let browser;
-
-before(async () => {
-  service = await startService();
-  browser = await launchBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  await service?.stop();
-});
-
-const withPage = (address, options, body) => open(service, browser, address, options, body);
-
-/** The answer of the API for the job that the page's address names. */
-async function jobOf(page) {
-  const id = /#\/jobs\/([^/]+)\/design/.exec(page.url())?.[1];
-  assert.ok(id, `no job in ${page.url()}`);
-  return (await fetch(`${service.base}/v1/jobs/${id}`)).json();
-}
+const tests = browserTests();
+const { withPage, jobOf } = tests;
 
 const designShown = (page) => page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
 
@@ -97,7 +71,7 @@ test("the FOPDT form runs a job; table, settings and plots show what the API ans
 
 test("settings change their form and are copied with all their digits", async () => {
   await withPage("#/new/fopdt?K=2&T=10&L=3", {}, async (page) => {
-    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: service.base });
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: tests.service.base });
     await page.getByRole("button", { name: "Tune this model" }).click();
     await designShown(page);
     const [entry] = (await jobOf(page)).result.controllers;
@@ -131,10 +105,10 @@ test("a field that cannot be read says so beside itself, and the summary leads t
 });
 
 test("faults that the service finds stand at their fields, several at once", async () => {
-  const opened = await openPage(browser);
+  const opened = await openPage(tests.browser);
   try {
     const { page } = opened;
-    await page.goto(service.base);
+    await page.goto(tests.service.base);
     await page.getByLabel("L (s)", { exact: true }).fill("-3");
     await page.getByRole("textbox", { name: "Ms", exact: true }).fill("0.5");
     const answer = page.waitForResponse(
@@ -240,7 +214,7 @@ test("a plot is saved as SVG without class and style, and as PNG", async () => {
 });
 
 test("every example of the service is tuned unchanged from the page", async () => {
-  const { examples } = await (await fetch(`${service.base}/v1/examples`)).json();
+  const { examples } = await (await fetch(`${tests.service.base}/v1/examples`)).json();
   assert.ok(examples.length > 0);
   for (const example of examples) {
     await withPage("", {}, async (page) => {
@@ -260,7 +234,7 @@ test("every example of the service is tuned unchanged from the page", async () =
 });
 
 test("an example is shown in the form and sent from there as the same plant and methods", async () => {
-  const { examples } = await (await fetch(`${service.base}/v1/examples`)).json();
+  const { examples } = await (await fetch(`${tests.service.base}/v1/examples`)).json();
   for (const example of examples.filter(
     (candidate) => candidate.request.plant && Array.isArray(candidate.request.tune ?? []),
   )) {
@@ -324,7 +298,7 @@ test("a running job shows its fraction, stage, message and best design, and Canc
       job.status = "cancelled";
       return route.fulfill({ status: 202, json: job });
     });
-    await page.goto(`${service.base}/#/jobs/running/design`);
+    await page.goto(`${tests.service.base}/#/jobs/running/design`);
     await page.getByRole("heading", { name: "Searching for the best controller: 42 %" }).waitFor();
     assert.equal(await page.getByRole("progressbar").evaluate((bar) => bar.value), 0.42);
     await page.getByText("Searching from 3 of 7 starts.").waitFor();
@@ -336,10 +310,10 @@ test("a running job shows its fraction, stage, message and best design, and Canc
 });
 
 test("a lost connection is said, and the job is found again when it is back", async () => {
-  const opened = await openPage(browser);
+  const opened = await openPage(tests.browser);
   try {
     const { page } = opened;
-    await page.goto(`${service.base}/#/new/fopdt?K=1&T=10&L=2`);
+    await page.goto(`${tests.service.base}/#/new/fopdt?K=1&T=10&L=2`);
     let lost = true;
     await page.route("**/v1/jobs/*", (route) => (lost ? route.abort() : route.continue()));
     await page.getByRole("button", { name: "Tune this model" }).click();
@@ -372,9 +346,9 @@ test("dragging zooms, equal axes stay equal, and Show all goes back", async () =
 });
 
 test("an address of a job that does not exist says so", async () => {
-  const opened = await openPage(browser);
+  const opened = await openPage(tests.browser);
   try {
-    await opened.page.goto(`${service.base}/#/jobs/00000000-0000-0000-0000-000000000000/design`);
+    await opened.page.goto(`${tests.service.base}/#/jobs/00000000-0000-0000-0000-000000000000/design`);
     await opened.page.locator(".trouble").filter({ hasText: /\S/ }).waitFor();
   } finally {
     await opened.close();
@@ -405,24 +379,22 @@ for (const [name, width, height] of [
 ]) {
   test(`nothing is wider than the window on a ${name}`, async () => {
     await withPage("", { width, height }, async (page) => {
-      const overflow = () =>
-        page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-      assert.equal(await overflow(), 0);
+      assert.equal(await overflow(page), 0);
       await page.getByRole("button", { name: "Tune this model" }).click();
       await designShown(page);
-      assert.equal(await overflow(), 0);
+      assert.equal(await overflow(page), 0);
     });
   });
 }
 
 test("what the first visit loads stays below 100 kB compressed", async () => {
   const { gzipSync } = await import("node:zlib");
-  const html = await (await fetch(`${service.base}/`)).text();
+  const html = await (await fetch(`${tests.service.base}/`)).text();
   const assets = [...html.matchAll(/(?:src|href)="\.\/([^"]+)"/g)].map((match) => match[1]);
   let total = gzipSync(html).length;
   for (const asset of assets)
     total += gzipSync(
-      Buffer.from(await (await fetch(`${service.base}/${path.posix.normalize(asset)}`)).arrayBuffer()),
+      Buffer.from(await (await fetch(`${tests.service.base}/${path.posix.normalize(asset)}`)).arrayBuffer()),
     ).length;
   assert.ok(assets.length >= 2);
   assert.ok(total <= 100 * 1024, `${total} bytes`);

@@ -2,17 +2,11 @@
 import type { Candidate, Model } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
-import type { Frame, Mark, Pane } from "../plot/frame.ts";
+import type { Frame, Mark } from "../plot/frame.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-
-type Column = (number | null)[];
-
-export interface Samples {
-  t: number[];
-  y: Column;
-  u?: Column;
-}
+import { recordFramed, recordPanes, unnamed } from "./record.ts";
+import type { Column, Samples } from "./record.ts";
 
 /** `whole`: the record beyond the used part, where it is known; `part`: the used part, as it is being chosen. */
 export function identifiedFrame(
@@ -37,45 +31,13 @@ export function identifiedFrame(
     marks: unnamed(marks),
   });
   const percent = formatNumber(candidate?.fit_percent ?? model.fit_percent);
-  return framed(panes, "Record and model", `The model reproduces ${percent} % of the record's movement.`, units);
+  return recordFramed(panes, "Record and model", `The model reproduces ${percent} % of the record's movement.`, units);
 }
 
 /** A record for which there is no model. */
 export function bareRecordFrame(record: Samples, units: UnitNames, part: { from: number; to: number } | null): Frame {
   const marks: Mark[] = part ? [{ kind: "band", ...part, label: "used" }] : [];
-  return framed(recordPanes(record, units, marks), "Record", "There is no model of it.", units);
-}
-
-function recordPanes(record: Samples, units: UnitNames, marks: Mark[]): Pane[] {
-  const panes: Pane[] = [
-    {
-      y: { kind: "linear", label: withUnit("y", units.y) },
-      traces: [{ name: "record", look: "data", x: record.t, y: record.y }],
-      marks,
-      weight: 2.4,
-    },
-  ];
-  if (record.u && record.u.length === record.t.length)
-    panes.push({
-      y: { kind: "linear", label: withUnit("u", units.u) },
-      traces: [{ name: "u", look: "data", ...held(record.t, record.u) }],
-      marks: unnamed(marks),
-    });
-  return panes;
-}
-
-function framed(panes: Pane[], title: string, description: string, units: UnitNames): Frame {
-  return {
-    title,
-    description,
-    x: { kind: "linear", label: withUnit("time", units.time) },
-    panes,
-    ownLegend: true,
-    link: "record",
-    cursorLabel: withUnit("time", units.time),
-    cursorKind: "linear",
-    fileName: "record-and-model",
-  };
+  return recordFramed(recordPanes(record, units, marks), "Record", "There is no model of it.", units);
 }
 
 /** A residual below a thousandth of y's movement is not blown up to fill its pane: rounding would look like a signal. */
@@ -84,25 +46,6 @@ function wideRange(residual: Column, y: Column): Range | null {
   const [least, most] = extent([y], "linear");
   const floor = 1e-3 * (most - least);
   return Math.max(-lo, hi) < floor ? [-floor, floor] : null;
-}
-
-const unnamed = (marks: Mark[]): Mark[] =>
-  marks.map((mark) => (mark.kind === "band" ? { kind: "band", from: mark.from, to: mark.to } : mark));
-
-/** u holds from its sample to the next: corners instead of slopes. */
-export function held(t: readonly number[], u: readonly (number | null)[]): { x: number[]; y: Column } {
-  const x: number[] = [];
-  const y: Column = [];
-  for (let index = 0; index < t.length; index += 1) {
-    const value = u[index] ?? null;
-    if (index > 0 && value !== u[index - 1]) {
-      x.push(t[index]!);
-      y.push(u[index - 1] ?? null);
-    }
-    x.push(t[index]!);
-    y.push(value);
-  }
-  return { x, y };
 }
 
 function difference(a: Column, b: Column): Column {

@@ -1,31 +1,53 @@
-// The recorded test against the model identified from it.
+// A recorded test as panes of y and u, and beside it the output of the model that was identified from it.
 import type { Model, TuningRequest } from "../api/types.ts";
-import type { Frame, Pane } from "../plot/frame.ts";
+import type { Frame, Mark, Pane } from "../plot/frame.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
 
+export type Column = (number | null)[];
+
+export interface Samples {
+  t: number[];
+  y: Column;
+  u?: Column;
+}
+
+/** What a job's record and model show; null without a record. */
 export function recordFrame(model: Model, request: TuningRequest | undefined): Frame | null {
   const fit = model.fit;
   if (!fit || fit.t.length === 0) return null;
   const units = unitNames(request?.units);
-  const u = inputOf(model, request);
+  const u = fit.u ?? request?.record?.u;
+  const panes = recordPanes({ t: fit.t, y: fit.y, ...(u ? { u } : {}) }, units, []);
+  panes[0]!.traces.push({ name: "model", look: 1, x: fit.t, y: fit.y_model });
+  const percent = formatNumber(model.fit_percent);
+  const description = `The model reproduces ${percent} % of the record's movement.`;
+  return recordFramed(panes, "Recorded test and model", description, units);
+}
+
+/** y over u on one time axis. */
+export function recordPanes(record: Samples, units: UnitNames, marks: Mark[]): Pane[] {
   const panes: Pane[] = [
     {
       y: { kind: "linear", label: withUnit("y", units.y) },
-      traces: [
-        { name: "record", look: "data", x: fit.t, y: fit.y },
-        { name: "model", look: 1, x: fit.t, y: fit.y_model },
-      ],
-      weight: 2,
+      traces: [{ name: "record", look: "data", x: record.t, y: record.y }],
+      marks,
+      weight: 2.4,
     },
   ];
-  if (u)
+  if (record.u && record.u.length === record.t.length)
     panes.push({
       y: { kind: "linear", label: withUnit("u", units.u) },
-      traces: [{ name: "input", look: "data", x: u.t, y: u.u }],
+      traces: [{ name: "u", look: "data", ...held(record.t, record.u) }],
+      marks: unnamed(marks),
     });
+  return panes;
+}
+
+export function recordFramed(panes: Pane[], title: string, description: string, units: UnitNames): Frame {
   return {
-    title: "Recorded test and model",
-    description: `The model reproduces ${formatNumber(model.fit_percent)} % of the record's movement.`,
+    title,
+    description,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes,
     ownLegend: true,
@@ -36,11 +58,22 @@ export function recordFrame(model: Model, request: TuningRequest | undefined): F
   };
 }
 
-/** The input: from the fit, or from a record that was given as numbers. */
-function inputOf(model: Model, request: TuningRequest | undefined): { t: number[]; u: (number | null)[] } | null {
-  const fit = model.fit!;
-  if (fit.u && fit.u.length === fit.t.length) return { t: fit.t, u: fit.u };
-  const u = request?.record?.u;
-  if (Array.isArray(u) && u.length === fit.t.length) return { t: fit.t, u };
-  return null;
+/** Bands without their names: these stand in the first pane. */
+export const unnamed = (marks: Mark[]): Mark[] =>
+  marks.map((mark) => (mark.kind === "band" ? { kind: "band", from: mark.from, to: mark.to } : mark));
+
+/** u holds from its sample to the next: corners instead of slopes. */
+export function held(t: readonly number[], u: readonly (number | null)[]): { x: number[]; y: Column } {
+  const x: number[] = [];
+  const y: Column = [];
+  for (let index = 0; index < t.length; index += 1) {
+    const value = u[index] ?? null;
+    if (index > 0 && value !== u[index - 1]) {
+      x.push(t[index]!);
+      y.push(u[index - 1] ?? null);
+    }
+    x.push(t[index]!);
+    y.push(value);
+  }
+  return { x, y };
 }

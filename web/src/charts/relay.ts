@@ -3,7 +3,7 @@ import type { RelayAnswer } from "../api/relay.ts";
 import type { Frame, Mark } from "../plot/frame.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { held } from "./identified.ts";
+import { held } from "./record.ts";
 
 export function relayFrame(answer: RelayAnswer, hysteresis: number, units: UnitNames): Frame {
   const { t, u, y } = answer.record;

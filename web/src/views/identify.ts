@@ -4,7 +4,7 @@ import { identify } from "../api/identify.ts";
 import { latest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
-import type { Samples } from "../charts/identified.ts";
+import type { Samples } from "../charts/record.ts";
 import { h } from "../dom.ts";
 import { areaField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";

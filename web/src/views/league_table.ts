@@ -191,10 +191,10 @@ function notesCell(entry: Entry): HTMLElement {
   );
 }
 
-/** One scale for all: that of the better half, so that what swings wildly does not flatten the others. */
+/** One scale for all: that of the better three quarters, so that what swings wildly does not flatten the others. */
 function sparkScales(rows: LeagueRow[], step: number): Record<Signal, SparkScale> | null {
   const good = rows.filter(({ entry }) => entry.robustness?.stable && entry.responses);
-  const better = good.slice(0, Math.max(1, Math.ceil(good.length / 2)));
+  const better = good.slice(0, Math.max(1, Math.ceil(0.75 * good.length)));
   const scale = (signal: Signal, level: number): SparkScale => {
     const traces = better.flatMap(({ entry }) => entry.responses?.[signal] ?? []);
     const ends = traces.map((trace) => trace.t[trace.t.length - 1] ?? 0).sort((a, b) => a - b);

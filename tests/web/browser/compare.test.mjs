@@ -1,0 +1,255 @@
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
+
+const tests = browserTests();
+const { withPage, jobOf } = tests;
+
+const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
+const table = (page) => page.getByRole("region", { name: "League table" });
+
+/** Compares all methods on the plant of the address, with today's settings as a row. */
+async function compareAll(page) {
+  await page.getByLabel("Kp", { exact: true }).fill("1.2");
+  await page.getByLabel("Ti", { exact: true }).fill("40");
+  await page.getByRole("button", { name: "Compare all methods", exact: true }).click();
+  await table(page).waitFor();
+}
+
+/** Texts of a column's cells from top to bottom, rows without an answer left out. */
+async function column(page, name) {
+  const headings = await table(page).locator("thead th").allInnerTexts();
+  const at = headings.findIndex((text) =>
+    text
+      .replace(/\s+/g, " ")
+      .replace(/ [▲▼]$/, "")
+      .startsWith(name),
+  );
+  assert.ok(at >= 0, `${name} is none of ${headings.join(" | ")}`);
+  return table(page)
+    .locator("tbody:not(.refused) tr")
+    .evaluateAll((rows, index) => rows.map((row) => row.children[index].textContent.replace("−", "-")), at);
+}
+
+const asShown = (value) => Number(Number(value).toPrecision(3));
+const sortButton = (page, name) => table(page).getByRole("button", { name, exact: true });
+const rising = (list) => list.every((value, index) => index === 0 || value >= list[index - 1]);
+
+test("every method of the service is a row, ranked as the service ranks, with the figures it answers", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    assert.match(page.url(), /#\/jobs\/[^/]+\/compare$/);
+    const { request, result } = await jobOf(page);
+    assert.deepEqual(request.tune, [{ method: "all" }]);
+    const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
+    for (const { id } of methods.filter((method) => method.id !== "all"))
+      assert.ok(
+        result.controllers.some((entry) => entry.method === id),
+        `${id} has no row`,
+      );
+    const order = result.ranking.map((index) => result.controllers[index]);
+    const name = (entry) => (entry.method === "baseline" ? "Today's settings" : entry.title);
+    assert.deepEqual(await column(page, "Method"), order.map(name));
+    const limited = order.filter((entry) => entry.robustness.stable && entry.robustness.Ms <= 2);
+    const IAE = (await column(page, "IAE load")).map(Number);
+    assert.deepEqual(
+      IAE.slice(0, limited.length),
+      limited.map((entry) => asShown(entry.performance.load.IAE)),
+    );
+    const excess = await column(page, "+% over");
+    for (const [at, entry] of order.entries()) {
+      const value = entry.optimum_at_Ms.excess_percent;
+      if (value === null) assert.match(excess[at], /^–\d+$/);
+      else if (Math.abs(value) >= 0.005) assert.equal(Number(excess[at]), asShown(value), entry.title);
+    }
+    const refused = result.controllers.filter((entry) => entry.error);
+    const said = await table(page).locator(".refused tr").allInnerTexts();
+    assert.equal(said.length, refused.length);
+    for (const entry of refused)
+      assert.ok(
+        said.some((text) => text.includes(entry.error.detail)),
+        entry.method,
+      );
+  });
+});
+
+test("a heading sorts by its column, and again the other way round; the address keeps it", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    await sortButton(page, "Ms").focus();
+    await page.keyboard.press("Enter");
+    await table(page).locator("th[aria-sort=ascending][data-column=Ms]").waitFor();
+    const numbers = (await column(page, "Ms")).map(Number).filter((value) => !Number.isNaN(value));
+    assert.ok(numbers.length > 5 && rising(numbers), numbers.join());
+    await page.keyboard.press("Enter");
+    await table(page).locator("th[aria-sort=descending][data-column=Ms]").waitFor();
+    assert.ok(
+      rising(
+        (await column(page, "Ms"))
+          .map(Number)
+          .filter((value) => !Number.isNaN(value))
+          .reverse(),
+      ),
+    );
+    assert.equal(await table(page).locator("th[aria-sort]").count(), 1);
+    assert.ok(await sortButton(page, "Ms").evaluate((button) => button === document.activeElement));
+    assert.match(page.url(), /compare\?sort=-Ms/);
+    await page.reload();
+    await table(page).locator("th[aria-sort=descending][data-column=Ms]").waitFor();
+  });
+});
+
+test("two rows are overlaid in every plot, four at most, by the keyboard alone", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    await table(page).locator("tbody input:checked").first().uncheck();
+    await table(page).locator("tbody input:checked").first().uncheck();
+    const boxes = table(page).locator("tbody:not(.refused) input[type=checkbox]");
+    for (const at of [0, 1]) {
+      await boxes.nth(at).focus();
+      await page.keyboard.press("Space");
+      await page.waitForFunction(
+        (count) => document.querySelectorAll(".league-table tr.drawn").length === count,
+        at + 1,
+      );
+      assert.ok(await boxes.nth(at).evaluate((box) => box === document.activeElement), "the focus stays on its box");
+    }
+    for (const [title, traces] of [
+      ["Set-point step", 4],
+      ["Load step at the plant input", 4],
+      ["Nyquist curve of L", 2],
+      ["Sensitivities", 6],
+    ])
+      assert.equal(await drawnTraces(page, title), traces, title);
+    const names = await page.locator(".overlay-legend span").allInnerTexts();
+    assert.equal(names.length, 2);
+    for (const at of [2, 3]) await boxes.nth(at).check();
+    await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
+    assert.ok(await boxes.nth(4).isDisabled());
+    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 4);
+    const rows = /rows=([\d.]+)/.exec(page.url())[1];
+    assert.equal(rows.split(".").length, 4);
+    // The same rows stand on Design, and the way back leads to the same table.
+    await table(page).getByRole("link").first().click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 4);
+    assert.ok((await page.locator(".legend-item").count()) <= 8);
+    await page.getByRole("link", { name: "League table" }).click();
+    await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
+  });
+});
+
+test("the limit on Ms ranks anew, unstable rows go on request, columns are chosen", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    const { result } = await jobOf(page);
+    const ranked = async () => (await column(page, "#")).filter((text) => text !== "").length;
+    const within = (limit) =>
+      result.controllers.filter(
+        (entry) => entry.method !== "baseline" && entry.robustness?.stable && entry.robustness.Ms <= limit,
+      ).length;
+    assert.equal(await ranked(), within(2));
+    const limit = page.getByLabel("ranked by load IAE among Ms ≤");
+    await limit.fill("1,45");
+    await page.keyboard.press("Enter");
+    assert.equal(await ranked(), within(1.45));
+    assert.ok(within(1.45) < within(2));
+    await limit.fill("0.5");
+    await page.keyboard.press("Enter");
+    await page.getByText("Ms is 0.5; it must be above 1.").waitFor();
+    await page.getByText("Columns", { exact: true }).click();
+    await page.getByRole("checkbox", { name: "Kp", exact: true }).uncheck();
+    await page.getByRole("checkbox", { name: "Settling (s)", exact: true }).check();
+    await page.keyboard.press("Escape");
+    const settling = await column(page, "Settling");
+    const best = result.controllers[result.ranking[0]];
+    assert.ok(settling.includes(Number(best.performance.setpoint.settling_time).toPrecision(3)), settling.join());
+    assert.equal(await sortButton(page, "Kp").count(), 0);
+    await page.getByLabel("only stable").check();
+    assert.equal(
+      await table(page).locator("tbody tr").count(),
+      result.controllers.filter((entry) => entry.robustness?.stable).length,
+    );
+  });
+});
+
+test("the table is saved as CSV with all digits", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    const { result } = await jobOf(page);
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "Export CSV" }).click(),
+    ]);
+    const [header, ...rows] = readFileSync(await download.path(), "utf8")
+      .trim()
+      .split("\r\n");
+    assert.match(header, /^rank,method,title,Kp,Ti \(s\)/);
+    assert.equal(rows.length, result.controllers.length);
+    const best = result.controllers[result.ranking[0]];
+    assert.ok(rows[0].includes(String(best.controller.Kp)), rows[0]);
+  });
+});
+
+test("every subject leads to its comparison: Design, an example, a recorded test", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await page.getByRole("button", { name: "Compare all methods", exact: true }).click();
+    await table(page).waitFor();
+    assert.deepEqual((await jobOf(page)).request.plant, { type: "fopdt", K: 1.25, T: 40, L: 8 });
+    await page.goto(`${tests.service.base}/#/`);
+    const example = page.getByRole("button", { name: /^Compare all methods: / }).first();
+    await example.click();
+    await table(page).waitFor();
+    assert.deepEqual((await jobOf(page)).request.tune, [{ method: "all" }]);
+    await page.goto(`${tests.service.base}/#/`);
+    const rows = Array.from(
+      { length: 300 },
+      (_, t) => `${t},${t >= 20 ? 1 : 0},${t > 25 ? 2 - 2 * Math.exp((25 - t) / 30) : 0}`,
+    );
+    await page.getByLabel("or paste it").fill(["t,u,y", ...rows].join("\n"));
+    await page.getByRole("button", { name: "Compare all methods on this record" }).click();
+    await table(page).waitFor();
+    assert.ok((await jobOf(page)).result.model);
+  });
+});
+
+test("the methods' page lists what the service lists, finds by words, and shows one with its options", async () => {
+  await withPage("#/methods", {}, async (page) => {
+    const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
+    await page.locator("article").first().waitFor();
+    const text = await page.locator(".method-list").innerText();
+    for (const method of methods) {
+      assert.ok(text.includes(method.title), method.id);
+      assert.ok(text.includes(method.source), `source of ${method.id}`);
+    }
+    await page.getByLabel("Find a method").fill("skogestad simc");
+    assert.deepEqual(await page.locator("article:visible h2 a").allInnerTexts(), [
+      methods.find((method) => method.id === "simc").title,
+    ]);
+    await page.locator("article:visible h2 a").click();
+    await page.getByRole("heading", { level: 1, name: /SIMC/ }).waitFor();
+    assert.match(await page.getByRole("region", { name: /^Options of/ }).innerText(), /tau_c/);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
+for (const [name, options] of WINDOWS) {
+  test(`the league table on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
+    await withPage(PLANT, options, async (page) => {
+      await compareAll(page);
+      assert.deepEqual(await accessibilityViolations(page), []);
+      assert.equal(await overflow(page), 0);
+      await table(page).evaluate((region) => (region.scrollLeft = 400));
+      const pinned = await table(page).locator("tbody th").first().boundingBox();
+      const region = await table(page).boundingBox();
+      assert.ok(pinned.x >= region.x && pinned.x < region.x + 80, "the method's column stays");
+      await page.goto(`${tests.service.base}/#/methods`);
+      await page.locator("article").first().waitFor();
+      assert.deepEqual(await accessibilityViolations(page), []);
+      assert.equal(await overflow(page), 0);
+    });
+  });
+}

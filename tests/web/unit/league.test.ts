@@ -1,0 +1,175 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { Entry, Result } from "../../../web/src/api/types.ts";
+import { defaultOverlay, entryNames } from "../../../web/src/charts/drawn.ts";
+import { byAllMethods, withLambda } from "../../../web/src/form/retune.ts";
+import { csvText } from "../../../web/src/plot/export.ts";
+import { spark } from "../../../web/src/plot/spark.ts";
+import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+import {
+  excessText,
+  leagueColumns,
+  leagueRows,
+  leagueTable,
+  notesSummary,
+  orderOf,
+  sortRows,
+  sortText,
+} from "../../../web/src/words/league.ts";
+import { unitNames } from "../../../web/src/words/numbers.ts";
+
+const robustness = { stable: true, omega_Ms: 1, Mt: 1, omega_Mt: 1, Mks: 2, gain_margin: 3, gain_margin_low: 0 };
+const make = (method: string, Ms: number | null, IAE: number | null, extra: Partial<Entry> = {}): Entry =>
+  ({
+    method,
+    title: `${method} (PI)`,
+    controller: { form: "ideal", Kp: 1, Ti: 10, Td: 0 },
+    robustness: { ...robustness, stable: Ms !== null, Ms },
+    performance: { load: { IAE }, setpoint: { IAE: 1 } },
+    responses: { load: { t: [0, 1], y: [0, 1], u: [0, 1] } },
+    ...extra,
+  }) as Entry;
+
+const result: Result = {
+  controllers: [
+    make("sharp", 2.5, 3),
+    make("slow", 1.2, 40),
+    make("wild", null, null, { warnings: [{ code: "outside-validity", detail: "L/T is 9." }] }),
+    make("refused", null, null, { error: { detail: "It needs an integrating plant." } }),
+    make("best", 1.4, 8),
+    make("baseline", 1.3, 20),
+  ],
+};
+const columns = leagueColumns(unitNames({ time: "min" }));
+const methods = (rows: { entry: Entry }[]): string[] => rows.map((row) => row.entry.method);
+
+test("rows stand by load IAE within the limit, then beyond it, then unstable, then without an answer", () => {
+  const rows = leagueRows(result, 2);
+  assert.deepEqual(methods(rows), ["best", "baseline", "slow", "sharp", "wild", "refused"]);
+  assert.deepEqual(
+    rows.map((row) => row.rank),
+    [1, null, 2, null, null, null],
+  );
+  assert.equal(rows[3]!.why, "Ms is above 2.00.");
+  assert.equal(rows[4]!.why, "The loop is unstable.");
+  // Another limit, another ranking.
+  assert.deepEqual(
+    leagueRows(result, 3).map((row) => row.rank),
+    [1, 2, null, 3, null, null],
+  );
+  assert.deepEqual(methods(leagueRows(result, 1.25)), ["slow", "sharp", "best", "baseline", "wild", "refused"]);
+});
+
+test("sorting by a column keeps rows without a number last in both directions, and equal rows in their order", () => {
+  const rows = leagueRows(result, 2);
+  assert.deepEqual(methods(sortRows(rows, orderOf("Ms"), columns)), [
+    "slow",
+    "baseline",
+    "best",
+    "sharp",
+    "wild",
+    "refused",
+  ]);
+  assert.deepEqual(methods(sortRows(rows, orderOf("-Ms"), columns)).slice(0, 4), ["sharp", "best", "baseline", "slow"]);
+  assert.deepEqual(methods(sortRows(rows, orderOf("-Ms"), columns)).slice(4), ["wild", "refused"]);
+  assert.deepEqual(methods(sortRows(rows, orderOf("Kp"), columns)), methods(rows));
+  assert.deepEqual(methods(sortRows(rows, orderOf("method"), columns))[0], "best");
+  assert.deepEqual(methods(sortRows(rows, orderOf("no_such"), columns)), methods(rows));
+  for (const text of ["", "-rank", "Ms", "-excess"]) assert.equal(sortText(orderOf(text)), text);
+});
+
+test("figures have three digits; one that is missing says why", () => {
+  const figure = (id: string, entry: Entry) => columns.find((column) => column.id === id)!.figure(entry);
+  const entry = make("a", 1.23456, 12.3456, {
+    optimum_at_Ms: { IAE: 10, excess_percent: 23.456 },
+    controller: { form: "ideal", Kp: 0.000123456, Ti: null, Td: 2, filter: { type: "derivative", N: 10 } },
+  });
+  assert.equal(figure("Ms", entry).text, "1.23");
+  assert.equal(figure("load_IAE", entry).text, "12.3");
+  assert.equal(figure("excess", entry).text, "+23.5");
+  assert.equal(figure("Kp", entry).text, "1.23e−4");
+  assert.deepEqual(figure("Ti", entry), { value: null, text: "", why: "no integral action" });
+  assert.equal(figure("Tf", entry).value, 0.2);
+  const beyond = make("b", 4.5, 1, {
+    optimum_at_Ms: { IAE: null, excess_percent: null, why_null: { excess_percent: "Ms is 4.5." } },
+  });
+  assert.deepEqual(figure("excess", beyond), { value: null, text: "", why: "Ms is 4.5." });
+  assert.equal(figure("load_IAE", result.controllers[2]!).why, "The loop is unstable.");
+  assert.equal(
+    figure(
+      "gain_margin",
+      make("c", 1.2, 1, {
+        robustness: {
+          ...robustness,
+          Ms: 1.2,
+          gain_margin: null,
+          why_null: { gain_margin: "It is infinite." },
+        } as never,
+      }),
+    ).why,
+    "It is infinite.",
+  );
+  assert.equal(columns.find((column) => column.id === "Ti")!.label, "Ti (min)");
+  assert.deepEqual([0, -1.1e-5, 0.5, 290.4, -3].map(excessText), ["0", "0", "+0.500", "+290", "−3.00"]);
+});
+
+test("the table as a file has every column, all digits, remarks and reasons", () => {
+  const table = leagueTable(leagueRows(result, 2), columns);
+  assert.deepEqual(table[0]!.slice(0, 4), ["rank", "method", "title", "Kp"]);
+  assert.equal(table.length, 7);
+  assert.ok(table.every((row) => row.length === table[0]!.length));
+  const at = table[0]!.indexOf("Ms");
+  assert.deepEqual(
+    table.slice(1).map((row) => row[at]),
+    [1.4, 1.3, 1.2, 2.5, null, null],
+  );
+  assert.equal(table[6]!.at(-1), "It needs an integrating plant.");
+  assert.match(csvText(table), /,"refused \(PI\)"|,refused \(PI\),/);
+  assert.equal(notesSummary(result.controllers[2]!), "unstable, outside validity");
+});
+
+test("variants are told apart by what their titles end with", () => {
+  const named = (title: string): Entry => ({ method: "cohen_coon", title });
+  assert.deepEqual(entryNames([named("Cohen-Coon (PI)"), named("Cohen-Coon (PID)"), { method: "simc" }]), [
+    "cohen coon PI",
+    "cohen coon PID",
+    "simc",
+  ]);
+});
+
+test("at first the best is drawn beside today's settings, or the two best", () => {
+  assert.deepEqual(defaultOverlay({ ...result, ranking: [4, 5, 1, 0, 2] }), [4, 5]);
+  assert.deepEqual(defaultOverlay({ controllers: result.controllers.slice(0, 5), ranking: [4, 1, 0, 2] }), [1, 4]);
+});
+
+test("the table's address keeps its order and its chosen rows", () => {
+  for (const hash of ["#/jobs/a1/compare", "#/jobs/a1/compare?sort=-Ms&rows=0.12", "#/methods", "#/methods/cohen_coon"])
+    assert.equal(formatRoute(parseRoute(hash)), hash);
+  assert.deepEqual(parseRoute("#/jobs/a1/compare?rows=x"), { screen: "compare", job: "a1", sort: "", rows: null });
+});
+
+test("a comparison of all methods is tuned again as the variants that it ran", () => {
+  const ran: Result = {
+    controllers: [
+      { method: "simc", options: { controller: "PI", tau_c: null } },
+      { method: "rimc", options: { Ms: 1.6 } },
+      { method: "baseline" },
+    ],
+  };
+  const request = byAllMethods({ plant: { type: "fopdt" }, tune: [{ method: "robust" }] });
+  assert.deepEqual(request.tune, [{ method: "all" }]);
+  assert.deepEqual(withLambda(request, ran, 1, 7).tune, [
+    { method: "simc", controller: "PI" },
+    { method: "rimc", lambda: 7, curve: true },
+  ]);
+});
+
+test("a sparkline is one line in its box, whatever the data", () => {
+  const scale = { x: [0, 10] as const, y: [0, 1] as const, level: 1 };
+  for (const y of [[0, 1, 0.5], [null, 1, 1e30], [0, NaN, 1], []]) {
+    const tree = spark({ name: "", look: 1, x: [0, 5, 10], y }, scale);
+    const paths = (tree.children ?? []).map((child) => String((child as { attributes: { d: string } }).attributes.d));
+    assert.equal(paths.length, 2);
+    for (const path of paths) assert.doesNotMatch(path, /NaN|Infinity/);
+  }
+});

@@ -143,6 +143,8 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<EvaluateRequest>(decoded);
 
     EvaluateAnswer answer;
+    std::optional<Tradeoffs> tradeoffs;
+    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal_plant(*request.plant));
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
         if (control.stop.stop_requested())
             return refusal(to_problem({ErrorKind::timeout,
@@ -152,8 +154,10 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
         const double start = now(control);
         auto evaluation = evaluate(*request.plant, request.controllers[i], request.evaluate);
         if (!evaluation) return refusal(at_controller(evaluation.error(), i));
+        TuningEntry& entry = answer.controllers.emplace_back();
+        if (tradeoffs) entry.tradeoff = tradeoffs->of(request.controllers[i], std::nullopt);
         evaluation->compute_ms = now(control) - start;
-        answer.controllers.emplace_back().evaluation = std::move(*evaluation);
+        entry.evaluation = std::move(*evaluation);
     }
     Writer out;
     evaluate_answer_contract().write(answer, out);

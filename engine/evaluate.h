@@ -32,6 +32,7 @@ struct EvaluateOptions {
     std::optional<NoiseOptions> noise;
     double rank_Ms = 2.0;               ///< entries with Ms above it rank last
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
+    bool tradeoff = false;              ///< entries tell the trade-off between servo and regulation (tradeoff_entry.h)
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.

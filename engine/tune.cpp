@@ -112,11 +112,12 @@ private:
     std::optional<Error> state_problem();
     Expected<TunedController> tuned_with(const Planned& planned, const RunControl& control) const;
     TuningEntry entry(const Planned& planned, double from, double to);
-    TuningEntry baseline() const;
     bool tune_rows(const std::vector<Planned>& planned, double from, double to);
     bool wants_optima() const;
     void compare_with_optima(double from);
+    TuningEntry baseline();
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const;
+    void add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule);
     Error placed(Error error, const std::string& where) const;
     void keep_best(const TuningEntry& entry);
     RunControl share(double from, double to) const;
@@ -132,6 +133,7 @@ private:
     std::optional<TuningProblem> problem_;   // what methods work on, unless
     std::optional<MeasuredPlant> measured_;  // the plant is known by points alone
     std::optional<BestSoFar> best_;
+    std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
     TuningResult result_;
 };
 
@@ -211,6 +213,19 @@ void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::v
     entry.evaluation = std::move(*evaluation);
 }
 
+// Of a servo/regulation rule always, of other controllers where asked for.
+void Run::add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule) {
+    if (!entry.evaluation || !(rule || request_.evaluate.tradeoff)) return;
+    if (!tradeoffs_) tradeoffs_.emplace(measured_ ? std::nullopt : std::optional(family_.nominal()));
+    const Controller& controller = entry.evaluation->controller;
+    if (!rule) {
+        entry.tradeoff = tradeoffs_->of(controller, entry.reduced_model);
+        return;
+    }
+    entry.tradeoff = tradeoffs_->of_rule(controller, *rule);
+    if (const auto warning = missed_degradation(*rule, *entry.tradeoff)) entry.evaluation->warnings.push_back(*warning);
+}
+
 std::optional<Error> Run::state_problem() {
     const Plant& nominal = family_.nominal();
     auto linear = LinearPlant::make(nominal);
@@ -247,6 +262,7 @@ TuningEntry Run::entry(const Planned& planned, double from, double to) {
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, answered(*tuned), tuned->warnings);
+    add_tradeoff(entry, tuned->arrieta);
     if (entry.evaluation) {
         warn_of_region(*entry.evaluation, planned, result_.model && !held_);
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
@@ -256,13 +272,14 @@ TuningEntry Run::entry(const Planned& planned, double from, double to) {
     return entry;
 }
 
-TuningEntry Run::baseline() const {
+TuningEntry Run::baseline() {
     TuningEntry entry;
     entry.method = "baseline";
     entry.title = "Baseline";
     entry.source = "the settings given in the request";
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
+    add_tradeoff(entry, std::nullopt);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))

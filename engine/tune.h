@@ -10,6 +10,7 @@
 #include "engine/optimum_at_ms.h"
 #include "engine/progress.h"
 #include "engine/rimc_entry.h"
+#include "engine/tradeoff_entry.h"
 #include "engine/tuning/method.h"
 
 namespace tunewright {
@@ -39,6 +40,7 @@ struct TuningEntry {
     std::optional<CostSurface> surface;
     std::optional<RimcEntry> rimc;
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
+    std::optional<TradeoffEntry> tradeoff;
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 };

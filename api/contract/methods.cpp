@@ -28,6 +28,33 @@ std::string unknown_option(const std::string& name, const std::string& owner, co
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix,
                   const std::string& owner, MethodOptions& target, Reader& reader);
 
+// A word from the option's list.
+void read_word(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
+               Reader& reader) {
+    std::vector<std::pair<std::string, std::string>> words;
+    for (const std::string& word : option.choices) words.emplace_back(word, word);
+    const std::size_t before = reader.count();
+    std::string content;
+    choice(words).read(value, content, reader);
+    if (reader.clean_since(before)) target.set(path, content);
+}
+
+void read_number_or_word(const Json& value, const OptionDescription& option, const std::string& path,
+                         MethodOptions& target, Reader& reader) {
+    NumberRule rule = rule_of(option);
+    rule.cure = "The word " + listed(option.choices) + " is possible too.";
+    if (value.is_number()) {
+        if (const auto number = read_number(value, rule, reader)) target.set(path, *number);
+        return;
+    }
+    const auto is_word = [&](const std::string& word) { return value == word; };
+    if (std::any_of(option.choices.begin(), option.choices.end(), is_word))
+        return target.set(path, value.get<std::string>());
+    const std::string meant = value.is_string() ? nearest(value.get<std::string>(), option.choices) : "";
+    reader.fault(wrong_kind(value, "a number or the word " + listed(option.choices), reader) +
+                 (meant.empty() ? "" : " Did you mean " + meant + "?"));
+}
+
 void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
                  Reader& reader) {
     switch (option.type) {
@@ -49,15 +76,8 @@ void read_option(const Json& value, const OptionDescription& option, const std::
             if (reader.clean_since(before)) target.set(path, content);
             return;
         }
-        case OptionType::choice: {
-            std::vector<std::pair<std::string, std::string>> words;
-            for (const std::string& word : option.choices) words.emplace_back(word, word);
-            const std::size_t before = reader.count();
-            std::string content;
-            choice(words).read(value, content, reader);
-            if (reader.clean_since(before)) target.set(path, content);
-            return;
-        }
+        case OptionType::choice: return read_word(value, option, path, target, reader);
+        case OptionType::number_or_word: return read_number_or_word(value, option, path, target, reader);
         case OptionType::object:
             if (!value.is_object())
                 return reader.fault(wrong_kind(value, "an object with " + listed(names_of(option.fields)), reader));
@@ -168,6 +188,10 @@ Json option_schema(const OptionDescription& option) {
             break;
         case OptionType::boolean: schema = {{"type", "boolean"}}; break;
         case OptionType::choice: schema = {{"type", "string"}, {"enum", option.choices}}; break;
+        case OptionType::number_or_word:
+            schema = {{"oneOf", Json::array({number_schema(rule_of(option)),
+                                             Json{{"type", "string"}, {"enum", option.choices}}})}};
+            break;
         case OptionType::object:
             schema = options_schema(option.fields);
             if (option.at_most_fields > 0) schema["maxProperties"] = option.at_most_fields;

@@ -177,6 +177,8 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
             .field("points", &EvaluateOptions::points, points(), "Points of each trace: 0 (no traces) or 2 to 20000.")
             .field("actuator", &EvaluateOptions::actuator, maybe(object(actuator_contract())), "Limits of u.")
             .field("noise", &EvaluateOptions::noise, maybe(object(noise_contract())), "Measurement noise.")
+            .field("tradeoff", &EvaluateOptions::tradeoff, boolean(),
+                   "Also tell each controller's trade-off between set points and loads.")
             .field(
                 "rank_limits",
                 [](const Json& value, EvaluateOptions& options, Reader& reader) {

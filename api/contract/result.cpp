@@ -5,9 +5,10 @@
 #include "api/contract/evaluation.h"
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
-#include "api/contract/plant.h"
 #include "api/contract/optimum_at_ms.h"
+#include "api/contract/plant.h"
 #include "api/contract/rimc.h"
+#include "api/contract/tradeoff.h"
 
 namespace tunewright::api {
 namespace {
@@ -111,6 +112,8 @@ const Description<TuningEntry>& entry_contract() {
                 "Of the method rimc: what its design achieves on the model.");
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");
+        d.field("tradeoff", &TuningEntry::tradeoff, maybe(answer(tradeoff_contract())),
+                "Servo against regulation: of the methods arrieta_*, and of any controller with evaluate.tradeoff.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },

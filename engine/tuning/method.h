@@ -11,6 +11,7 @@
 #include "engine/plant/linear_plant.h"
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
+#include "engine/tuning/arrieta_report.h"
 #include "engine/tuning/options.h"
 #include "engine/tuning/rimc_report.h"
 #include "engine/warning.h"
@@ -31,6 +32,7 @@ struct TunedController {
     std::vector<Warning> warnings;
     std::optional<CostSurface> surface;
     std::optional<RimcReport> rimc;
+    std::optional<ArrietaReport> arrieta;
     bool partial = false;  ///< stopped early: the best feasible design so far
 };
 

@@ -10,7 +10,14 @@
 
 namespace tunewright {
 
-enum class OptionType { number, integer, boolean, choice, object };
+enum class OptionType {
+    number,
+    integer,
+    boolean,
+    choice,
+    object,
+    number_or_word,  ///< a number within the limits, or one of `choices`
+};
 
 struct OptionDescription {
     std::string name;  ///< as in JSON, e.g. "Ms"
@@ -19,7 +26,7 @@ struct OptionDescription {
     std::string unit = {};  ///< "", "time", "u/y", ...
     std::optional<std::variant<bool, double, std::string>> default_value = {};
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};  ///< of a number
-    std::vector<std::string> choices = {};                                     ///< of a choice
+    std::vector<std::string> choices = {};                                     ///< words of a choice
     std::vector<OptionDescription> fields = {};                                ///< of an object
     int at_most_fields = 0;  ///< of an object: 0, any number may be given
 };

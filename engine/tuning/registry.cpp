@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/tuning/amigo.h"
+#include "engine/tuning/arrieta.h"
 #include "engine/tuning/imc.h"
 #include "engine/tuning/lambda.h"
 #include "engine/tuning/method.h"
@@ -13,13 +14,8 @@ namespace tunewright {
 
 const std::vector<TuningMethod>& method_registry() {
     static const std::vector<TuningMethod> methods = {
-        robust_method(),
-        rimc_method(),
-        amigo_method(),
-        simc_method(),
-        lambda_method(),
-        imc_method(),
-        ziegler_nichols_step_method(),
+        robust_method(), rimc_method(),   arrieta_ms_method(), arrieta_degradation_method(),  amigo_method(),
+        simc_method(),   lambda_method(), imc_method(),        ziegler_nichols_step_method(),
     };
     return methods;
 }

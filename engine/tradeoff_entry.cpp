@@ -16,7 +16,7 @@ constexpr const char* kOnlyPoints =
 constexpr const char* kNonlinear =
     "The indices are for unit steps, and under a nonlinear controller the response changes with the size of the step.";
 constexpr double kMissed = 0.03;  // of a degradation: what the table keeps to for L/T from 0.1 to 1.5
-constexpr int kMsPoints = 13;
+constexpr int kMsPoints = 13;     // 1.4, 1.45 ... 2
 
 void add_point(std::vector<ProfilePoint>& points, double level, const ArrietaConstants& constants, const Fopdt& model,
                const TradeoffScale& scale) {
@@ -29,7 +29,7 @@ void add_point(std::vector<ProfilePoint>& points, double level, const ArrietaCon
 TradeoffProfile profile_on(const Fopdt& model, const TradeoffScale& scale) {
     TradeoffProfile profile;
     for (int i = 0; i < kMsPoints; ++i) {
-        const double Ms = std::lerp(kArrietaLowestMs, kArrietaHighestMs, i / (kMsPoints - 1.0));
+        const double Ms = (28 + i) / 20.0;
         add_point(profile.by_Ms, Ms, arrieta_equation_9(Ms, ArrietaC3::refitted), model, scale);
     }
     for (const ArrietaLevel& column : arrieta_degradation_levels())
@@ -104,6 +104,7 @@ TradeoffEntry Tradeoffs::of(const Controller& controller, const std::optional<Pl
 TradeoffEntry Tradeoffs::of_rule(const Controller& controller, const ArrietaReport& report) {
     TradeoffEntry entry = against(report.model, controller);
     entry.constants = report.constants;
+    entry.Ms_design = report.Ms_design;
     if (report.profile) entry.profile = profile_on(report.model, scales(report.model).on_model);
     return entry;
 }

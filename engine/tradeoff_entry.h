@@ -30,6 +30,7 @@ struct TradeoffProfile {
 struct TradeoffEntry {
     std::optional<Plant> fopdt;            ///< the first-order model, where there is one
     std::optional<std::string> constants;  ///< of the methods arrieta_*: where the rule's constants come from
+    std::optional<double> Ms_design;       ///< likewise: the Ms of Table 1's column or of Eq. 9
     TradeoffFigures model;                 ///< on `fopdt`
     TradeoffFigures plant;                 ///< on the (nominal) plant, against the model's reference controllers
     std::optional<TradeoffProfile> profile;

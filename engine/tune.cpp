@@ -292,8 +292,7 @@ void Run::keep_best(const TuningEntry& entry) {
     const auto& [robustness, load] = std::tie(entry.evaluation->robustness, entry.evaluation->performance.load);
     if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
     if (best_ && best_->load_IAE <= *load.IAE) return;
-    best_ =
-        BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
+    best_ = BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
 }
 
 // Reasons that several methods share are told once.

@@ -87,6 +87,8 @@ const Description<TradeoffEntry>& tradeoff_contract() {
                 "The first-order model that the optima are of.")
             .field("constants", &T::constants, maybe(only_answered(text(1000))),
                    "Of the methods arrieta_*: the table and column, or the equation, that the settings are from.")
+            .field("Ms_design", &T::Ms_design, maybe(only_answered(number())),
+                   "Of the methods arrieta_*: the Ms of Table 1's column or of Eq. 9, where they have one.")
             .field("model", &T::model, answer(figures_contract()), "On the first-order model.")
             .field("plant", &T::plant, answer(figures_contract()), "On the plant, with the model's optima run on it.")
             .field("profile", &T::profile, maybe(answer(profile_contract())), "With the option profile.");

@@ -57,6 +57,7 @@ Expected<TunedController> answer(const TuningProblem& problem, const ReducedMode
 ArrietaReport report_on(const ReducedModel& model, const MethodOptions& options) {
     return {.model = {.K = model.K, .T = model.T1, .L = model.L},
             .constants = {},
+            .Ms_design = {},
             .degradation = {},
             .profile = options.boolean("profile").value_or(false)};
 }
@@ -73,6 +74,7 @@ Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const MethodO
     if (!(Ms >= kArrietaLowestMs && Ms <= kArrietaHighestMs))
         return Error{ErrorKind::invalid_argument, "Ms",
                      "Ms is " + text(Ms) + "; this rule has settings for 1.4 to 2, and for \"free\"."};
+    report.Ms_design = Ms;
     if (const ArrietaConstants* column = arrieta_column(arrieta_Ms_levels(), Ms)) {
         report.constants = "Table 1, column Ms = " + text(Ms);
         return answer(problem, *model, *column, report, {});
@@ -85,6 +87,7 @@ Expected<TunedController> tune_exactly(const TuningProblem& problem, const Reduc
                                        ArrietaReport report, std::vector<Warning> warnings, const RunControl& control) {
     const auto Ms = Ms_of_degradation(report.model, degradation, control.stop);
     if (!Ms) return Ms.error();
+    report.Ms_design = *Ms;
     report.constants = "Eq. 9 at Ms = " + text(*Ms) + ", whose degradation on the model is " + text(degradation) +
                        ", with " + kCorrectedB3 +
                        " and c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic through Table 1)";

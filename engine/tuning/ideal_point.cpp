@@ -10,7 +10,7 @@
 #include "engine/plant/linear_plant.h"
 #include "engine/simulation/indices.h"
 #include "engine/simulation/linear_response.h"
-#include "engine/tuning/local_minimum.h"
+#include "engine/identification/local_minimum.h"
 
 namespace tunewright {
 namespace {

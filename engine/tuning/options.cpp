@@ -46,6 +46,9 @@ std::optional<std::string> value_misfit(const OptionDescription& option, const O
         case OptionType::integer:
             if (number) return number_misfit(option, *number);
             return option.name + " is " + shown(value) + "; it must be a number.";
+        case OptionType::number_or_word:
+            if (number) return number_misfit(option, *number);
+            return option.name + " is " + shown(value) + "; it must be a number or " + listed(option.choices) + ".";
         case OptionType::boolean:
             if (std::holds_alternative<bool>(value)) return std::nullopt;
             return option.name + " is " + shown(value) + "; it must be true or false.";

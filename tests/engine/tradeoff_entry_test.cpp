@@ -1,0 +1,160 @@
+// The trade-off between servo and regulation of any controller: what the optima are, how figures scale, what is empty.
+#include "engine/tradeoff_entry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/tune.h"
+
+namespace tunewright {
+namespace {
+
+using testing::HasSubstr;
+
+const ParallelPid kPi{.Kp = 0.5, .Ki = 0.4};
+const char* const kNames[] = {"J_r", "J_d", "J_rd", "J_r_opt", "J_d_opt", "I_perf", "Deg", "Ms"};
+
+double iae(const Fopdt& model, const Pid& pid, bool load) {
+    EvaluateOptions options;
+    options.points = 0;
+    const auto e = evaluate(model, pid, options);
+    const auto& value = load ? e->performance.load.IAE : e->performance.setpoint.IAE;
+    return value.value_or(HUGE_VAL);
+}
+
+Pid moved(Pid pid, const std::array<double, 3>& by) {
+    pid.Kp *= std::exp(by[0]);
+    pid.Ti *= std::exp(by[1]);
+    pid.Td *= std::exp(by[2]);
+    pid.filter.Tf = pid.Td / 10;
+    return pid;
+}
+
+// Between the tabulated starting points and at them.
+TEST(TradeoffOptima, NoControllerNearbyIsBetterByMoreThanOneInTenThousand) {
+    std::mt19937 random(7);
+    std::normal_distribution<double> step(0, 0.02);
+    for (const double tau : {0.03, 0.15, 0.5, 0.9, 1.6, 2.7, 9.0, 30.0}) {
+        const Fopdt model{2, 3, 3 * tau};
+        const auto ideal = ideal_controllers(model);
+        ASSERT_TRUE(ideal);
+        for (const bool load : {false, true}) {
+            const Pid& best = load ? ideal->load : ideal->servo;
+            const double J = iae(model, best, load);
+            for (int i = 0; i < 60; ++i)
+                EXPECT_GT(iae(model, moved(best, {step(random), step(random), step(random)}), load), J * (1 - 1e-4))
+                    << tau << (load ? " load" : " servo");
+        }
+    }
+}
+
+TEST(TradeoffOptima, WhereThereIsNoneTheErrorSaysWhy) {
+    EXPECT_THAT(ideal_controllers(Fopdt{1, 1, 0}).error().message, HasSubstr("no dead time"));
+    EXPECT_THAT(ideal_controllers(Fopdt{1, -1, 1}).error().message, HasSubstr("stable first-order"));
+    EXPECT_THAT(ideal_controllers(Fopdt{1, 0.01, 1}).error().message, HasSubstr("up to 50"));
+    EXPECT_TRUE(ideal_controllers(Fopdt{1, 1, 1e-6}));
+}
+
+TEST(Tradeoffs, AreTimesWhateverTheGain) {
+    const Fopdt unit{1, 1, 0.5}, other{-20, 60, 30};
+    const auto a =
+        Tradeoffs(unit).of(Pid{.Kp = 0.9, .Ti = 1.1, .Td = 0.1, .filter = {FilterType::derivative, 0.01}}, {});
+    const auto b =
+        Tradeoffs(other).of(Pid{.Kp = -0.045, .Ti = 66, .Td = 6, .filter = {FilterType::derivative, 0.6}}, {});
+    EXPECT_NEAR(*b.model.J_r / 60 / *a.model.J_r, 1, 1e-6);
+    EXPECT_NEAR(*b.model.J_d / 60 / *a.model.J_d, 1, 1e-6);
+    EXPECT_NEAR(*b.model.J_rd / 60 / *a.model.J_rd, 1, 1e-6);
+    EXPECT_NEAR(*b.model.Deg, *a.model.Deg, 1e-6);
+    EXPECT_NEAR(*b.model.Ms / *a.model.Ms, 1, 1e-8);
+}
+
+TEST(Tradeoffs, OnAFirstOrderPlantModelAndPlantAreTheSame) {
+    const auto entry = Tradeoffs(Fopdt{2, 3, 1}).of(kPi, {});
+    EXPECT_EQ(*entry.model.J_rd, *entry.plant.J_rd);
+    EXPECT_GT(*entry.model.J_r, *entry.model.J_r_opt);
+    EXPECT_GT(*entry.model.J_d, *entry.model.J_d_opt);
+    EXPECT_NEAR(*entry.model.J_rd,
+                std::hypot(*entry.model.J_r - *entry.model.J_r_opt, *entry.model.J_d - *entry.model.J_d_opt), 1e-12);
+    EXPECT_NEAR(*entry.model.Deg + *entry.model.I_perf, 1, 1e-15);
+}
+
+TEST(Tradeoffs, TheSteppedSizesOfTheEvaluationDoNotMatter) {
+    TuningRequest request;
+    request.plant = Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3};
+    request.tune = {MethodRequest{.method = "simc", .options = {}}};
+    request.baseline = Pid{.Kp = 0.5, .Ti = 8};
+    request.evaluate.points = 0;
+    request.evaluate.tradeoff = true;
+    const auto unit = tune(request, {});
+    request.evaluate.setpoint_step = -5;
+    request.evaluate.load_step = 0.1;
+    request.evaluate.horizon = 3;
+    const auto other = tune(request, {});
+    for (std::size_t i = 0; i < 2; ++i) {
+        ASSERT_TRUE(unit->controllers[i].tradeoff) << i;
+        EXPECT_EQ(*unit->controllers[i].tradeoff->plant.J_rd, *other->controllers[i].tradeoff->plant.J_rd);
+    }
+    // SIMC's PID works on the second-order plant itself; the trade-off is about a first-order model of it.
+    EXPECT_TRUE(std::holds_alternative<Fopdt>(*unit->controllers[0].tradeoff->fopdt));
+    request.evaluate.tradeoff = false;
+    EXPECT_FALSE(tune(request, {})->controllers[0].tradeoff);
+}
+
+void expect_empty(const TradeoffFigures& figures, const char* words) {
+    EXPECT_FALSE(figures.J_r || figures.J_d || figures.J_rd || figures.J_r_opt || figures.J_d_opt || figures.I_perf ||
+                 figures.Deg || figures.Ms);
+    for (const char* name : kNames) {
+        ASSERT_TRUE(figures.why_null.contains(name)) << name;
+        EXPECT_THAT(figures.why_null.at(name), HasSubstr(words)) << name;
+    }
+}
+
+TEST(Tradeoffs, SayWhyTheyAreEmpty) {
+    expect_empty(Tradeoffs(std::nullopt).of(kPi, {}).model, "frequency response");
+    expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).plant, "integrating plant");
+    expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).model, "integrating plant");
+    expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 9, .Ti = 1}, {}).plant, "not stable");
+    expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(Npid{.Kp = 0.5, .Ti = 1}, {}).plant, "nonlinear");
+
+    const auto no_integral = Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 0.5}, {}).plant;
+    EXPECT_TRUE(no_integral.Ms && no_integral.J_r_opt && no_integral.J_d_opt);
+    for (const char* name : {"J_r", "J_d", "J_rd", "I_perf", "Deg"})
+        EXPECT_THAT(no_integral.why_null.at(name), HasSubstr("Without integral action")) << name;
+}
+
+TEST(Tradeoffs, WithoutAModelThePlantKeepsItsOwnFigures) {
+    const auto unstable = Tradeoffs(Fopdt{-1, -10, 1}).of(Pid{.Kp = 4, .Ti = 20}, {});
+    EXPECT_TRUE(unstable.plant.J_r && unstable.plant.J_d && unstable.plant.Ms);
+    for (const char* name : {"J_rd", "J_r_opt", "J_d_opt", "I_perf", "Deg"})
+        EXPECT_THAT(unstable.plant.why_null.at(name), HasSubstr("stable first-order")) << name;
+
+    const auto oscillating = Tradeoffs(OscillatorySopdt{1, 1, 0, 0.1}).of(ParallelPid{.Ki = 0.02}, {});
+    expect_empty(oscillating.model, "undamped");
+
+    const auto tiny = Tradeoffs(Fopdt{1, 1, 0.03}).of(kPi, {}).model;
+    EXPECT_TRUE(tiny.J_rd && !tiny.I_perf && !tiny.Deg);
+    EXPECT_THAT(tiny.why_null.at("I_perf"), HasSubstr("Td < 0"));
+}
+
+TEST(Tradeoffs, WarnWhereTable2MissesItsLevel) {
+    const auto entry_for = [](double L) {
+        TuningRequest request;
+        request.plant = Fopdt{1, 1, L};
+        request.tune = {MethodRequest{.method = "arrieta_degradation", .options = {}}};
+        request.tune[0].options.set("degradation", 0.45);
+        request.evaluate.points = 0;
+        return tune(request, {})->controllers.front();
+    };
+    const auto warned = [](const TuningEntry& entry) {
+        return std::ranges::any_of(entry.evaluation->warnings,
+                                   [](const Warning& w) { return w.code == "degradation-missed"; });
+    };
+    EXPECT_TRUE(warned(entry_for(2)));
+    EXPECT_FALSE(warned(entry_for(0.5)));
+}
+
+}  // namespace
+}  // namespace tunewright

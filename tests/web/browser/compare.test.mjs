@@ -49,8 +49,15 @@ test("every method of the service is a row, ranked as the service ranks, with th
         `${id} has no row`,
       );
     const order = result.ranking.map((index) => result.controllers[index]);
-    const name = (entry) => (entry.method === "baseline" ? "Today's settings" : entry.title);
-    assert.deepEqual(await column(page, "Method"), order.map(name));
+    const links = table(page).locator("tbody:not(.refused) th a");
+    const titles = await links.evaluateAll((list) =>
+      list.map((link) => link.title.replace(": its settings and verdict", "")),
+    );
+    assert.deepEqual(
+      titles,
+      order.map((entry) => entry.title),
+    );
+    assert.ok((await links.allInnerTexts()).includes("Today's settings"));
     const limited = order.filter((entry) => entry.robustness.stable && entry.robustness.Ms <= 2);
     const IAE = (await column(page, "IAE load")).map(Number);
     assert.deepEqual(
@@ -213,6 +220,60 @@ test("every subject leads to its comparison: Design, an example, a recorded test
     await page.getByRole("button", { name: "Compare all methods on this record" }).click();
     await table(page).waitFor();
     assert.ok((await jobOf(page)).result.model);
+  });
+});
+
+const tradeoff = (page) => page.getByRole("region", { name: "Set point against load", exact: true });
+const tradeoffCell = async (page, label, at) =>
+  Number(
+    (
+      await tradeoff(page)
+        .locator("table.figures tr")
+        .filter({ has: page.locator("th", { hasText: label }) })
+        .first()
+        .locator("td")
+        .nth(at)
+        .innerText()
+    ).replace("−", "-"),
+  );
+
+test("the trade-off of any chosen rows is computed on request, with the rule's curves on this plant", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    const answered = page.waitForResponse((response) => response.url().endsWith("/v1/evaluate"));
+    await tradeoff(page).getByRole("button", { name: "Compute the trade-off" }).click();
+    const { controllers } = await (await answered).json();
+    await tradeoff(page).getByRole("heading", { name: "What an allowed degradation gives" }).waitFor();
+    const today = controllers.at(-1).tradeoff.plant;
+    const columns = await tradeoff(page).locator("thead").first().locator("th").allInnerTexts();
+    const at = columns.indexOf("today");
+    for (const [label, value] of [
+      [/^J_r \(s\)/, today.J_r],
+      [/^J_rd \(s\)/, today.J_rd],
+      [/^Deg/, today.Deg],
+      [/^Ms/, today.Ms],
+    ])
+      assert.equal(await tradeoffCell(page, label, at), asShown(value), String(label));
+    const labels = await page.getByRole("img", { name: "Servo against regulation" }).locator("text").allTextContents();
+    assert.ok(labels.includes("today") && labels.includes("best of both"), labels.join());
+    const curves = page.getByRole("img", { name: "Degradation against Ms" }).locator("path[stroke-linejoin=round]");
+    assert.equal(await curves.count(), 2);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
+test("Design shows the trade-off of an entry that brings it", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await page.getByText(/^Compare with/).click();
+    await page.getByRole("checkbox", { name: /arrieta_ms$/ }).check();
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByRole("button", { name: "arrieta ms", exact: true }).click();
+    await tradeoff(page).getByRole("heading", { name: "Degradation against Ms" }).waitFor();
+    const entry = (await jobOf(page)).result.controllers.find((candidate) => candidate.method === "arrieta_ms");
+    assert.equal(await tradeoffCell(page, /^J_d \(s\)/, 0), asShown(entry.tradeoff.model.J_d));
+    assert.ok(await tradeoff(page).getByRole("button", { name: "Compute the trade-off" }).isHidden());
+    await page.getByRole("button", { name: "robust", exact: true }).click();
+    await tradeoff(page).getByRole("button", { name: "Compute the trade-off" }).waitFor();
   });
 });
 

@@ -9,6 +9,7 @@ import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import {
   excessText,
   leagueColumns,
+  leagueNames,
   leagueRows,
   leagueTable,
   notesSummary,
@@ -134,6 +135,20 @@ test("variants are told apart by what their titles end with", () => {
     "cohen coon PI",
     "cohen coon PID",
     "simc",
+  ]);
+});
+
+test("a row's name is its title with the variant; authors go where that leaves no two alike", () => {
+  const titled = (title: string): Entry => ({ method: "x", title });
+  assert.deepEqual(
+    leagueNames([titled("SIMC (Skogestad) (PI)"), titled("IMC (Liu and Gao)"), { method: "baseline" }]),
+    ["SIMC (PI)", "IMC (Liu and Gao)", "Today's settings"],
+  );
+  assert.deepEqual(leagueNames([titled("SIMC (A) (PI)"), titled("SIMC (B) (PI)"), titled("AMIGO"), titled("AMIGO")]), [
+    "SIMC (A) (PI)",
+    "SIMC (B) (PI)",
+    "AMIGO",
+    "AMIGO #2",
   ]);
 });
 

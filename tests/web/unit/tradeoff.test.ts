@@ -23,7 +23,7 @@ const profile: Tradeoff["profile"] = {
 const item = { name: "today", tradeoff: { model: figures(1.5, 3, 0.6, 1.3), profile } };
 
 test("the plane shows the rule's curves, the corner and the controller, all in view", () => {
-  const frame = tradeoffFrame([item, { name: "other", tradeoff: { plant: figures(4, 0.7, 0.1, 2) } }])!;
+  const frame = tradeoffFrame([item, { name: "other", tradeoff: { plant: figures(4, 0.7, 0.1, 2) } }], "s")!;
   const [pane] = frame.panes;
   assert.deepEqual(
     pane!.traces.map((trace) => [trace.name, trace.x.length, trace.parameter]),
@@ -47,10 +47,10 @@ test("degradation stands over the Ms that is reached, and every allowed level be
   const frame = degradationFrame([item])!;
   assert.deepEqual(frame.panes[0]!.traces[0]!.x, [2, 1.7, 1.4]);
   assert.deepEqual(frame.panes[0]!.traces[1]!.y, [0, 0.25, 0.55]);
-  const levels = levelsFrame([item])!;
+  const levels = levelsFrame([item], "s")!;
   assert.deepEqual(
     levels.panes.map((pane) => pane.y.label),
-    ["Deg", "J_rd", "Ms"],
+    ["Deg", "J_rd (s)", "Ms"],
   );
   assert.deepEqual(levels.panes[2]!.traces[0]!.x, [0, 0.25, 0.55]);
 });
@@ -58,10 +58,10 @@ test("degradation stands over the Ms that is reached, and every allowed level be
 test("without a profile only the controllers are drawn; without figures nothing is", () => {
   const bare = { name: "a", tradeoff: { model: { ...figures(2, 1, 0.3, 1.5), J_d: null } } };
   assert.equal(degradationFrame([bare]), null);
-  assert.equal(levelsFrame([bare]), null);
-  const frame = tradeoffFrame([bare])!;
+  assert.equal(levelsFrame([bare], "s"), null);
+  const frame = tradeoffFrame([bare], "s")!;
   assert.equal(frame.panes[0]!.traces.length, 0);
   assert.ok(!frame.panes[0]!.marks!.some((mark) => mark.kind === "point" && mark.label === "a"));
   assert.ok(frame.x.range!.every(Number.isFinite));
-  assert.equal(tradeoffFrame([{ name: "a", tradeoff: undefined }]), null);
+  assert.equal(tradeoffFrame([{ name: "a", tradeoff: undefined }], "s"), null);
 });

@@ -217,6 +217,8 @@ export interface Entry {
   rimc?: Rimc;
   optimum_at_Ms?: OptimumAtMs;
   tradeoff?: Tradeoff;
+  /** Of the nonlinear form: what can be said of errors of every size. */
+  nonlinear?: { statement?: string };
   compute_ms?: number;
   partial?: boolean;
 }

@@ -64,7 +64,8 @@ export function defaultOverlay(result: Result): number[] {
 }
 
 /** Looks: today's settings are always series 2, the others take 1, 3, 4 (and 2 if it is free) in order. */
-export function drawnEntries(result: Result, indices: number[], names = entryNames(result.controllers)): Drawn[] {
+export function drawnEntries(result: Result, indices: number[]): Drawn[] {
+  const names = entryNames(result.controllers);
   const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MOST_DRAWN);
   const hasToday = shown.some((index) => result.controllers[index]!.method === "baseline");
   const free: Look[] = hasToday ? [1, 3, 4] : [1, 2, 3, 4];

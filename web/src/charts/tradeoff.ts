@@ -3,7 +3,7 @@ import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
-import { formatNumber } from "../words/numbers.ts";
+import { formatNumber, withUnit } from "../words/numbers.ts";
 
 export interface TradeoffItem {
   name: string;
@@ -37,7 +37,7 @@ function rangeOf(traces: Trace[], marks: Mark[], axis: "x" | "y", margin: number
 }
 
 /** J_d over J_r: the rule's curve, the controllers, and the corner that none can reach with both at once. */
-export function tradeoffFrame(items: TradeoffItem[]): Frame | null {
+export function tradeoffFrame(items: TradeoffItem[], time: string): Frame | null {
   const profile = profileOf(items);
   const known = items.map(figuresOf).find((figures) => figures !== undefined);
   if (!known) return null;
@@ -65,9 +65,13 @@ export function tradeoffFrame(items: TradeoffItem[]): Frame | null {
   return {
     title: "Servo against regulation",
     description: `${spoken.join(" ")} At best J_r is ${formatNumber(J_r_opt)}, J_d ${formatNumber(J_d_opt)}.`,
-    x: { kind: "linear", label: "J_r, set-point step", range: rangeOf(traces, marks, "x", 0.12) },
+    x: { kind: "linear", label: withUnit("J_r, set-point step", time), range: rangeOf(traces, marks, "x", 0.12) },
     panes: [
-      { y: { kind: "linear", label: "J_d, load step", range: rangeOf(traces, marks, "y", 0.12) }, traces, marks },
+      {
+        y: { kind: "linear", label: withUnit("J_d, load step", time), range: rangeOf(traces, marks, "y", 0.12) },
+        traces,
+        marks,
+      },
     ],
     ownLegend: true,
     link: "tradeoff-Ms",
@@ -110,7 +114,7 @@ export function degradationFrame(items: TradeoffItem[]): Frame | null {
 }
 
 /** What becomes of each degradation that one allows: the degradation itself, J_rd, Ms. */
-export function levelsFrame(items: TradeoffItem[]): Frame | null {
+export function levelsFrame(items: TradeoffItem[], time: string): Frame | null {
   const levels = profileOf(items)?.by_degradation ?? [];
   if (levels.length < 2) return null;
   const asked = column(levels, "degradation");
@@ -129,7 +133,10 @@ export function levelsFrame(items: TradeoffItem[]): Frame | null {
         y: { kind: "linear", label: "Deg" },
         traces: [reached, { name: "as allowed", look: "data", x: asked, y: asked }],
       },
-      { y: { kind: "linear", label: "J_rd" }, traces: [plain("reached", 1, levels, "degradation", "J_rd")] },
+      {
+        y: { kind: "linear", label: withUnit("J_rd", time) },
+        traces: [plain("reached", 1, levels, "degradation", "J_rd")],
+      },
       { y: { kind: "linear", label: "Ms" }, traces: [plain("reached", 1, levels, "degradation", "Ms")] },
     ],
     ownLegend: true,
@@ -159,13 +166,13 @@ export interface TradeoffRow {
   name: Exclude<keyof TradeoffFigures, "why_null">;
 }
 
-export const TRADEOFF_ROWS: TradeoffRow[] = [
-  { label: "J_r", meaning: "set-point step, normalised IAE", name: "J_r" },
-  { label: "J_d", meaning: "load step, normalised IAE", name: "J_d" },
-  { label: "J_rd", meaning: "both together, against the best of each", name: "J_rd" },
-  { label: "J_r at best", meaning: "if only the set point mattered", name: "J_r_opt" },
-  { label: "J_d at best", meaning: "if only the load mattered", name: "J_d_opt" },
-  { label: "I_perf", meaning: "optimality: 1 is the rule without a limit on Ms", name: "I_perf" },
-  { label: "Deg", meaning: "degradation, 1 − I_perf", name: "Deg" },
+export const tradeoffRows = (time: string): TradeoffRow[] => [
+  { label: withUnit("J_r", time), meaning: "IAE of a unit set-point step", name: "J_r" },
+  { label: withUnit("J_d", time), meaning: "IAE of a unit load step, over the plant's gain", name: "J_d" },
+  { label: withUnit("J_rd", time), meaning: "distance from the best of both", name: "J_rd" },
+  { label: withUnit("J_r at best", time), meaning: "if only the set point mattered", name: "J_r_opt" },
+  { label: withUnit("J_d at best", time), meaning: "if only the load mattered", name: "J_d_opt" },
+  { label: "I_perf", meaning: "J_rd of the rule without a limit on Ms, over this J_rd", name: "I_perf" },
+  { label: "Deg", meaning: "1 − I_perf: what robustness costs; negative is better than that rule", name: "Deg" },
   { label: "Ms", meaning: "peak of |S|", name: "Ms" },
 ];

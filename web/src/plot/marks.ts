@@ -29,6 +29,8 @@ const FONT = { "font-size": 12 };
 const MINUS = "−";
 const FAR = 20000;
 const SMALL_CIRCLE_PX = 36;
+/** About the width of a letter. */
+const GLYPH_PX = 6.4;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
 
@@ -227,7 +229,8 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
       }
       case "point": {
         const x = box.x.toPixel(mark.x);
-        const crowded = x > box.left + 0.75 * box.width;
+        const width = mark.label.length * GLYPH_PX + 6;
+        const crowded = x + width > right && x - box.left > right - x;
         return at(crowded ? x - 6 : x + 6, box.y.toPixel(mark.y) - 6, crowded ? "end" : "start");
       }
     }

@@ -86,16 +86,11 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     exportMenu.open = false;
     exportMenu.querySelector("summary")?.focus();
   });
+  const legend = h("div", { class: "legend-slot", hidden: !frame.ownLegend });
   const element = h(
     "section",
     { class: "card plot", "aria-labelledby": title.id },
-    h(
-      "header",
-      {},
-      title,
-      frame.ownLegend ? paneLegend(frame) : null,
-      h("div", { class: "tools" }, resetButton, tableButton, exportMenu),
-    ),
+    h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, tableButton, exportMenu)),
     description,
     svg,
     h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),
@@ -285,6 +280,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   const writeTexts = (): void => {
     title.textContent = frame.title;
     description.textContent = `${frame.description} ${KEYS}`;
+    if (frame.ownLegend) legend.replaceChildren(paneLegend(frame));
   };
   writeTexts();
 

@@ -14,15 +14,7 @@ import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/swatch.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
-import {
-  leagueColumns,
-  leagueNames,
-  leagueRows,
-  leagueTable as tableOf,
-  orderOf,
-  RANK_MS,
-  sortText,
-} from "../words/league.ts";
+import { leagueColumns, leagueRows, leagueTable as tableOf, orderOf, RANK_MS, sortText } from "../words/league.ts";
 import type { LeagueColumn } from "../words/league.ts";
 import { commonLimits } from "../words/limits.ts";
 import { unitNames } from "../words/numbers.ts";
@@ -109,7 +101,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   }
 
   function drawnNow(workspace: Workspace, result: Result): Drawn[] {
-    return drawnEntries(result, workspace.drawn ?? defaultOverlay(result), leagueNames(result.controllers));
+    return drawnEntries(result, workspace.drawn ?? defaultOverlay(result));
   }
 
   function choose(index: number, draw: boolean): void {
@@ -159,7 +151,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     plots.show("load", responses ? responseFrame("load", drawn, request) : null);
     plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
     plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
-    tradeoff.show(drawn, job.result?.model?.plant ?? request?.plant);
+    tradeoff.show(drawn, job.result?.model?.plant ?? request?.plant, unitNames(request?.units).time);
   }
 
   function showResult(job: Job, result: Result, workspace: Workspace): void {

@@ -156,7 +156,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showVerdict(verdict, job, result, names, selected, listed);
     settings.show(entries[selected]!, names[selected]!, units);
     showFigures(result, listed, drawn, names, units);
-    rimc.show(entries[selected]!, result.model?.plant ?? job.request?.plant, units);
+    const plant = result.model?.plant ?? job.request?.plant;
+    rimc.show(entries[selected]!, plant, units);
     model.hidden = !result.model;
     if (result.model && model.childElementCount === 0) model.replaceChildren(modelResult(result.model, units));
     showNotes(
@@ -166,7 +167,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     );
     showComputed(computed, result, entries[selected]!, names, units);
     legend.show(entries, listed, names, drawn, selected);
-    tradeoff.show([{ name: names[selected]!, entry: entries[selected]! }], result.model?.plant ?? job.request?.plant);
+    tradeoff.show([{ name: names[selected]!, entry: entries[selected]! }], plant, units.time);
     showPlots(job, result, drawn);
   }
 

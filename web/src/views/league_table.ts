@@ -91,7 +91,9 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     const line = h("span", { class: "line" });
     const sparks = (["load", "setpoint"] as const).map((signal) => ({ cell: h("td", { class: "spark" }), signal }));
     const first = h("td", { class: "pin first" }, h("label", { class: "draw" }, box, rank));
-    const title = entry.error ? name : h("a", { href: address(index), title: "Its settings and verdict" }, name);
+    const title = entry.error
+      ? name
+      : h("a", { href: address(index), title: `${entry.title ?? name}: its settings and verdict` }, name);
     const method = h("th", { scope: "row", class: "pin method-cell" }, title, line);
     const cells = entry.error
       ? [h("td", { class: "reason", colspan: columns.length + sparks.length + 1 }, reasonOf(entry))]
@@ -149,10 +151,11 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     }
   }
 
-  function draw(row: TableRow, look: Look | null): void {
+  /** `name`: what the plots call it. */
+  function draw(row: TableRow, look: Look | null, name: string): void {
     if (row.look === look) return;
     row.look = look;
-    row.line.replaceChildren(...(look === null ? [] : [swatch(look)]));
+    row.line.replaceChildren(...(look === null ? [] : [swatch(look), name]));
     row.element.classList.toggle("drawn", look !== null);
     for (const { cell, signal } of row.sparks) {
       const response = row.entry.responses?.[signal];
@@ -173,7 +176,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
         row.box.checked = item !== undefined;
         row.box.disabled = !drawable(row.entry) || (full && !item);
         row.box.title = full && !item ? `At most ${MOST_DRAWN} are drawn: take one away first.` : "";
-        draw(row, item?.look ?? null);
+        draw(row, item?.look ?? null, item?.name ?? "");
       }
     },
   };

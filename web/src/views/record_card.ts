@@ -64,13 +64,9 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       { class: "actions" },
       h("button", { type: "submit", class: "primary" }, "Identify this test"),
       h("button", { type: "button", onclick: () => events.onTune() }, "Tune at once"),
-    ),
-    h(
-      "div",
-      { class: "actions" },
       h(
         "button",
-        { type: "button", class: "quiet", onclick: () => events.onCompare() },
+        { type: "button", onclick: () => events.onCompare() },
         "Compare all methods",
         h("span", { class: "visually-hidden" }, " on this record"),
       ),

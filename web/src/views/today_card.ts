@@ -17,7 +17,7 @@ const FORMS = [
   ["ideal", "ideal"],
   ["parallel", "parallel"],
   ["series", "series"],
-  ["npid", "nonlinear (NPID)"],
+  ["npid", "nonlinear"],
 ] as const;
 
 export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {

@@ -7,7 +7,7 @@ import {
   levelsFrame,
   profileOf,
   tradeoffFrame,
-  TRADEOFF_ROWS,
+  tradeoffRows,
 } from "../charts/tradeoff.ts";
 import type { TradeoffItem } from "../charts/tradeoff.ts";
 import { h, uniqueId } from "../dom.ts";
@@ -16,13 +16,14 @@ import { DASH, formatNumber } from "../words/numbers.ts";
 
 export interface TradeoffCard {
   element: HTMLElement;
-  show(shown: { name: string; entry: Entry }[], plant: Plant | undefined): void;
+  show(shown: { name: string; entry: Entry }[], plant: Plant | undefined, time: string): void;
   dispose(): void;
 }
 
 export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard {
   let shown: { name: string; entry: Entry }[] = [];
   let plant: Plant | undefined;
+  let time = "s";
   // What was computed here, for as long as the page shows this job.
   const computed = new WeakMap<Entry, Tradeoff>();
   const profiles = new Map<string, Tradeoff["profile"]>();
@@ -41,7 +42,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
       h(
         "p",
         { class: "hint" },
-        "What a controller gives up: J_r and J_d are the errors of a set-point and a load step, beside the least that each can be alone; Deg is the share of performance paid for robustness (Arrieta et al.).",
+        "What a controller gives up: J_r and J_d are its errors after a set-point and a load step, beside the least that each could be alone. Deg is what its robustness costs. The curves are the tuning rule of Arrieta, Vilanova and Alfaro on this plant.",
       ),
       h("div", { class: "actions" }, button),
       trouble,
@@ -86,16 +87,17 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
     const list = items();
     const known = list.filter((item) => figuresOf(item));
     button.hidden = known.length === list.length && profileOf(known) !== null;
-    charts.show("plane", tradeoffFrame(known));
+    charts.show("plane", tradeoffFrame(known, time));
     charts.show("degradation", degradationFrame(known));
-    charts.show("levels", levelsFrame(known));
+    charts.show("levels", levelsFrame(known, time));
     table.hidden = known.length === 0;
-    table.replaceChildren(...(known.length > 0 ? [figuresTable(known)] : []));
+    table.replaceChildren(...(known.length > 0 ? [figuresTable(known, time)] : []));
   }
 
   return {
     element,
-    show(next, on) {
+    show(next, on, unit) {
+      time = unit;
       shown = next.filter(({ entry }) => entry.controller && !entry.error);
       plant = on;
       // Without a model of first order there is nothing to compare with.
@@ -110,7 +112,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 
 /** One column for each controller, two where its plant is not the model itself. */
-function figuresTable(items: TradeoffItem[]): HTMLElement {
+function figuresTable(items: TradeoffItem[], time: string): HTMLElement {
   const columns = items.flatMap(({ name, tradeoff }) => {
     const { model, plant } = tradeoff ?? {};
     if (!model || !plant || same(model, plant)) return [{ name, figures: model ?? plant }];
@@ -136,7 +138,7 @@ function figuresTable(items: TradeoffItem[]): HTMLElement {
     h(
       "tbody",
       {},
-      TRADEOFF_ROWS.map((row) =>
+      tradeoffRows(time).map((row) =>
         h(
           "tr",
           {},

@@ -1,6 +1,6 @@
 // The figures of an entry, in the order and with the names and units in which they are read.
 import type { Entry, WhyNull } from "../api/types.ts";
-import { formatNumber, product, quotient, withUnit } from "./numbers.ts";
+import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 import { percent } from "./verdict.ts";
 
@@ -31,7 +31,9 @@ const missing = (why: string): FigureValue => ({ text: "", why });
 /** A number of one of the entry's objects, with that object's reason where it is null. */
 function numeric(part: Part, name: string, absent: string): FigureValue {
   const value = (part as Record<string, unknown> | undefined)?.[name];
-  if (typeof value === "number" && Number.isFinite(value)) return { text: formatNumber(value), why: "" };
+  if (typeof value === "number" && Number.isFinite(value)) {
+    return { text: name.endsWith("_percent") ? formatPercent(value) : formatNumber(value), why: "" };
+  }
   return missing(part?.why_null?.[name] ?? absent);
 }
 

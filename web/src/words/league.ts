@@ -1,6 +1,6 @@
 // The league table of a comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
-import { formatNumber, product, quotient, withUnit } from "./numbers.ts";
+import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export interface LeagueRow {
@@ -50,13 +50,10 @@ function figureOf(part: Part, name: string, absent: string, format = (value: num
   return { value: null, text: "", why: part?.why_null?.[name] ?? absent };
 }
 
-/** A share below this is what rounding leaves. */
-const NO_PERCENT = 0.005;
-
 /** "+12.3"; the optimum itself, to what its search leaves open, is "0". */
 export function excessText(percent: number): string {
-  if (Math.abs(percent) < NO_PERCENT) return "0";
-  return percent > 0 ? `+${formatNumber(percent)}` : formatNumber(percent);
+  const text = formatPercent(percent);
+  return percent > 0 && text !== "0" ? `+${text}` : text;
 }
 
 const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
@@ -130,7 +127,7 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
       "Overshoot (%)",
       "of the set-point step",
       true,
-      of(setpoint, "overshoot_percent", NOT_GIVEN, (value) => formatNumber(value < NO_PERCENT ? 0 : value)),
+      of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent),
     ),
     column(
       "settling",
@@ -155,10 +152,14 @@ function filterTime(entry: Entry): LeagueFigure {
   return value === null ? { value, text: "", why: "no filter" } : { value, text: formatNumber(value), why: "" };
 }
 
-/** Names as the table writes them: the method's title with its variant. */
+/** Names as the table writes them: the method's title with its variant, without what stands in brackets before that. */
 export function leagueNames(entries: Entry[]): string[] {
-  const titles = entries.map((entry) =>
+  const full = entries.map((entry) =>
     entry.method === "baseline" ? "Today's settings" : entry.title || entry.method.replaceAll("_", " "),
+  );
+  const short = full.map((title) => title.replace(/ \([^()]*\)(?= \([^()]*\)$)/, ""));
+  const titles = short.map((title, index) =>
+    short.indexOf(title) === short.lastIndexOf(title) ? title : full[index]!,
   );
   return titles.map((title, index) => {
     const earlier = titles.slice(0, index).filter((other) => other === title).length;

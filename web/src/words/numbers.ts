@@ -17,6 +17,11 @@ export function formatNumber(value: number | null | undefined, digits = 3): stri
   return plain.replaceAll("-", MINUS);
 }
 
+/** A share below this is what rounding leaves. */
+const NO_PERCENT = 0.005;
+
+export const formatPercent = (value: number): string => formatNumber(Math.abs(value) < NO_PERCENT ? 0 : value);
+
 /** A parameter in running text: four digits at most, no trailing zeros. */
 export function formatParameter(value: number): string {
   const short = Number(value.toPrecision(4));

@@ -127,11 +127,12 @@ function limitSentences(entry: Entry, time: string): string[] {
 }
 
 function nonlinearSentences(entry: Entry): string[] {
-  return entry.controller?.form === "npid"
-    ? [
-        "Ms and all margins belong to its linear part, where errors are small against delta_r; the responses are those of these steps and change with their size.",
-      ]
-    : [];
+  if (entry.controller?.form !== "npid") return [];
+  const proof = entry.nonlinear?.statement;
+  return [
+    "Ms and all margins belong to its linear part, where errors are small against delta_r; the responses are those of these steps and change with their size.",
+    ...(proof ? [proof] : []),
+  ];
 }
 
 function toleranceSentences(entry: Entry, time: string): string[] {

@@ -1,7 +1,7 @@
 #include "engine/optimum_at_ms.h"
 
+#include <cmath>
 #include <string>
-#include <utility>
 
 #include "engine/number_text.h"
 
@@ -14,21 +14,18 @@ OptimumAtMs none(const std::string& reason) { return {{}, {}, {{"IAE", reason}, 
 
 }  // namespace
 
-RobustOptima::RobustOptima(TuningProblem problem, const EvaluateOptions& options)
-    : problem_(std::move(problem)), options_(options) {
-    problem_.family.reset();
+RobustOptima::RobustOptima(const TuningProblem& problem, const EvaluateOptions& options)
+    : problem_(problem), options_(options), front_(problem) {
     options_.points = 0;
     options_.noise.reset();
 }
 
-Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control) const {
-    MethodOptions limits;
-    limits.set("Ms", Ms);
-    limits.set("Mt", Ms);
-    const auto tuned = find_method("robust")->tune(problem_, limits, {control.stop, nullptr, nullptr});
-    if (!tuned) return tuned.error();
-    if (tuned->partial) return Error{ErrorKind::cancelled, "", "The job was stopped before this optimum was found."};
-    const auto evaluation = evaluate(problem_.plant, tuned->controller, options_);
+Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control) {
+    const auto design = front_.at(Ms, {control.stop, nullptr, nullptr});
+    if (!design) return design.error();
+    // To infinity and without limits the loop is linear, and the search has simulated it.
+    if (!options_.horizon && !options_.actuator) return design->load_IAE * std::abs(options_.load_step);
+    const auto evaluation = evaluate(problem_.plant, design->controller, options_);
     if (!evaluation) return evaluation.error();
     const auto& load = evaluation->performance.load;
     if (load.IAE) return *load.IAE;
@@ -42,10 +39,9 @@ OptimumAtMs RobustOptima::beside(const Evaluation& evaluation, const RunControl&
     if (!Ms) return none("The loop has no Ms, so there is nothing to compare at.");
     if (*Ms <= 1 || *Ms > kGreatestMs)
         return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(kGreatestMs) + ".");
-    auto at = known_.find(*Ms);
-    if (at == known_.end()) at = known_.emplace(*Ms, load_IAE_at(*Ms, control)).first;
-    if (!at->second) return none(at->second.error().message);
-    OptimumAtMs answer{*at->second, {}, {}};
+    const auto optimum = load_IAE_at(*Ms, control);
+    if (!optimum) return none(optimum.error().message);
+    OptimumAtMs answer{*optimum, {}, {}};
     if (const auto& IAE = evaluation.performance.load.IAE; IAE && *answer.IAE > 0)
         answer.excess_percent = 100 * (*IAE / *answer.IAE - 1);
     else

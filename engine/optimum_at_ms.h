@@ -1,13 +1,13 @@
 // How far a controller's load IAE lies above the least that a PID reaches at the same Ms.
 #pragma once
 
-#include <map>
 #include <optional>
 
 #include "engine/evaluate.h"
 #include "engine/expected.h"
 #include "engine/progress.h"
 #include "engine/tuning/method.h"
+#include "engine/tuning/robust.h"
 
 namespace tunewright {
 
@@ -18,20 +18,21 @@ struct OptimumAtMs {
     WhyNull why_null;
 };
 
-/// The optima of one plant, each computed once. Ms must lie in (1, 4]; elsewhere, and where there is no optimum, both
-/// figures are empty. Evaluated as `options` say (steps, horizon, actuator); limits hold on the nominal plant.
+/// The optima of one plant, each from its neighbours. Ms must lie in (1, 4]; elsewhere, and where there is no optimum,
+/// both figures are empty. Evaluated as `options` say (steps, horizon, actuator); limits hold on the nominal plant.
 class RobustOptima {
 public:
-    RobustOptima(TuningProblem problem, const EvaluateOptions& options);
+    /// `problem` must outlive this.
+    RobustOptima(const TuningProblem& problem, const EvaluateOptions& options);
 
     OptimumAtMs beside(const Evaluation& evaluation, const RunControl& control);
 
 private:
-    Expected<double> load_IAE_at(double Ms, const RunControl& control) const;
+    Expected<double> load_IAE_at(double Ms, const RunControl& control);
 
-    TuningProblem problem_;
+    const TuningProblem& problem_;
     EvaluateOptions options_;
-    std::map<double, Expected<double>> known_;
+    RobustFront front_;
 };
 
 }  // namespace tunewright

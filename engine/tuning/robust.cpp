@@ -119,31 +119,42 @@ void add_warnings(TunedController& result, const Problem& problem, const Point& 
                                       "): a smaller Ms or a longer filter time gives an ordinary PID."});
 }
 
-Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
-                                      const RunControl& control) {
-    const bool pid = pid_wanted(options);
+/// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
+Expected<Problem> nominal_problem(const TuningProblem& tuning, const MethodOptions& options) {
     if (tuning.linear.integrators() < 0)
         return Error{ErrorKind::unstable_plant, "",
                      "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
                      "controller without integral action."};
-    const auto filter = filter_rule(tuning, options, pid);
+    const auto filter = filter_rule(tuning, options, pid_wanted(options));
     if (!filter) return filter.error();
     Problem problem = make_problem(options, *filter);
     problem.plant = &tuning.linear;
     problem.sign = first_sign(tuning.linear);
+    return problem;
+}
+
+std::optional<Error> without_optimum(const Problem& problem) {
+    if (auto error = check_Mks(problem)) return error;
+    if (!has_no_finite_optimum(problem)) return std::nullopt;
+    return Error{ErrorKind::unbounded_optimum, "filter",
+                 "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "
+                 "dead time to stop it. "
+                 "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
+}
+
+Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
+                                      const RunControl& control) {
+    auto posed = nominal_problem(tuning, options);
+    if (!posed) return posed.error();
+    Problem problem = *posed;
     auto others = other_members(tuning, first_sign);
     if (!others) return others.error();
     problem.others = *others;
-    if (auto error = check_Mks(problem)) return *error;
-    if (has_no_finite_optimum(problem))
-        return Error{ErrorKind::unbounded_optimum, "filter",
-                     "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "
-                     "dead time to stop it. "
-                     "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
+    if (auto error = without_optimum(problem)) return *error;
     CostSurface surface;
     const std::string kind = options.text("search").value_or("fast");
     const bool with_surface = options.boolean("surface").value_or(false);
-    const PlaneStart start = kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, pid);
+    const PlaneStart start = kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, problem.pid);
     TunedController result;
     auto found = verified_search(kind, problem, start, with_surface ? &surface : nullptr, control, nullptr);
     for (int round = 0; found && !found->stopped && tuning.family; ++round) {
@@ -252,7 +263,55 @@ std::vector<OptionDescription> option_descriptions() {
             filter};
 }
 
+// Distance between two limits: what matters is how far they lie above 1.
+double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
+
 }  // namespace
+
+bool RobustFront::in_order(double M, double load_IAE) const {
+    constexpr double kSame = 1 + 1e-4;
+    return std::ranges::all_of(known_, [&](const auto& item) {
+        if (!item.second) return true;
+        const double other = item.second->load_IAE;
+        return item.first < M ? load_IAE <= kSame * other : other <= kSame * load_IAE;
+    });
+}
+
+Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& control) {
+    constexpr double kNeighbour = 1;
+    if (const auto same = known_.find(M); same != known_.end()) return same->second;
+    MethodOptions limits;
+    limits.set("Ms", M);
+    limits.set("Mt", M);
+    auto posed = nominal_problem(problem_, limits);
+    if (!posed) return posed.error();
+    if (auto error = without_optimum(*posed)) return *error;
+
+    const Design* nearest = nullptr;
+    double distance = kNeighbour;
+    for (const auto& [other, design] : known_) {
+        if (!design || apart(M, other) >= distance) continue;
+        nearest = &*design;
+        distance = apart(M, other);
+    }
+    std::optional<Point> before;
+    if (nearest != nullptr) {
+        const Pid& pid = nearest->controller;
+        before = Point{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
+    }
+    Problem problem = *posed;
+    auto found = verified_search("fast", problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
+    if (before && (!found || !in_order(M, std::exp(found->log_cost)))) {
+        problem = *posed;
+        found = verified_search("fast", problem, std::nullopt, nullptr, control, nullptr);
+    }
+    Expected<Design> design =
+        found ? Expected<Design>(Design{controller_at(problem, found->x), std::exp(found->log_cost)})
+              : Expected<Design>(found.error());
+    if (found && found->stopped)
+        return Error{ErrorKind::cancelled, "", "The job was stopped before this optimum was found."};
+    return known_.emplace(M, std::move(design)).first->second;
+}
 
 TuningMethod robust_method() {
     TuningMethod method;

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Tradeoff, TradeoffFigures } from "../../../web/src/api/types.ts";
-import { degradationFrame, levelsFrame, tradeoffFrame } from "../../../web/src/charts/tradeoff.ts";
+import { degradationFrame, isKnown, levelsFrame, tradeoffFrame, whyUnknown } from "../../../web/src/charts/tradeoff.ts";
 
 const figures = (J_r: number, J_d: number, Deg: number, Ms: number): TradeoffFigures => ({
   J_r,
@@ -64,4 +64,13 @@ test("without a profile only the controllers are drawn; without figures nothing 
   assert.ok(!frame.panes[0]!.marks!.some((mark) => mark.kind === "point" && mark.label === "a"));
   assert.ok(frame.x.range!.every(Number.isFinite));
   assert.equal(tradeoffFrame([{ name: "a", tradeoff: undefined }], "s"), null);
+});
+
+test("where the service has no indices, its reason is told instead of empty charts", () => {
+  const none = { ...figures(0, 0, 0, 1.4), J_r: null, J_d: null, why_null: { J_r: "The plant integrates." } };
+  const refused = { name: "a", tradeoff: { model: none, plant: none } };
+  assert.ok(!isKnown(refused) && isKnown(item));
+  assert.equal(whyUnknown(refused), "The plant integrates.");
+  assert.equal(whyUnknown(item), "");
+  assert.equal(whyUnknown({ name: "b", tradeoff: undefined }), "");
 });

@@ -19,6 +19,21 @@ const column = (points: TradeoffPoint[], name: Name): (number | null)[] => point
 export const figuresOf = (item: TradeoffItem): TradeoffFigures | undefined =>
   item.tradeoff?.model ?? item.tradeoff?.plant;
 
+const hasIndices = (figures: TradeoffFigures | undefined): boolean =>
+  typeof figures?.J_r === "number" || typeof figures?.J_d === "number";
+
+/** Whether there is anything to show of it. */
+export const isKnown = ({ tradeoff }: TradeoffItem): boolean =>
+  hasIndices(tradeoff?.model) || hasIndices(tradeoff?.plant);
+
+/** Why an answer holds no indices; "" where it does, or where none was asked for. */
+export function whyUnknown(item: TradeoffItem): string {
+  const { tradeoff } = item;
+  if (!tradeoff || isKnown(item)) return "";
+  const reasons = [tradeoff, tradeoff.model, tradeoff.plant].flatMap((part) => Object.values(part?.why_null ?? {}));
+  return reasons[0] ?? "There is no trade-off of this controller.";
+}
+
 /** The rule's behaviour, from whichever entry brings it. */
 export const profileOf = (items: TradeoffItem[]): Profile | null =>
   items.map((item) => item.tradeoff?.profile).find((profile) => profile !== undefined) ?? null;

@@ -34,6 +34,7 @@ export interface CompareEvents {
 
 export function compareView(store: Store, announce: (sentence: string) => void, events: CompareEvents): View {
   let shown: Result | null = null;
+  let drawnBefore: number[] | null = null;
   let columns: LeagueColumn[] = [];
   const designLink = h("a", { href: "#/" }, "Settings and verdict");
   const all = h("button", { type: "button", onclick: () => void compareAll() }, "Compare all methods");
@@ -155,8 +156,8 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   }
 
   function showResult(job: Job, result: Result, workspace: Workspace): void {
-    const drawn = drawnNow(workspace, result);
-    if (shown !== result) {
+    const anew = shown !== result;
+    if (anew) {
       shown = result;
       const methods = result.controllers.filter((entry) => entry.method !== "baseline");
       const refused = methods.filter((entry) => entry.error).length;
@@ -167,6 +168,9 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
       announce(`${heading.textContent}.`);
     }
     arrange();
+    if (!anew && drawnBefore === workspace.drawn) return;
+    drawnBefore = workspace.drawn;
+    const drawn = drawnNow(workspace, result);
     table.mark(drawn);
     legend.replaceChildren(...drawn.map((item) => h("span", {}, swatch(item.look), item.name)));
     showPlots(job, drawn);

@@ -96,7 +96,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
       : h("a", { href: address(index), title: `${entry.title ?? name}: its settings and verdict` }, name);
     const method = h("th", { scope: "row", class: "pin method-cell" }, title, line);
     const cells = entry.error
-      ? [h("td", { class: "reason", colspan: columns.length + sparks.length + 1 }, reasonOf(entry))]
+      ? [h("td", { class: "reason", colspan: columns.length + sparks.length + 1 }, h("span", {}, reasonOf(entry)))]
       : [...sparks.map(({ cell }) => cell), ...columns.map((column) => figureCell(column, entry)), notesCell(entry)];
     const today = entry.method === "baseline";
     const row = h("tr", { class: today ? "today" : null }, first, method, cells);

@@ -3,11 +3,12 @@ import { tradeoffProfile, tradeoffsOf } from "../api/evaluate.ts";
 import type { Entry, Plant, Tradeoff } from "../api/types.ts";
 import {
   degradationFrame,
-  figuresOf,
+  isKnown,
   levelsFrame,
   profileOf,
   tradeoffFrame,
   tradeoffRows,
+  whyUnknown,
 } from "../charts/tradeoff.ts";
 import type { TradeoffItem } from "../charts/tradeoff.ts";
 import { h, uniqueId } from "../dom.ts";
@@ -29,6 +30,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
   const profiles = new Map<string, Tradeoff["profile"]>();
   const title = h("h2", { id: uniqueId("tradeoff") }, "Set point against load");
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const reason = h("p", { class: "hint", hidden: true });
   const button = h("button", { type: "button", onclick: () => void compute() }, "Compute the trade-off");
   const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Trade-off figures" });
   const charts = plotGrid(announce);
@@ -46,6 +48,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
       ),
       h("div", { class: "actions" }, button),
       trouble,
+      reason,
       table,
     ),
     charts.element,
@@ -73,7 +76,8 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
         );
         answers.forEach((tradeoff, index) => tradeoff && computed.set(missing[index]!.entry, tradeoff));
       }
-      if (!profileOf(items())) profiles.set(JSON.stringify(asked), await tradeoffProfile(asked));
+      if (!profileOf(items()) && items().some(isKnown))
+        profiles.set(JSON.stringify(asked), await tradeoffProfile(asked));
     } catch (error) {
       trouble.textContent = error instanceof Error ? error.message : String(error);
       trouble.hidden = false;
@@ -85,8 +89,12 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
 
   function draw(): void {
     const list = items();
-    const known = list.filter((item) => figuresOf(item));
-    button.hidden = known.length === list.length && profileOf(known) !== null;
+    const known = list.filter(isKnown);
+    const reasons = [...new Set(list.map(whyUnknown).filter(Boolean))];
+    reason.textContent = reasons.join(" ");
+    reason.hidden = reasons.length === 0;
+    const asked = list.every((item) => isKnown(item) || whyUnknown(item) !== "");
+    button.hidden = asked && (known.length === 0 || profileOf(known) !== null);
     charts.show("plane", tradeoffFrame(known, time));
     charts.show("degradation", degradationFrame(known));
     charts.show("levels", levelsFrame(known, time));

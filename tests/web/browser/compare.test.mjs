@@ -287,10 +287,14 @@ test("the methods' page lists what the service lists, finds by words, and shows 
       assert.ok(text.includes(method.source), `source of ${method.id}`);
     }
     await page.getByLabel("Find a method").fill("skogestad simc");
-    assert.deepEqual(await page.locator("article:visible h2 a").allInnerTexts(), [
-      methods.find((method) => method.id === "simc").title,
-    ]);
-    await page.locator("article:visible h2 a").click();
+    const said = (method) => JSON.stringify({ ...method, options: null }).toLowerCase();
+    const matching = methods.filter((method) => said(method).includes("simc") && said(method).includes("skogestad"));
+    assert.ok(matching.length > 0 && matching.length < methods.length / 2);
+    assert.deepEqual(
+      await page.locator("article:visible h2 a").allInnerTexts(),
+      matching.map((method) => method.title),
+    );
+    await page.locator("article:visible h2 a").first().click();
     await page.getByRole("heading", { level: 1, name: /SIMC/ }).waitFor();
     assert.match(await page.getByRole("region", { name: /^Options of/ }).innerText(), /tau_c/);
     assert.deepEqual(await accessibilityViolations(page), []);

@@ -162,7 +162,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
       const methods = result.controllers.filter((entry) => entry.method !== "baseline");
       const refused = methods.filter((entry) => entry.error).length;
       const answers = methods.length - refused;
-      heading.textContent = `${answers} ${answers === 1 ? "tuning" : "tunings"} of this plant${refused > 0 ? `, ${refused} that do not apply` : ""}`;
+      heading.textContent = `${answers} ${answers === 1 ? "tuning" : "tunings"} of this plant${refused > 0 ? `, ${refused} that ${refused === 1 ? "does" : "do"} not apply` : ""}`;
       all.hidden = asksForAll(job.request?.tune);
       rebuild();
       announce(`${heading.textContent}.`);

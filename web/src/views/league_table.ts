@@ -39,6 +39,9 @@ interface TableRow {
   look: Look | null | undefined;
 }
 
+/** More reasons than these are folded; each also stands at its dash. */
+const FOOTNOTES_OPEN = 3;
+
 export function leagueTable(events: LeagueEvents): LeagueTable {
   let result: Result = { controllers: [] };
   let columns: LeagueColumn[] = [];
@@ -57,11 +60,13 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     refused,
   );
   const notes = h("ol", { class: "footnotes" });
+  const notesCount = h("summary", {});
+  const folded = h("details", { class: "missing" }, notesCount, notes);
   const element = h(
     "div",
     {},
     h("div", { class: "league-scroll", tabindex: 0, role: "region", "aria-label": "League table" }, table),
-    notes,
+    folded,
   );
 
   function heading(id: string, label: string, meaning: string, name = ""): HTMLElement {
@@ -116,6 +121,9 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
       h("th", { scope: "col", class: "notes-head" }, "Notes"),
     );
     rows = new Map(list.map((row) => [row.index, makeRow(row, address)]));
+    folded.hidden = footnotes.length === 0;
+    folded.open = footnotes.length <= FOOTNOTES_OPEN;
+    notesCount.textContent = `Why ${footnotes.length === 1 ? "a figure is" : "figures are"} missing`;
     notes.replaceChildren(...footnotes.map((note) => h("li", {}, note)));
   }
 

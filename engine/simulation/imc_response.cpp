@@ -5,6 +5,7 @@
 #include <map>
 
 #include "engine/simulation/propagator.h"
+#include "engine/simulation/signal.h"
 
 namespace tunewright {
 namespace {
@@ -14,10 +15,6 @@ using Index = std::size_t;
 constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
 constexpr double kStepsPerResonance = 4;  // per 1/|p| of a complex pole
 constexpr int kCorrections = 6;           // of a step that is longer than a dead time and sees its own end
-
-struct Signal {
-    double value = 0, slope = 0;
-};
 
 /// What the loop would show without its dead times, kept to be looked at later.
 struct Memory {

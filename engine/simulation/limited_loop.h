@@ -6,16 +6,12 @@
 #include "engine/loop/delay_system.h"
 #include "engine/simulation/limited_response.h"
 #include "engine/simulation/propagator.h"
+#include "engine/simulation/signal.h"
 
 namespace tunewright {
 
 /// Where the controller's command lies.
 enum class Region { below, inside, above };
-
-/// A signal at one instant.
-struct Signal {
-    double value = 0, slope = 0;
-};
 
 /// The loop's outputs at one instant.
 struct LoopOutput {

@@ -6,20 +6,50 @@
 #include "engine/family_figures.h"
 #include "engine/frequency_traces.h"
 #include "engine/loop/measured_loop.h"
+#include "engine/nonlinear_figures.h"
 #include "engine/number_text.h"
 #include "engine/performance_figures.h"
 #include "engine/robustness_figures.h"
 #include "engine/simulation/indices.h"
 #include "engine/simulation/limited_response.h"
 #include "engine/simulation/linear_response.h"
+#include "engine/simulation/npid_response.h"
 
 namespace tunewright {
 namespace {
 
 constexpr const char* kNoTime =
     "The plant is known by points of its frequency response alone, which have no response over time.";
-constexpr double kFinalTolerance = 1e-4;  // interpolation within a step, relative to the local deviation
+constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
+constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
 constexpr double kSettledForFigures = 1e-6;
+constexpr int kMostNonlinearSteps = 20000;  // a stalled integral may need any number
+
+/// The size of set-point change that an Npid without its own takes the error's measure from.
+Controller resolved(Controller controller, const EvaluateOptions& options) {
+    if (auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
+        npid->delta_r = std::abs(options.setpoint_step);
+    return controller;
+}
+
+/// What no Npid may have.
+std::optional<Error> check_npid(const Controller& controller) {
+    const auto* npid = std::get_if<Npid>(&controller);
+    if (npid == nullptr) return std::nullopt;
+    const auto invalid = [](const char* field, const std::string& message) {
+        return Error{ErrorKind::invalid_argument, std::string("controller/") + field, message};
+    };
+    if (!(npid->Ti > 0 && std::isfinite(npid->Ti)))
+        return invalid("Ti", "Ti is " + text(npid->Ti) +
+                                 "; the nonlinear form needs a finite Ti > 0. Without integral action it is the form "
+                                 "ideal.");
+    if (npid->delta_r && !(*npid->delta_r > 0 && std::isfinite(*npid->delta_r)))
+        return invalid("delta_r", "delta_r is " + text(*npid->delta_r) +
+                                      "; it must be a finite number > 0. Leave it out for the set-point step's size.");
+    if (npid->filter.type != FilterType::none && npid->filter.type != FilterType::derivative)
+        return invalid("filter", "The nonlinear form takes the filter none or derivative.");
+    return std::nullopt;
+}
 
 Error at_field(Error error, const char* prefix) {
     if (error.where.empty()) error.where = prefix;
@@ -59,8 +89,15 @@ Equivalents equivalents_of(const Controller& controller) {
     return equivalents;
 }
 
-Verification verify(const LinearPlant& plant, const Loop& loop, const Peaks& peaks, const LinearResponse& load,
-                    double load_step, std::optional<double> IAE) {
+/// The response of the unlimited loop; with `delta_r` that of the nonlinear PID.
+LinearResponse simulate(const LinearPlant& plant, const Loop& loop, std::optional<double> delta_r,
+                        const StepInputs& inputs, const ResponseOptions& options) {
+    if (delta_r) return simulate_npid(plant, loop.gains(), *delta_r, inputs, options);
+    return simulate_linear(plant, loop.gains(), inputs, options);
+}
+
+Verification verify(const LinearPlant& plant, const Loop& loop, std::optional<double> delta_r, const Peaks& peaks,
+                    const LinearResponse& load, double load_step, std::optional<double> IAE) {
     Verification v;
     const LoopGrid other = make_loop_grid(loop, 0.2, 17);
     v.ms_grid_difference = std::abs(find_peaks(loop, other).S.value / peaks.S.value - 1);
@@ -72,21 +109,26 @@ Verification verify(const LinearPlant& plant, const Loop& loop, const Peaks& pea
     for (const auto level : load.schedule.level) finer.level.insert(finer.level.end(), 2, level);
     ResponseOptions repeat;
     repeat.repeat = &finer;
-    const LinearResponse halved = simulate_linear(plant, loop.gains(), {0, load_step}, repeat);
+    const LinearResponse halved = simulate(plant, loop, delta_r, {0, load_step}, repeat);
     if (*IAE > 0)
         v.iae_step_halving =
             std::abs(integral_of_absolute_error(halved.nodes, 0, halved.error_integral_final) / *IAE - 1);
     const double exact = *load.error_integral_final;
-    if (exact != 0) v.ie_identity = std::abs(load.nodes.back().error_integral / exact - 1);
+    if (exact != 0 && !delta_r) v.ie_identity = std::abs(load.nodes.back().error_integral / exact - 1);
     return v;
 }
 
-LinearResponse respond(const LinearPlant& plant, const Loop& loop, const StepInputs& inputs, const EvaluateOptions& o) {
+LinearResponse respond(const LinearPlant& plant, const Loop& loop, std::optional<double> delta_r,
+                       const StepInputs& inputs, const EvaluateOptions& o) {
     ResponseOptions options;
     options.tolerance = kFinalTolerance;
     options.settled = kSettledForFigures;
     options.horizon = o.horizon;
-    if (!o.actuator) return simulate_linear(plant, loop.gains(), inputs, options);
+    if (delta_r) {
+        options.tolerance = kNonlinearTolerance;
+        options.max_steps = kMostNonlinearSteps;
+    }
+    if (!o.actuator || delta_r) return simulate(plant, loop, delta_r, inputs, options);
     return simulate_limited(plant, loop.gains(), inputs, {o.actuator->min, o.actuator->max}, options);
 }
 
@@ -105,16 +147,21 @@ void warn_of_limits(Evaluation& evaluation, const LinearResponse& response, cons
 /// Adds the time domain to a stable loop's evaluation.
 void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o,
                      const Peaks& peaks) {
-    const LinearResponse setpoint = respond(plant, loop, {o.setpoint_step, 0}, o);
-    const LinearResponse load = respond(plant, loop, {0, o.load_step}, o);
+    const auto* npid = std::get_if<Npid>(&evaluation.controller);
+    const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
+    const LinearResponse setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o);
+    const LinearResponse load = respond(plant, loop, delta_r, {0, o.load_step}, o);
     const bool to_infinity = !o.horizon.has_value();
     evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
     evaluation.performance.load = load_figures(load, to_infinity);
     if (o.noise) evaluation.performance.noise = noise_figures(loop, *o.noise);
-    const bool checkable = to_infinity && !o.actuator;
-    evaluation.verification =
-        verify(plant, loop, peaks, load, o.load_step, checkable ? evaluation.performance.load.IAE : std::nullopt);
-    if (o.actuator) {
+    const bool checkable = to_infinity && (!o.actuator || delta_r);
+    evaluation.verification = verify(plant, loop, delta_r, peaks, load, o.load_step,
+                                     checkable ? evaluation.performance.load.IAE : std::nullopt);
+    if (delta_r) {
+        evaluation.nonlinear = nonlinear_figures(loop, *delta_r);
+        warn_of_nonlinearity(evaluation, setpoint, load, o);
+    } else if (o.actuator) {
         warn_of_limits(evaluation, setpoint, *o.actuator, "set-point");
         warn_of_limits(evaluation, load, *o.actuator, "load");
     }
@@ -165,12 +212,13 @@ Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& control
 Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller,
                               const EvaluateOptions& options) {
     if (auto error = check_options(options)) return *error;
+    if (auto error = check_npid(controller)) return *error;
     const auto loop = MeasuredLoop::make(plant, gains(controller));
     if (!loop) return at_field(loop.error(), "controller");
     if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
 
     Evaluation evaluation;
-    evaluation.controller = controller;
+    evaluation.controller = resolved(controller, options);
     evaluation.equivalents = equivalents_of(controller);
     evaluation.performance = no_performance(kNoTime);
     if (options.noise) evaluation.performance.noise = NoisePerformance{{}, {}, {{"u_std", kNoTime}, {"gain", kNoTime}}};
@@ -179,19 +227,21 @@ Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& cont
         evaluation.robustness = robustness_of(loop->peaks(), loop->margins());
     else
         mark_unstable(evaluation, count);
+    if (std::holds_alternative<Npid>(controller)) warn_of_linear_part(evaluation);
     if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, options.points);
     return evaluation;
 }
 
 Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options) {
     if (auto error = check_options(options)) return *error;
+    if (auto error = check_npid(controller)) return *error;
     const auto plant = LinearPlant::make(family.nominal());
     if (!plant) return at_field(plant.error(), "plant");
     const auto loop = Loop::make(*plant, gains(controller));
     if (!loop) return at_field(loop.error(), "controller");
 
     Evaluation evaluation;
-    evaluation.controller = controller;
+    evaluation.controller = resolved(controller, options);
     evaluation.equivalents = equivalents_of(controller);
     const StabilityCount count = count_unstable_poles(*loop);
     const LoopGrid grid = make_peak_grid(*loop);

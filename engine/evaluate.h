@@ -90,6 +90,19 @@ struct Verification {
     std::optional<bool> stability_methods_agree;
 };
 
+/// What is known of the nonlinear PID beyond its linear part. Sector: the integral sees k e with k in (0, 1].
+struct NonlinearFigures {
+    double delta_r = 0;
+    bool stable_without_integral = false;  ///< the loop of P and D action, which very large errors leave
+    bool circle_criterion = false;         ///< holds: every error dies out, whatever its size
+    bool popov_criterion = false;          ///< the same, less conservative
+    std::optional<double> popov_q;         ///< of Re (1 + j omega q) G > -1
+    bool limit_cycle_predicted = false;    ///< by the describing function
+    std::optional<double> limit_cycle_amplitude, limit_cycle_omega;  ///< of y; errors beyond it may not die out
+    std::string statement;                                           ///< all that in a sentence
+    WhyNull why_null;
+};
+
 struct Equivalents {
     ParallelPid parallel;
     std::optional<SeriesPid> series;
@@ -105,13 +118,16 @@ struct Evaluation {
     std::optional<Responses> responses;        ///< with points > 0 and a stable loop
     std::optional<FrequencyTraces> frequency;  ///< with points > 0
     Verification verification;
-    std::optional<RegionFigures> region;  ///< of a family of more than one plant
+    std::optional<NonlinearFigures> nonlinear;  ///< of an Npid whose linear part is stable
+    std::optional<RegionFigures> region;        ///< of a family of more than one plant
     std::vector<Warning> warnings;
     double compute_ms = 0;
 };
 
 /// Errors: invalid_argument for a plant or controller that cannot form a loop (where: "plant/...", "controller/...",
 /// "evaluate/..."). An unstable loop is no error: `stable` is false, figures are empty, and a warning says so.
+/// Of an Npid the responses are the nonlinear loop's and hold for these step sizes; `robustness`, `frequency`, `region`
+/// and noise belong to its linear part, and actuator limits are not applied. Its delta_r is filled in.
 /// All figures are the nominal plant's; `region` says how the others fare. Of a frequency response everything in time
 /// is empty; unsupported where its band ends too early to judge the loop.
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options);

@@ -58,10 +58,12 @@ const Description<GivenFilter>& filter_contract() {
 
 double derivative_time(const Pid& pid) { return pid.Td; }
 double derivative_time(const SeriesPid& pid) { return pid.Td; }
+double derivative_time(const Npid& pid) { return pid.Td; }
 double derivative_time(const ParallelPid& pid) { return pid.Kp == 0 ? 0 : pid.Kd / pid.Kp; }
 
 bool derivative_acts(const Pid& pid) { return pid.Td != 0; }
 bool derivative_acts(const SeriesPid& pid) { return pid.Td != 0; }
+bool derivative_acts(const Npid& pid) { return pid.Td != 0; }
 bool derivative_acts(const ParallelPid& pid) { return pid.Kd != 0; }
 
 template <class Form>
@@ -93,10 +95,8 @@ double sign_of(const Form& pid) {
 double sign_of(const ParallelPid& pid) { return pid.Kp != 0 ? pid.Kp : pid.Ki != 0 ? pid.Ki : pid.Kd; }
 
 template <class Form>
-Description<Form>& with_weights(Description<Form>& description) {
-    return description.field("b", &Form::b, number(), "Set-point weight of the proportional part.")
-        .field("c", &Form::c, number(),
-               "Set-point weight of the derivative part; different from 0 only with a derivative filter.")
+Description<Form>& with_filter_and_action(Description<Form>& description) {
+    return description
         .field(
             "filter", read_filter<Form>, [](const Form& pid, Writer& out) { write_filter(pid.filter, out); },
             [](SchemaBook& book) {
@@ -111,15 +111,21 @@ Description<Form>& with_weights(Description<Form>& description) {
                 return Json{{"type", "string"}, {"enum", {"reverse", "direct"}}};
             },
             "reverse for Kp > 0, direct for Kp < 0. Follows from the sign; in requests it is ignored.",
-            {.answer_only = true})
-        .check([](const Json&, Form& pid, Reader& reader) {
-            if (pid.c != 0 && derivative_acts(pid) && pid.filter.type != FilterType::derivative) {
-                reader.fault_at(
-                    "c", "c is " + full_digits(pid.c) +
-                             " and the filter is not derivative: the set-point step would give an infinite kick. "
-                             "Use c = 0 or filter {\"type\": \"derivative\", \"N\": 10}.");
-            }
-        });
+            {.answer_only = true});
+}
+
+template <class Form>
+Description<Form>& with_weights(Description<Form>& description) {
+    description.field("b", &Form::b, number(), "Set-point weight of the proportional part.")
+        .field("c", &Form::c, number(),
+               "Set-point weight of the derivative part; different from 0 only with a derivative filter.");
+    return with_filter_and_action(description).check([](const Json&, Form& pid, Reader& reader) {
+        if (pid.c != 0 && derivative_acts(pid) && pid.filter.type != FilterType::derivative) {
+            reader.fault_at("c", "c is " + full_digits(pid.c) +
+                                     " and the filter is not derivative: the set-point step would give an infinite "
+                                     "kick. Use c = 0 or filter {\"type\": \"derivative\", \"N\": 10}.");
+        }
+    });
 }
 
 NumberRule proportional_rule() {
@@ -176,13 +182,69 @@ const Description<SeriesPid>& series() {
     return description;
 }
 
+Codec<double> finite_integral_time() {
+    Codec<double> codec = number({.exclusive_minimum = 0});
+    codec.read = [read = codec.read](const Json& value, double& target, Reader& reader) {
+        if (value.is_null())
+            return reader.fault(reader.name() +
+                                " is null; without integral action the nonlinear form is the form ideal.");
+        read(value, target, reader);
+    };
+    return codec;
+}
+
+/// A weight that the nonlinear form fixes.
+void fixed_weight(Description<Npid>& description, const char* name, double value, const char* sentence) {
+    description.field(
+        name,
+        [value](const Json& given, Npid&, Reader& reader) {
+            double weight = value;
+            number().read(given, weight, reader);
+            if (weight != value)
+                reader.fault(reader.name() + " is " + full_digits(weight) +
+                             "; the nonlinear form has b = 1 and c = 0. Leave it out.");
+        },
+        [value](const Npid&, Writer& out) { out.number(value); },
+        [value](SchemaBook&) {
+            return Json{{"type", "number"}, {"const", value}};
+        },
+        sentence);
+}
+
+const Description<Npid>& nonlinear() {
+    static const auto description = [] {
+        Description<Npid> d("NonlinearController",
+                            "u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt], e = r - y: the integral "
+                            "sees little of a large error.");
+        d.tag("form", "npid")
+            .field("Kp", &Npid::Kp, number({.not_zero = true}), "Proportional gain, of the sign that the plant needs.",
+                   {.required = true, .unit = "u/y"})
+            .field("Ti", &Npid::Ti, finite_integral_time(), "Integral time, > 0.", {.required = true, .unit = "time"})
+            .field("Td", &Npid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"})
+            .field("delta_r", &Npid::delta_r, maybe(number({.exclusive_minimum = 0})),
+                   "Error size at which the integral sees 61 % of the error; far larger ones it ignores. Default: "
+                   "the size of evaluate.setpoint_step, kept for load steps.",
+                   {.unit = "y"});
+        fixed_weight(d, "b", 1, "Set-point weight of the proportional part: 1.");
+        fixed_weight(d, "c", 0, "Set-point weight of the derivative part: 0.");
+        return with_filter_and_action(d)
+            .check([](const Json&, Npid& pid, Reader& reader) {
+                if (pid.filter.type != FilterType::none && pid.filter.type != FilterType::derivative)
+                    reader.fault_at("filter",
+                                    "filter is one of the measurement, and the nonlinear form takes none or "
+                                    "derivative: its integral sees the error itself. Choose one of these.");
+            })
+            .example({{"form", "npid"}, {"Kp", 3.8}, {"Ti", 9.9}, {"Td", 1.4}, {"delta_r", 1}});
+    }();
+    return description;
+}
+
 }  // namespace
 
 const Union<Controller>& controller_contract() {
     static const auto contract = [] {
         Union<Controller> controller("Controller", "A PID controller in one of its forms.", "form", "ideal");
-        controller.alternative(ideal()).alternative(parallel()).alternative(series());
-        controller.refuse("npid", "form npid is not available yet; the forms are ideal, parallel and series.");
+        controller.alternative(ideal()).alternative(parallel()).alternative(series()).alternative(nonlinear());
         return controller;
     }();
     return contract;
@@ -190,7 +252,8 @@ const Union<Controller>& controller_contract() {
 
 const Description<Equivalents>& equivalents_contract() {
     static const auto description = [] {
-        Description<Equivalents> d("Equivalents", "The same loop in the other forms, exactly.");
+        Description<Equivalents> d("Equivalents",
+                                   "The same loop in the other forms, exactly; of the form npid its linear part.");
         d.field("parallel", &Equivalents::parallel, answer(parallel()), "Kp + Ki/s + Kd s.")
             .field(
                 "series", {},

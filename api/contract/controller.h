@@ -1,4 +1,4 @@
-// The controllers of the contract: ideal, parallel and series form, with their filters.
+// The controllers of the contract: ideal, parallel, series and nonlinear form, with their filters.
 #pragma once
 
 #include <string>

@@ -212,6 +212,56 @@ const Description<FrequencyTraces>& frequency_contract() {
     return description;
 }
 
+const Description<NonlinearFigures>& nonlinear_contract() {
+    static const auto description = [] {
+        using N = NonlinearFigures;
+        const auto given = [](auto codec) {
+            codec.read = {};
+            return codec;
+        };
+        Description<N> d("Nonlinear",
+                         "Of the form npid, whose linear part is stable: the integral sees k e with k between 0 (large "
+                         "errors) and 1 (small ones). Do errors of every size die out?");
+        d.field("delta_r", &N::delta_r, only_answered(number()), "The error's measure, as used.", {.unit = "y"})
+            .field(
+                "sector", {},
+                [](const N&, Writer& out) {
+                    out.begin_array();
+                    out.integer(0);
+                    out.integer(1);
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+                },
+                "Between which gains the integral's input lies.")
+            .field("stable_without_integral", &N::stable_without_integral, given(boolean()),
+                   "Whether proportional and derivative action alone keep the loop stable.")
+            .field(
+                "circle_criterion", &N::circle_criterion, given(boolean()),
+                "Holds: Re G > -1 at all frequencies, G = (Ki/s) P/(1 + P C) with C without integral. Then every error "
+                "dies out.")
+            .field("popov_criterion", &N::popov_criterion, given(boolean()),
+                   "Holds: Re (1 + j omega q) G > -1 for some q >= 0. The same conclusion, less conservative.")
+            .field("popov_q", &N::popov_q, figure(), "Such a q.", {.unit = "time"})
+            .field("limit_cycle_predicted", &N::limit_cycle_predicted, given(boolean()),
+                   "The describing function's prediction, an approximation: some integral gain below 1 makes the "
+                   "loop oscillate.")
+            .field("limit_cycle_amplitude", &N::limit_cycle_amplitude, figure(), "Of y; larger errors may grow.",
+                   {.unit = "y"})
+            .field("limit_cycle_omega", &N::limit_cycle_omega, figure(), "Its frequency.", {.unit = "rad/time"})
+            .field(
+                "statement", {}, [](const N& value, Writer& out) { out.text(value.statement); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}};
+                },
+                "What follows, in a sentence.")
+            .why_null(&N::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
 const Description<Verification>& verification_contract() {
     static const auto description = [] {
         using V = Verification;

@@ -11,6 +11,7 @@ const Description<Performance>& performance_contract();
 const Description<LoadPerformance>& load_contract();
 const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
+const Description<NonlinearFigures>& nonlinear_contract();
 const Description<Verification>& verification_contract();
 
 const Description<RegionFigures>& region_contract();

@@ -96,6 +96,8 @@ const Description<TuningEntry>& entry_contract() {
         evaluation_field(d, "equivalents", &Evaluation::equivalents, object(equivalents_contract()),
                          "The same loop in other forms.");
         evaluation_field(d, "robustness", &Evaluation::robustness, object(robustness_contract()), "Peaks and margins.");
+        evaluation_field(d, "nonlinear", &Evaluation::nonlinear, maybe(answer(nonlinear_contract())),
+                         "Of the form npid: whether errors of every size die out.");
         evaluation_field(d, "performance", &Evaluation::performance, object(performance_contract()),
                          "Figures of the responses.");
         evaluation_field(d, "responses", &Evaluation::responses, maybe(answer(responses_contract())),

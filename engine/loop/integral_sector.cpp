@@ -1,0 +1,140 @@
+#include "engine/loop/integral_sector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kGridStep = 0.05;
+constexpr int kGridDensity = 40;
+constexpr int kMostBeyond = 400;
+constexpr double kStrideBeyond = 1.1;
+
+/// Popov's plane: x = Re G, y = omega Im G.
+struct PopovPoint {
+    double omega = 0, x = 0, y = 0;
+};
+
+class Sector {
+public:
+    Sector(const Loop& loop, const Loop& without_integral)
+        : Ki_(loop.gains().Ki), pd_(without_integral), grid_(make_loop_grid(pd_, kGridStep, kGridDensity)) {
+        for (const double omega : grid_.omega) points_.push_back(at(omega));
+    }
+
+    /// G = -j (Ki/omega) W with W = P/(1 + P C) of the PD loop.
+    PopovPoint at(double omega) const {
+        const std::complex<double> W = pd_.at(omega).T / pd_.controller({0, omega});
+        return {omega, Ki_ * W.imag() / omega, -Ki_ * W.real()};
+    }
+
+    bool residue_is_positive() const { return points_.front().y < 0; }
+
+    /// Re (1 + j omega q) G > -1 for all omega.
+    bool holds(double q) const {
+        const auto f = [&](const PopovPoint& p) { return p.x - q * p.y; };
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const PopovPoint& p = points_[i];
+            const bool resolved = p.omega <= grid_.resolved_to;
+            if ((resolved ? f(p) : -bound(p.omega, q)) <= -1) return false;
+            const bool inner = resolved && i > 0 && i + 1 < points_.size();
+            if (!inner || f(p) > f(points_[i - 1]) || f(p) > f(points_[i + 1])) continue;
+            const auto minus = [&](double omega) { return -f(at(omega)); };
+            if (-maximise(minus, points_[i - 1].omega, p.omega, points_[i + 1].omega).value <= -1) return false;
+        }
+        return holds_beyond(q);
+    }
+
+    /// A q >= 0 for which the grid's points keep the condition, well inside where there is room; empty: none.
+    std::optional<double> candidate() const {
+        double low = 0, high = kInfinity;
+        for (const PopovPoint& p : points_) {
+            if (p.omega > grid_.resolved_to) break;
+            if (p.y > 0) high = std::min(high, (p.x + 1) / p.y);
+            if (p.y < 0) low = std::max(low, (p.x + 1) / p.y);
+            if (p.y == 0 && p.x <= -1) return std::nullopt;
+        }
+        if (low >= high) return std::nullopt;
+        if (std::isfinite(high)) return 0.5 * (low + high);
+        return low > 0 ? 2 * low : 0;
+    }
+
+    /// Where G crosses the negative real axis beyond -1: factors of the integral gain below 1 that make it oscillate.
+    void find_critical_gain(IntegralSector& sector) const {
+        for (std::size_t i = 1; i < points_.size(); ++i) {
+            if ((points_[i].y < 0) == (points_[i - 1].y < 0)) continue;
+            const PopovPoint crossing = zero_of_y(points_[i - 1], points_[i]);
+            if (crossing.x > -1) continue;
+            const double k = -1 / crossing.x;
+            if (sector.critical_gain && *sector.critical_gain >= k) continue;
+            sector.critical_gain = k;
+            sector.critical_omega = crossing.omega;
+        }
+    }
+
+private:
+    /// Above the grid G falls, and the bound with it; without dead time the condition itself is followed until then.
+    bool holds_beyond(double q) const {
+        double omega = points_.back().omega;
+        for (int i = 0; i < kMostBeyond; ++i, omega *= kStrideBeyond) {
+            if (bound(omega, q) < 1) return true;
+            const PopovPoint p = at(omega);
+            if (pd_.plant().dead_time() > 0 || p.x - q * p.y <= -1) return false;
+        }
+        return false;
+    }
+
+    /// Of |G| and |omega q G| together, where the dead time turns faster than the grid follows.
+    double bound(double omega, double q) const {
+        const double loop_gain = std::abs(pd_.open_loop({0, omega}));
+        if (loop_gain >= 1) return kInfinity;
+        return std::abs(Ki_) * (1 / omega + q) * std::abs(pd_.plant().at({0, omega})) / (1 - loop_gain);
+    }
+
+    PopovPoint zero_of_y(PopovPoint a, PopovPoint b) const {
+        for (int i = 0; i < 60 && b.omega - a.omega > 1e-12 * b.omega; ++i) {
+            const PopovPoint middle = at(0.5 * (a.omega + b.omega));
+            ((middle.y < 0) == (a.y < 0) ? a : b) = middle;
+        }
+        return b;
+    }
+
+    double Ki_;
+    const Loop& pd_;
+    LoopGrid grid_;
+    std::vector<PopovPoint> points_;
+};
+
+}  // namespace
+
+IntegralSector judge_integral_sector(const Loop& loop) {
+    IntegralSector result;
+    ParallelPid gains = loop.gains();
+    gains.Ki = 0;
+    const auto without_integral = Loop::make(loop.plant(), gains);
+    if (!without_integral) return result;
+    result.stable_without_integral = count_unstable_poles(*without_integral).stable();
+    const Sector sector(loop, *without_integral);
+    sector.find_critical_gain(result);
+    if (!result.stable_without_integral || !sector.residue_is_positive()) return result;
+    result.stable_for_every_gain = !result.critical_gain;
+    result.circle_criterion = sector.holds(0);
+    if (result.circle_criterion) {
+        result.popov_criterion = true;
+        result.popov_q = 0;
+        return result;
+    }
+    const auto q = sector.candidate();
+    result.popov_criterion = q && sector.holds(*q);
+    if (result.popov_criterion) result.popov_q = q;
+    return result;
+}
+
+}  // namespace tunewright

@@ -1,4 +1,4 @@
-// Local searches without derivatives. The one place that knows NLopt.
+// Local searches without derivatives. With global_minimum.h the one place that knows NLopt.
 #pragma once
 
 #include <functional>

@@ -73,7 +73,7 @@ const FORMULAS: Record<SettingsForm, string> = {
   ideal: "Kp (1 + 1/(Ti s) + Td s)",
   parallel: "Kp + Ki/s + Kd s",
   series: "Kp (1 + 1/(Ti s)) (1 + Td s)",
-  npid: "Kp (e + 1/Ti ∫ exp(−e²/(2 delta_r²)) e dt + Td de/dt), the derivative without kick",
+  npid: "Kp (e + 1/Ti ∫ exp(−e²/(2 delta_r²)) e dt − Td dy/dt)",
 };
 
 export interface SettingsCard {

@@ -144,7 +144,11 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
 
     EvaluateAnswer answer;
     std::optional<Tradeoffs> tradeoffs;
-    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal_plant(*request.plant));
+    std::optional<RobustOptima> optima;
+    const auto nominal = nominal_plant(*request.plant);
+    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal);
+    if (request.evaluate.optimum_at_Ms.value_or(false) && nominal)
+        optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, request.evaluate);
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
         if (control.stop.stop_requested())
             return refusal(to_problem({ErrorKind::timeout,
@@ -156,6 +160,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
         if (!evaluation) return refusal(at_controller(evaluation.error(), i));
         TuningEntry& entry = answer.controllers.emplace_back();
         if (tradeoffs) entry.tradeoff = tradeoffs->of(request.controllers[i], std::nullopt);
+        if (optima) entry.optimum_at_Ms = optima->beside(*evaluation, control);
         evaluation->compute_ms = now(control) - start;
         entry.evaluation = std::move(*evaluation);
     }

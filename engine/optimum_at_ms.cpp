@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/number_text.h"
 
@@ -14,8 +15,8 @@ OptimumAtMs none(const std::string& reason) { return {{}, {}, {{"IAE", reason}, 
 
 }  // namespace
 
-RobustOptima::RobustOptima(const TuningProblem& problem, const EvaluateOptions& options)
-    : problem_(problem), options_(options), front_(problem) {
+RobustOptima::RobustOptima(TuningProblem problem, const EvaluateOptions& options)
+    : problem_(std::move(problem)), options_(options), front_(problem_) {
     options_.points = 0;
     options_.noise.reset();
 }

@@ -22,15 +22,16 @@ struct OptimumAtMs {
 /// both figures are empty. Evaluated as `options` say (steps, horizon, actuator); limits hold on the nominal plant.
 class RobustOptima {
 public:
-    /// `problem` must outlive this.
-    RobustOptima(const TuningProblem& problem, const EvaluateOptions& options);
+    RobustOptima(TuningProblem problem, const EvaluateOptions& options);
+    RobustOptima(const RobustOptima&) = delete;  // the front looks at the problem kept here
+    RobustOptima& operator=(const RobustOptima&) = delete;
 
     OptimumAtMs beside(const Evaluation& evaluation, const RunControl& control);
 
 private:
     Expected<double> load_IAE_at(double Ms, const RunControl& control);
 
-    const TuningProblem& problem_;
+    TuningProblem problem_;
     EvaluateOptions options_;
     RobustFront front_;
 };

@@ -256,6 +256,20 @@ TEST(Answers, AllAnswersWithEveryMethodBesideItsOptimumOrWithWhyNot) {
     }
 }
 
+TEST(Answers, AnEvaluationIsComparedWithTheOptimumAtItsMsWhereAsked) {
+    const std::string body =
+        R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "controllers": [{"form": "ideal", "Kp": 0.5, "Ti": 10}],
+            "evaluate": {"points": 0, "optimum_at_Ms": true}})";
+    const Json answer = Json::parse(evaluate_call(body, {}).body);
+    expect_valid(answer, "EvaluateAnswer");
+    const Json& entry = answer["controllers"][0];
+    // No overshoot of u: IAE = Ti/Kp.
+    EXPECT_NEAR(entry["performance"]["load"]["IAE"].get<double>(), 20, 1e-3);
+    EXPECT_NEAR(entry["optimum_at_Ms"]["excess_percent"].get<double>(),
+                100 * (20 / entry["optimum_at_Ms"]["IAE"].get<double>() - 1), 0.01);
+    EXPECT_GT(entry["optimum_at_Ms"]["excess_percent"].get<double>(), 50);
+}
+
 TEST(Answers, ARevisedImcEntryCarriesItsFiguresItsCurveAndTheFullController) {
     const Json result = run(example("revised-imc").dump());
     expect_valid(result, "TuningResult");

@@ -277,6 +277,38 @@ test("Design shows the trade-off of an entry that brings it", async () => {
   });
 });
 
+test("a nonlinear PID is taken as today's settings, and shown in its own form with what its Ms belongs to", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    const delta = page.getByLabel("delta_r", { exact: true });
+    assert.ok(await delta.isHidden());
+    await page.getByLabel("Form", { exact: true }).selectOption("npid");
+    await page.getByLabel("Kp", { exact: true }).fill("1.2");
+    await page.getByLabel("Ti", { exact: true }).fill("40");
+    await delta.fill("0,5");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByRole("button", { name: "today", exact: true }).click();
+    await page.getByRole("heading", { name: "Settings to enter: today" }).waitFor();
+    const { request, result } = await jobOf(page);
+    assert.deepEqual(request.baseline, { form: "npid", Kp: 1.2, Ti: 40, delta_r: 0.5 });
+    const settings = await page.locator(".settings tr").allInnerTexts();
+    assert.deepEqual(
+      settings.map((text) => text.split(/\s+/)[0]),
+      ["Kp", "Ti", "Td", "delta_r"],
+    );
+    assert.match(settings[3], /0\.5$/);
+    assert.equal(await page.locator(".settings input:visible").count(), 0);
+    const verdict = await page.getByRole("region", { name: "Verdict" }).innerText();
+    assert.match(verdict, /Ms and all margins belong to its linear part/);
+    const today = result.controllers.find((entry) => entry.method === "baseline");
+    if (today.nonlinear) assert.ok(verdict.includes(today.nonlinear.statement));
+    // It comes back into the form as it was entered.
+    await page.getByRole("link", { name: "Change the request" }).click();
+    await page.getByRole("button", { name: "Tune this model" }).waitFor();
+    await page.waitForFunction(() => [...document.querySelectorAll("input")].some((input) => input.value === "0.5"));
+    assert.equal(await delta.inputValue(), "0.5");
+  });
+});
+
 test("the methods' page lists what the service lists, finds by words, and shows one with its options", async () => {
   await withPage("#/methods", {}, async (page) => {
     const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();

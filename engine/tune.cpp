@@ -231,6 +231,8 @@ std::optional<Error> Run::state_problem() {
     auto linear = LinearPlant::make(nominal);
     if (!linear) return placed(linear.error(), "");
     problem_ = TuningProblem{nominal, std::move(*linear), dead_time_std_, held_};
+    if (result_.model && result_.model->limit_cycle)
+        problem_->relay_point = result_.model->limit_cycle->describing_function;
     return std::nullopt;
 }
 

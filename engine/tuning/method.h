@@ -7,6 +7,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
+#include "engine/loop/ultimate_point.h"
 #include "engine/plant/frequency_response.h"
 #include "engine/plant/linear_plant.h"
 #include "engine/plant/plant_family.h"
@@ -51,6 +52,7 @@ struct TuningProblem {
     LinearPlant linear;
     std::optional<double> dead_time_std;
     std::optional<PlantFamily> family = {};
+    std::optional<UltimatePoint> relay_point = {};  ///< by the describing function of a recorded relay test
 };
 
 /// Options that make one row of a comparison of all methods.

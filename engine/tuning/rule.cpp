@@ -77,6 +77,22 @@ OptionDescription filter_option(const std::string& law) {
     return option;
 }
 
+OptionDescription mode_option(const std::string& by_default) {
+    OptionDescription option;
+    option.name = "mode";
+    option.type = OptionType::choice;
+    option.sentence = "What the settings were made for: servo (set-point steps) or regulation (load steps).";
+    option.default_value = by_default;
+    option.choices = {"servo", "regulation"};
+    return option;
+}
+
+MethodVariant row(const std::string& name, const std::vector<std::pair<std::string, std::string>>& words) {
+    MethodVariant variant{name, {}};
+    for (const auto& [path, word] : words) variant.options.set(path, word);
+    return variant;
+}
+
 std::string chosen_controller(const MethodOptions& options) { return options.text("controller").value_or("PID"); }
 
 Filter chosen_filter(const MethodOptions& options, FilterType type, double Td) {
@@ -102,8 +118,7 @@ Error degenerate(const std::string& where, const std::string& sentence, const st
 
 Warning outside_validity(const std::string& detail) { return {"outside-validity", detail}; }
 
-Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const Pid& pid,
-                                      std::vector<Warning> warnings) {
+Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warnings) {
     const bool finite = std::isfinite(pid.Kp) && pid.Kp != 0 && pid.Ti > 0 && std::isfinite(pid.Td) && pid.Td >= 0;
     if (!finite)
         return Error{
@@ -112,9 +127,16 @@ Expected<TunedController> rule_answer(const TuningProblem& problem, const Reduce
                 " for this plant, beyond what can be used. Check the plant's numbers or choose the method robust."};
     TunedController answer;
     answer.controller = pid;
-    if (!(model.exact && given_as_model(problem.plant))) answer.reduced_model = model.plant();
-    answer.warnings = model.warnings;
-    answer.warnings.insert(answer.warnings.end(), warnings.begin(), warnings.end());
+    answer.warnings = std::move(warnings);
+    return answer;
+}
+
+Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const Pid& pid,
+                                      std::vector<Warning> warnings) {
+    std::vector<Warning> all = model.warnings;
+    all.insert(all.end(), warnings.begin(), warnings.end());
+    auto answer = rule_answer(pid, std::move(all));
+    if (answer && !(model.exact && given_as_model(problem.plant))) answer->reduced_model = model.plant();
     return answer;
 }
 

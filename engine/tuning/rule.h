@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/identification/reduction.h"
@@ -17,6 +18,12 @@ OptionDescription reduction_option(const std::string& automatic);
 
 /// Option `filter {Tf_over_Td | Tf}` of a PID; `law` says what is filtered.
 OptionDescription filter_option(const std::string& law);
+
+/// Option `mode`, "servo" (set points) or "regulation" (loads).
+OptionDescription mode_option(const std::string& by_default = "servo");
+
+/// A row of "all": the options that differ from the defaults, all of them words.
+MethodVariant row(const std::string& name, const std::vector<std::pair<std::string, std::string>>& words);
 
 std::string chosen_controller(const MethodOptions& options);  ///< "P", "PI" or "PID"
 
@@ -38,5 +45,8 @@ Warning outside_validity(const std::string& detail);
 /// Errors: numerical_failure if a parameter is not a finite number or Kp is 0.
 Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const Pid& pid,
                                       std::vector<Warning> warnings);
+
+/// The answer of a rule that works on no reduced model. Errors: as above.
+Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warnings);
 
 }  // namespace tunewright

@@ -146,7 +146,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     std::optional<Tradeoffs> tradeoffs;
     std::optional<RobustOptima> optima;
     const auto nominal = nominal_plant(*request.plant);
-    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal);
+    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal, request.evaluate);
     if (request.evaluate.optimum_at_Ms.value_or(false) && nominal)
         optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, request.evaluate);
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {

@@ -13,8 +13,6 @@ namespace {
 
 constexpr const char* kOnlyPoints =
     "The plant is known by points of its frequency response alone, which have no response over time.";
-constexpr const char* kNonlinear =
-    "The indices are for unit steps, and under a nonlinear controller the response changes with the size of the step.";
 constexpr double kMissed = 0.03;  // of a degradation: what the table keeps to for L/T from 0.1 to 1.5
 constexpr int kMsPoints = 13;     // 1.4, 1.45 ... 2
 
@@ -50,7 +48,10 @@ std::optional<Plant> nominal_plant(const PlantModel& plant) {
     return std::nullopt;
 }
 
-Tradeoffs::Tradeoffs(std::optional<Plant> nominal) : nominal_(std::move(nominal)) {
+Tradeoffs::Tradeoffs(std::optional<Plant> nominal, const EvaluateOptions& options) : nominal_(std::move(nominal)) {
+    steps_.setpoint_step = options.setpoint_step;
+    steps_.load_step = options.load_step;
+    steps_.points = 0;
     if (nominal_) linear_ = *LinearPlant::make(*nominal_);
 }
 
@@ -62,12 +63,27 @@ const Tradeoffs::OnModel& Tradeoffs::scales(const Fopdt& model) {
     return kept_.emplace(key, OnModel{std::move(references), std::move(on_model), std::move(on_plant)}).first->second;
 }
 
+// A nonlinear controller's responses are not those of its gains.
+TradeoffFigures Tradeoffs::figures(const TradeoffScale& scale, const Plant& plant, const Controller& controller) const {
+    const auto K = scale.static_gain();
+    if (!K || !std::holds_alternative<Npid>(controller)) return scale.figures(gains(controller));
+    const auto evaluation = evaluate(plant, controller, steps_);
+    if (!evaluation) return no_tradeoff(evaluation.error().message);
+    const Performance& p = evaluation->performance;
+    const auto per_unit = [](std::optional<double> IAE, double step) {
+        return IAE ? std::optional(*IAE / std::abs(step)) : std::nullopt;
+    };
+    if (!evaluation->robustness.stable) return scale.figures(gains(controller));
+    return scale.placed(evaluation->robustness.Ms, per_unit(p.setpoint.IAE, steps_.setpoint_step),
+                        per_unit(p.load.IAE, steps_.load_step * *K), "The response has no finite IAE.");
+}
+
 TradeoffEntry Tradeoffs::against(const Fopdt& model, const Controller& controller) {
     const OnModel& scale = scales(model);
     TradeoffEntry entry;
     entry.fopdt = model;
-    entry.model = scale.on_model.figures(gains(controller));
-    entry.plant = same(*nominal_, model) ? entry.model : scale.on_plant.figures(gains(controller));
+    entry.model = figures(scale.on_model, model, controller);
+    entry.plant = same(*nominal_, model) ? entry.model : figures(scale.on_plant, *nominal_, controller);
     return entry;
 }
 
@@ -90,14 +106,10 @@ TradeoffEntry Tradeoffs::of(const Controller& controller, const std::optional<Pl
         entry.model = entry.plant = no_tradeoff(kOnlyPoints);
         return entry;
     }
-    if (std::holds_alternative<Npid>(controller)) {
-        entry.model = entry.plant = no_tradeoff(kNonlinear);
-        return entry;
-    }
     const auto model = model_for(reduced_model);
     if (model) return against(*model, controller);
     entry.model = no_tradeoff(model.error().message);
-    entry.plant = TradeoffScale(*linear_, model.error()).figures(gains(controller));
+    entry.plant = figures(TradeoffScale(*linear_, model.error()), *nominal_, controller);
     return entry;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/controller/pid.h"
+#include "engine/evaluate.h"
 #include "engine/plant/plant_model.h"
 #include "engine/tuning/arrieta_report.h"
 #include "engine/tuning/tradeoff.h"
@@ -43,7 +44,8 @@ std::optional<Plant> nominal_plant(const PlantModel& plant);
 class Tradeoffs {
 public:
     /// `nominal` is valid (LinearPlant::make); empty: the plant is known by measured points alone, and nothing is told.
-    explicit Tradeoffs(std::optional<Plant> nominal);
+    /// The steps of a nonlinear controller's responses are those of `options`, the indices per unit of them.
+    explicit Tradeoffs(std::optional<Plant> nominal, const EvaluateOptions& options = {});
 
     /// `reduced_model`: that the controller was tuned on, if it is of first order; else the plant's own form or its
     /// reduction is taken.
@@ -62,7 +64,10 @@ private:
     TradeoffEntry against(const Fopdt& model, const Controller& controller);
     Expected<Fopdt> model_for(const std::optional<Plant>& reduced_model) const;
 
+    TradeoffFigures figures(const TradeoffScale& scale, const Plant& plant, const Controller& controller) const;
+
     std::optional<Plant> nominal_;
+    EvaluateOptions steps_;
     std::optional<LinearPlant> linear_;
     std::map<std::array<double, 3>, OnModel> kept_;  // by K, T, L
 };

@@ -216,7 +216,7 @@ void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::v
 // Of a servo/regulation rule always, of other controllers where asked for.
 void Run::add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule) {
     if (!entry.evaluation || !(rule || request_.evaluate.tradeoff)) return;
-    if (!tradeoffs_) tradeoffs_.emplace(measured_ ? std::nullopt : std::optional(family_.nominal()));
+    if (!tradeoffs_) tradeoffs_.emplace(measured_ ? std::nullopt : std::optional(family_.nominal()), request_.evaluate);
     const Controller& controller = entry.evaluation->controller;
     if (!rule) {
         entry.tradeoff = tradeoffs_->of(controller, entry.reduced_model);

@@ -104,17 +104,22 @@ TradeoffFigures TradeoffScale::figures(const ParallelPid& controller) const {
     if (!K_) return no_tradeoff(no_gain_);
     const auto loop = usable_loop(plant_, controller);
     if (!loop) return no_tradeoff(loop.error().message);
-    TradeoffFigures f;
     const double Ms = find_peaks(*loop, make_peak_grid(*loop)).S.value;
-    put(f.Ms, "Ms", std::isfinite(Ms) ? std::optional(Ms) : std::nullopt, "|S| has no finite peak.", f);
-    const bool integral = controller.Ki != 0;
-    const char* no_J = integral ? kUnsettled : kNoIntegral;
-    put(f.J_r, "J_r", integral ? step_iae(*loop, {.r = 1}) : std::nullopt, no_J, f);
-    put(f.J_d, "J_d", integral ? step_iae(*loop, {.d = 1 / *K_}) : std::nullopt, no_J, f);
+    if (controller.Ki == 0) return placed(Ms, std::nullopt, std::nullopt, kNoIntegral);
+    return placed(Ms, step_iae(*loop, {.r = 1}), step_iae(*loop, {.d = 1 / *K_}), kUnsettled);
+}
+
+TradeoffFigures TradeoffScale::placed(std::optional<double> Ms, std::optional<double> J_r, std::optional<double> J_d,
+                                      const std::string& no_J) const {
+    if (!K_) return no_tradeoff(no_gain_);
+    TradeoffFigures f;
+    put(f.Ms, "Ms", Ms && std::isfinite(*Ms) ? Ms : std::nullopt, "|S| has no finite peak.", f);
+    put(f.J_r, "J_r", J_r, no_J, f);
+    put(f.J_d, "J_d", J_d, no_J, f);
     put(f.J_r_opt, "J_r_opt", J_r_opt_, no_J_r_opt_, f);
     put(f.J_d_opt, "J_d_opt", J_d_opt_, no_J_d_opt_, f);
-    if (f.J_r && f.J_d && J_r_opt_ && J_d_opt_) f.J_rd = std::hypot(*f.J_r - *J_r_opt_, *f.J_d - *J_d_opt_);
-    const std::string why_no_J_rd = !(f.J_r && f.J_d) ? no_J : !J_r_opt_ ? no_J_r_opt_ : no_J_d_opt_;
+    if (J_r && J_d && J_r_opt_ && J_d_opt_) f.J_rd = std::hypot(*J_r - *J_r_opt_, *J_d - *J_d_opt_);
+    const std::string why_no_J_rd = !(J_r && J_d) ? no_J : !J_r_opt_ ? no_J_r_opt_ : no_J_d_opt_;
     if (!f.J_rd) f.why_null["J_rd"] = why_no_J_rd;
     if (f.J_rd && *f.J_rd > 0 && J_rd_free_) {
         f.I_perf = *J_rd_free_ / *f.J_rd;

@@ -49,6 +49,13 @@ public:
 
     TradeoffFigures figures(const ParallelPid& controller) const;
 
+    /// The same for a controller whose Ms, J_r and J_d were found otherwise; `no_J` says why one of these is empty.
+    TradeoffFigures placed(std::optional<double> Ms, std::optional<double> J_r, std::optional<double> J_d,
+                           const std::string& no_J) const;
+
+    /// Empty: the plant integrates or its gain is 0, and all figures are empty.
+    std::optional<double> static_gain() const { return K_; }
+
     /// Deg alone, as searches need it; empty where `figures` has none.
     std::optional<double> degradation(const ParallelPid& controller) const;
 

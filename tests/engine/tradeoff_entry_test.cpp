@@ -117,12 +117,31 @@ TEST(Tradeoffs, SayWhyTheyAreEmpty) {
     expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).plant, "integrating plant");
     expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).model, "integrating plant");
     expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 9, .Ti = 1}, {}).plant, "not stable");
-    expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(Npid{.Kp = 0.5, .Ti = 1}, {}).plant, "nonlinear");
 
     const auto no_integral = Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 0.5}, {}).plant;
     EXPECT_TRUE(no_integral.Ms && no_integral.J_r_opt && no_integral.J_d_opt);
     for (const char* name : {"J_r", "J_d", "J_rd", "I_perf", "Deg"})
         EXPECT_THAT(no_integral.why_null.at(name), HasSubstr("Without integral action")) << name;
+}
+
+// With a delta_r far above the step the nonlinear integral is an ordinary one.
+TEST(Tradeoffs, OfANonlinearPidAreThoseOfItsResponsesToTheGivenSteps) {
+    const Sopdt plant{.K = 2, .T1 = 10, .T2 = 4, .L = 3};
+    EvaluateOptions options;
+    options.setpoint_step = 3;
+    options.load_step = -0.5;
+    Tradeoffs tradeoffs(plant, options);
+    const auto linear = tradeoffs.of(Pid{.Kp = 0.7, .Ti = 10}, {});
+    const auto wide = tradeoffs.of(Npid{.Kp = 0.7, .Ti = 10, .delta_r = 3e4}, {});
+    EXPECT_NEAR(*wide.plant.J_r / *linear.plant.J_r, 1, 1e-4);
+    EXPECT_NEAR(*wide.plant.J_d / *linear.plant.J_d, 1, 1e-4);
+    EXPECT_NEAR(*wide.model.J_rd / *linear.model.J_rd, 1, 1e-3);
+    EXPECT_NEAR(*wide.plant.Ms / *linear.plant.Ms, 1, 1e-9);
+    options.points = 0;
+    const auto own = tradeoffs.of(Npid{.Kp = 0.7, .Ti = 10}, {});
+    const auto evaluation = evaluate(plant, Npid{.Kp = 0.7, .Ti = 10}, options);
+    EXPECT_NEAR(*own.plant.J_r / (*evaluation->performance.setpoint.IAE / 3), 1, 1e-12);
+    EXPECT_NEAR(*own.plant.J_d / (*evaluation->performance.load.IAE / (0.5 * 2)), 1, 1e-12);
 }
 
 TEST(Tradeoffs, WithoutAModelThePlantKeepsItsOwnFigures) {

@@ -5,12 +5,12 @@
 #include <iterator>
 #include <span>
 
+#include "engine/identification/local_minimum.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear_plant.h"
 #include "engine/simulation/indices.h"
 #include "engine/simulation/linear_response.h"
-#include "engine/identification/local_minimum.h"
 
 namespace tunewright {
 namespace {

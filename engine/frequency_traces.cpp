@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/plant/quick_complex.h"
+
 namespace tunewright {
 namespace {
 
@@ -18,11 +20,11 @@ struct Sample {
 /// The part of the grid that shows something: from |S| = 0.001 to |T| = 0.0001.
 std::vector<Sample> visible(const LoopGrid& grid) {
     std::size_t first = 0, last = grid.omega.size() - 1;
-    while (first + 2 <= last && std::abs(grid.point[first + 1].S) < 1e-3) ++first;
-    while (last > first + 2 && std::abs(grid.point[last - 1].T) < 1e-4) --last;
+    while (first + 2 <= last && magnitude(grid.point[first + 1].S) < 1e-3) ++first;
+    while (last > first + 2 && magnitude(grid.point[last - 1].T) < 1e-4) --last;
     std::vector<Sample> samples;
     for (std::size_t i = first; i <= last; ++i)
-        if (std::isfinite(std::abs(grid.point[i].L))) samples.push_back({grid.omega[i], grid.point[i]});
+        if (std::isfinite(magnitude(grid.point[i].L))) samples.push_back({grid.omega[i], grid.point[i]});
     return samples;
 }
 
@@ -34,8 +36,8 @@ std::vector<Sample> smoothed(const Loop& loop, std::vector<Sample> samples, std:
             finer.push_back(samples[i]);
             if (i + 1 == samples.size() || finer.size() + samples.size() - i >= points) continue;
             const auto a = samples[i].point.L, b = samples[i + 1].point.L;
-            if (std::abs(a - b) < kSmoothStep * std::max(1.0, std::abs(a)) ||
-                std::min(std::abs(a), std::abs(b)) > kNear)
+            if (magnitude(a - b) < kSmoothStep * std::max(1.0, magnitude(a)) ||
+                std::min(magnitude(a), magnitude(b)) > kNear)
                 continue;
             const double middle = std::sqrt(samples[i].omega * samples[i + 1].omega);
             finer.push_back({middle, loop.at(middle)});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/plant/quick_complex.h"
+
 namespace tunewright {
 namespace {
 
@@ -31,8 +33,8 @@ void add_controller_corners(std::vector<double>& corners, const ParallelPid& c) 
 /// corner.
 void add_asymptote_crossings(std::vector<double>& corners, const Loop& loop, double low, double high) {
     const auto slope_crossing = [&](double omega, double ratio) {
-        const double here = std::abs(loop.open_loop({0, omega}));
-        const double there = std::abs(loop.open_loop({0, omega * ratio}));
+        const double here = magnitude(loop.open_loop({0, omega}));
+        const double there = magnitude(loop.open_loop({0, omega * ratio}));
         const double slope = std::log(there / here) / std::log(ratio);
         if (!std::isfinite(slope) || std::abs(slope) < 0.1) return 0.0;
         return omega * std::exp(std::clamp(-std::log(here) / slope, -30.0, 30.0));
@@ -76,8 +78,8 @@ std::vector<double> base_frequencies(const Loop& loop, const Range& range, int d
 }
 
 bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
-    const double scale = std::max(1.0, std::min(std::abs(a.S), std::abs(b.S)));
-    return !(std::abs(a.S - b.S) <= step * scale);
+    const double scale = std::max(1.0, std::min(magnitude(a.S), magnitude(b.S)));
+    return !(magnitude(a.S - b.S) <= step * scale);
 }
 
 }  // namespace

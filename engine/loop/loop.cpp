@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/plant/quick_complex.h"
+
 namespace tunewright {
 namespace {
 
@@ -79,25 +81,35 @@ Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
 
 Complex controller_response(const ParallelPid& gains, Complex s) {
     const auto c = controller_fraction(gains, s);
-    return c.numerator / c.denominator;
+    return quotient(c.numerator, c.denominator);
 }
 
 Complex Loop::controller(Complex s) const { return controller_response(gains_, s); }
 
 Complex Loop::open_loop(Complex s) const {
     const auto l = fraction(s);
-    return l.numerator / l.denominator;
+    return quotient(l.numerator, l.denominator);
+}
+
+Loop::Parts Loop::parts(Complex s) const {
+    const auto c = controller_fraction(gains_, s);
+    Parts parts{c.numerator, c.denominator, plant_->gain(), 1};
+    for (int i = 0; i < plant_->integrators(); ++i) parts.plant_denominator *= s;
+    for (int i = 0; i < -plant_->integrators(); ++i) parts.plant_numerator *= s;
+    for (const auto zero : plant_->zeros()) parts.plant_numerator *= s - zero;
+    for (const auto pole : plant_->poles()) parts.plant_denominator *= s - pole;
+    if (const double L = plant_->dead_time(); L > 0) {
+        const double angle = -s.imag() * L;
+        Complex delay(std::cos(angle), std::sin(angle));
+        if (s.real() != 0) delay *= std::exp(-s.real() * L);
+        parts.plant_numerator *= delay;
+    }
+    return parts;
 }
 
 Loop::Fraction Loop::fraction(Complex s) const {
-    const auto c = controller_fraction(gains_, s);
-    Complex numerator = plant_->gain() * c.numerator, denominator = c.denominator;
-    for (int i = 0; i < plant_->integrators(); ++i) denominator *= s;
-    for (int i = 0; i < -plant_->integrators(); ++i) numerator *= s;
-    for (const auto zero : plant_->zeros()) numerator *= s - zero;
-    for (const auto pole : plant_->poles()) denominator *= s - pole;
-    if (plant_->dead_time() > 0) numerator *= std::exp(-s * plant_->dead_time());
-    return {numerator, denominator};
+    const Parts p = parts(s);
+    return {p.controller_numerator * p.plant_numerator, p.controller_denominator * p.plant_denominator};
 }
 
 int Loop::denominator_degree() const {
@@ -105,19 +117,16 @@ int Loop::denominator_degree() const {
 }
 
 LoopPoint Loop::at(double omega) const {
-    const Complex s(0, omega);
-    const auto [numerator, denominator] = fraction(s);
+    const Parts p = parts({0, omega});
+    const Complex numerator = p.controller_numerator * p.plant_numerator;
+    const Complex denominator = p.controller_denominator * p.plant_denominator;
     const Complex sum = denominator + numerator;
     LoopPoint point;
-    point.L = numerator / denominator;
-    point.S = denominator / sum;
-    point.T = numerator / sum;
+    point.L = quotient(numerator, denominator);
+    point.S = quotient(denominator, sum);
+    point.T = quotient(numerator, sum);
     // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
-    const auto c = controller_fraction(gains_, s);
-    Complex plant_denominator = 1;
-    for (int i = 0; i < plant_->integrators(); ++i) plant_denominator *= s;
-    for (const auto pole : plant_->poles()) plant_denominator *= s - pole;
-    point.CS = c.numerator * plant_denominator / sum;
+    point.CS = quotient(p.controller_numerator * p.plant_denominator, sum);
     return point;
 }
 

@@ -55,6 +55,12 @@ public:
     const ParallelPid& gains() const { return gains_; }
 
 private:
+    /// Controller and plant, each as a fraction.
+    struct Parts {
+        std::complex<double> controller_numerator, controller_denominator, plant_numerator, plant_denominator;
+    };
+    Parts parts(std::complex<double> s) const;
+
     Loop(const LinearPlant& plant, const ParallelPid& gains) : plant_(&plant), gains_(gains) {}
     int controller_excess() const;                  // degree of denominator minus numerator
     double controller_leading_coefficient() const;  // of numerator over denominator

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/loop/log_root.h"
+#include "engine/plant/quick_complex.h"
 
 namespace tunewright {
 namespace {
@@ -59,23 +60,23 @@ Margins find_interior_margins(const std::function<std::complex<double>(double)>&
     Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};
     const auto imaginary = [&](double omega) {
         const auto L = open_loop(omega);
-        return L.imag() / std::abs(L);
+        return L.imag() / magnitude(L);
     };
-    const auto log_gain = [&](double omega) { return std::log(std::abs(open_loop(omega))); };
+    const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
         const bool resolved = right <= grid.resolved_to;
-        if (!std::isfinite(std::abs(a)) || !std::isfinite(std::abs(b))) continue;
+        if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
         if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
             const double omega =
-                log_root(imaginary, left, right, a.imag() / std::abs(a), b.imag() / std::abs(b), kToRounding);
+                log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
             note_real_crossing(margins, open_loop(omega).real(), omega);
         }
-        if (!resolved && 1 / std::abs(b) > 1) note_real_crossing(margins, -std::abs(b), right);
-        if ((std::abs(a) < 1) != (std::abs(b) < 1)) {
+        if (!resolved && 1 / magnitude(b) > 1) note_real_crossing(margins, -magnitude(b), right);
+        if ((magnitude(a) < 1) != (magnitude(b) < 1)) {
             const double omega =
-                log_root(log_gain, left, right, std::log(std::abs(a)), std::log(std::abs(b)), kToRounding);
+                log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kToRounding);
             note_unit_crossing(margins, open_loop(omega), omega);
         }
     }

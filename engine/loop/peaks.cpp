@@ -5,15 +5,17 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/plant/quick_complex.h"
+
 namespace tunewright {
 namespace {
 
 using LoopFunction = std::function<LoopPoint(double)>;
 using Magnitude = double (*)(const LoopPoint&);
 
-double magnitude_S(const LoopPoint& p) { return std::abs(p.S); }
-double magnitude_T(const LoopPoint& p) { return std::abs(p.T); }
-double magnitude_CS(const LoopPoint& p) { return std::abs(p.CS); }
+double magnitude_S(const LoopPoint& p) { return magnitude(p.S); }
+double magnitude_T(const LoopPoint& p) { return magnitude(p.T); }
+double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
 
@@ -50,14 +52,14 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
             if (peak.value > best.value) best = peak;
         }
     };
-    const auto gain = [&](std::size_t i) { return std::abs(grid.point[i].L); };
+    const auto gain = [&](std::size_t i) { return magnitude(grid.point[i].L); };
     for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
         if (grid.omega[i] <= grid.resolved_to || gain(i) >= 1) continue;
         const bool first = grid.omega[i - 1] <= grid.resolved_to;
         if (!first && (gain(i) < gain(i - 1) || gain(i) < gain(i + 1))) continue;
         if (1 / (1 - gain(i)) > peaks.S.value) scan(grid.omega[i], magnitude_S, peaks.S);
         if (gain(i) / (1 - gain(i)) > peaks.T.value) scan(grid.omega[i], magnitude_T, peaks.T);
-        if (std::abs(grid.point[i].CS) * (1 + gain(i)) / (1 - gain(i)) > peaks.CS.value)
+        if (magnitude(grid.point[i].CS) * (1 + gain(i)) / (1 - gain(i)) > peaks.CS.value)
             scan(grid.omega[i], magnitude_CS, peaks.CS);
     }
 }
@@ -136,7 +138,7 @@ Peak maximise(const std::function<double(double)>& f, double left, double centre
 LoopGrid make_peak_grid(const Loop& loop) {
     LoopGrid grid = make_loop_grid(loop);
     double largest = 0;
-    for (const auto& point : grid.point) largest = std::max(largest, std::abs(point.S));
+    for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
     // Where S never rises far above one, its maximum is as flat: look closer.
     const double rise = largest - 1;
     if (rise < 0.3) grid = make_loop_grid(loop, std::clamp(0.3 * rise, 5e-3, 0.15));

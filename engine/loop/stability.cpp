@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/loop/frequency_grid.h"
+#include "engine/plant/quick_complex.h"
 
 namespace tunewright {
 namespace {
@@ -31,8 +32,8 @@ public:
         auto [numerator, denominator] = loop_.fraction({0, omega});
         Complex normaliser = 1;
         for (int i = 0; i < degree_; ++i) normaliser *= Complex(a_, omega);
-        return {omega, (denominator + numerator) / normaliser, denominator / normaliser,
-                (std::abs(denominator) + std::abs(numerator)) / std::abs(normaliser)};
+        return {omega, quotient(denominator + numerator, normaliser), quotient(denominator, normaliser),
+                (magnitude(denominator) + magnitude(numerator)) / magnitude(normaliser)};
     }
 
 private:
@@ -49,10 +50,10 @@ struct Turn {
 /// The change of arg g between two frequencies, halving the step until it is unmistakable.
 Turn turn_between(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right,
                   int depth) {
-    const double smaller = std::min(std::abs(left.g), std::abs(right.g));
+    const double smaller = std::min(magnitude(left.g), magnitude(right.g));
     if (smaller <= kBoundary * std::max(left.size, right.size)) return {0, true};
-    if (std::abs(right.g - left.g) <= kLargestTurn * smaller) return {std::arg(right.g / left.g), false};
-    if (depth == 0) return {std::arg(right.g / left.g), true};
+    if (magnitude(right.g - left.g) <= kLargestTurn * smaller) return {std::arg(quotient(right.g, left.g)), false};
+    if (depth == 0) return {std::arg(quotient(right.g, left.g)), true};
     const double middle = left.omega > 0 ? std::sqrt(left.omega * right.omega) : right.omega / 4;
     const auto centre = g.at(middle);
     const Turn first = turn_between(g, left, centre, depth - 1);
@@ -63,14 +64,14 @@ Turn turn_between(const Characteristic& g, const Characteristic::Value& left, co
 
 /// Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
 bool dead_time_cannot_encircle(const Characteristic::Value& value) {
-    return std::abs(value.g - value.open) < 0.99 * std::abs(value.open);
+    return magnitude(value.g - value.open) < 0.99 * magnitude(value.open);
 }
 
 Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right) {
     if (left.omega > 0 && dead_time_cannot_encircle(left) && dead_time_cannot_encircle(right)) {
-        const double open_turn = std::arg(right.open / left.open);
+        const double open_turn = std::arg(quotient(right.open, left.open));
         if (std::abs(open_turn) < 1)
-            return {std::arg(right.g / right.open) - std::arg(left.g / left.open) + open_turn, false};
+            return {std::arg(quotient(right.g, right.open)) - std::arg(quotient(left.g, left.open)) + open_turn, false};
     }
     return turn_between(g, left, right, kMaxHalvings);
 }
@@ -81,7 +82,7 @@ Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, co
 int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
     const double L = loop.plant().dead_time();
     for (std::size_t i = grid.omega.size(); L > 0 && i-- > 0;) {
-        if (!(std::abs(grid.point[i].L) > 1)) continue;
+        if (!(magnitude(grid.point[i].L) > 1)) continue;
         const double turns = grid.omega[i] * L / (2 * std::numbers::pi);
         return turns > loop.denominator_degree() + 6 ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
     }
@@ -100,7 +101,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
     const Characteristic g(loop, scale);
     auto left = g.at(0);
     const double start = left.g.real() < 0 ? std::numbers::pi : 0;
-    if (std::abs(left.g) <= kBoundary * left.size || left.size == 0)
+    if (magnitude(left.g) <= kBoundary * left.size || left.size == 0)
         return {.unstable_poles = 0, .on_the_boundary = true};
 
     double angle = start;

@@ -1,0 +1,26 @@
+// Quotient and magnitude of complex numbers where loops over frequency need millions of them: several times as quick as
+// the library's, which look after special values first. Same accuracy; numbers out of the ordinary go to the library.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace tunewright {
+
+/// |z|, free of overflow.
+inline double magnitude(std::complex<double> z) {
+    const double squared = std::norm(z);
+    return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : std::abs(z);
+}
+
+/// n/d, free of overflow in between; for d = 0 as the library says.
+inline std::complex<double> quotient(std::complex<double> n, std::complex<double> d) {
+    const double size = std::max(std::abs(d.real()), std::abs(d.imag()));
+    if (!(size > 1e-290 && size < 1e290)) return n / d;
+    const double scale = 1 / size, re = d.real() * scale, im = d.imag() * scale;
+    const double inverse = scale / (re * re + im * im);
+    return {(n.real() * re + n.imag() * im) * inverse, (n.imag() * re - n.real() * im) * inverse};
+}
+
+}  // namespace tunewright

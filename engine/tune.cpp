@@ -22,6 +22,7 @@ Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled bef
 struct Planned {
     LeagueRow row;
     std::string where;
+    bool of_all = false;
 };
 
 Error unknown_method(const std::string& id, const std::string& where) {
@@ -37,7 +38,7 @@ Expected<std::vector<Planned>> plan(const std::vector<MethodRequest>& requests) 
         const auto& [id, options] = requests[i];
         const std::string where = "tune/" + std::to_string(i);
         if (id == kAll) {
-            for (LeagueRow& row : league_rows(options)) planned.push_back({std::move(row), where});
+            for (LeagueRow& row : league_rows(options)) planned.push_back({std::move(row), where, true});
             continue;
         }
         const TuningMethod* method = find_method(id);
@@ -112,11 +113,13 @@ private:
     std::optional<Error> state_problem();
     Expected<TunedController> tuned_with(const Planned& planned, const RunControl& control) const;
     TuningEntry entry(const Planned& planned, double from, double to);
+    bool repeats(const TuningEntry& entry) const;
     bool tune_rows(const std::vector<Planned>& planned, double from, double to);
     bool wants_optima() const;
     void compare_with_optima(double from);
     TuningEntry baseline();
-    void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const;
+    Expected<Evaluation> evaluated(const Controller& controller);
+    void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings);
     void add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule);
     Error placed(Error error, const std::string& where) const;
     void keep_best(const TuningEntry& entry);
@@ -134,6 +137,7 @@ private:
     std::optional<MeasuredPlant> measured_;  // the plant is known by points alone
     std::optional<BestSoFar> best_;
     std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
+    std::vector<std::pair<Pid, Evaluation>> evaluated_;
     TuningResult result_;
 };
 
@@ -201,9 +205,20 @@ Error Run::placed(Error error, const std::string& where) const {
     return error;
 }
 
-void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) const {
+// Several rules may give the very same controller: it is evaluated once.
+Expected<Evaluation> Run::evaluated(const Controller& controller) {
+    const Pid* pid = std::get_if<Pid>(&controller);
+    if (pid != nullptr)
+        for (const auto& [known, evaluation] : evaluated_)
+            if (known == *pid) return evaluation;
     auto evaluation = measured_ ? evaluate(*measured_, controller, request_.evaluate)
                                 : evaluate(family_, controller, request_.evaluate);
+    if (evaluation && pid != nullptr) evaluated_.emplace_back(*pid, *evaluation);
+    return evaluation;
+}
+
+void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) {
+    auto evaluation = evaluated(controller);
     if (!evaluation) {
         entry.error = evaluation.error();
         return;
@@ -314,6 +329,16 @@ Error all_failed(const std::vector<TuningEntry>& entries) {
     return error;
 }
 
+// Where a rule has no derivative its PID row is its PI row once more.
+bool Run::repeats(const TuningEntry& entry) const {
+    const Pid* pid = entry.evaluation ? std::get_if<Pid>(&entry.evaluation->controller) : nullptr;
+    return pid != nullptr && std::ranges::any_of(result_.controllers, [&](const TuningEntry& other) {
+               if (other.method != entry.method || !other.evaluation) return false;
+               const Pid* known = std::get_if<Pid>(&other.evaluation->controller);
+               return known != nullptr && *known == *pid;
+           });
+}
+
 // False: stopped before the last row.
 bool Run::tune_rows(const std::vector<Planned>& planned, double from, double to) {
     const double share_of_one = (to - from) / static_cast<double>(planned.size());
@@ -323,7 +348,7 @@ bool Run::tune_rows(const std::vector<Planned>& planned, double from, double to)
         TuningEntry entry = this->entry(next, from, from + share_of_one);
         if (entry.error && entry.error->kind == ErrorKind::cancelled) return false;
         keep_best(entry);
-        result_.controllers.push_back(std::move(entry));
+        if (!next.of_all || !repeats(entry)) result_.controllers.push_back(std::move(entry));
         if (result_.partial) return false;
         from += share_of_one;
     }

@@ -26,6 +26,8 @@ enum class FilterType {
 struct Filter {
     FilterType type = FilterType::none;
     double Tf = 0;  ///< > 0 unless type is none
+
+    bool operator==(const Filter&) const = default;
 };
 
 /// The ideal (standard, non-interacting) form. `Ti` infinite: no integral action.
@@ -38,6 +40,7 @@ struct Pid {
     Filter filter = {};
 
     bool has_integral() const { return Ti < std::numeric_limits<double>::infinity(); }
+    bool operator==(const Pid&) const = default;
 };
 
 /// Kp + Ki/s + Kd s, filter and weights as in the ideal form. Carries Kp = 0 (pure I, I + D) too.

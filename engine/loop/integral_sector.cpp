@@ -7,13 +7,14 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/plant/quick_complex.h"
 
 namespace tunewright {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGridStep = 0.05;
-constexpr int kGridDensity = 40;
+constexpr double kGridStep = 0.1;  // minima between points are refined
+constexpr int kGridDensity = 20;
 constexpr int kMostBeyond = 400;
 constexpr double kStrideBeyond = 1.1;
 
@@ -31,7 +32,7 @@ public:
 
     /// G = -j (Ki/omega) W with W = P/(1 + P C) of the PD loop.
     PopovPoint at(double omega) const {
-        const std::complex<double> W = pd_.at(omega).T / pd_.controller({0, omega});
+        const std::complex<double> W = quotient(pd_.at(omega).T, pd_.controller({0, omega}));
         return {omega, Ki_ * W.imag() / omega, -Ki_ * W.real()};
     }
 

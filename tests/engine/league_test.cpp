@@ -76,6 +76,20 @@ TEST(League, AnOptionThatDoesNotSuitAMethodIsItsRefusal) {
     EXPECT_EQ(too_large[0].refusal->kind, ErrorKind::unsupported);
 }
 
+TEST(League, ARuleWithoutDerivativeHasOneRow) {
+    const auto rows = [](const TuningResult& result) {
+        return std::ranges::count(result.controllers, std::string("simc"), &TuningEntry::method);
+    };
+    EXPECT_EQ(rows(league(kPlant)), 1) << "first order: SIMC's PID is its PI";
+    EXPECT_EQ(rows(league(Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3})), 2);
+}
+
+TEST(League, HasMoreThanTwentyFiveRowsOnAFirstOrderPlant) {
+    const auto result = league(kPlant);
+    EXPECT_GE(std::ranges::count_if(result.controllers, [](const auto& e) { return e.evaluation.has_value(); }), 40);
+    EXPECT_EQ(result.ranking.size(), result.controllers.size() - 1) << "Visioli's rule is for integrating plants alone";
+}
+
 TEST(League, TellsWhyARuleDoesNotApply) {
     const auto result = league(Fopdt{.K = 1, .T = 5, .L = 0});
     const TuningEntry& amigo = entry_of(result, "amigo");

@@ -4,7 +4,7 @@
 #include <limits>
 #include <tuple>
 
-#include "engine/tuning/options.h"
+#include "engine/tuning/method.h"
 
 namespace tunewright {
 namespace {
@@ -66,12 +66,12 @@ std::string row_title(const TuningMethod& method, const std::string& variant) {
 
 }  // namespace
 
-std::vector<LeagueRow> league_rows(const MethodOptions& given) {
-    std::vector<LeagueRow> rows;
+std::vector<PlannedRow> league_rows(const MethodOptions& given) {
+    std::vector<PlannedRow> rows;
     for (const TuningMethod& method : method_registry()) {
         const auto known = known_options(given, method);
         if (!known) {
-            rows.push_back({&method, {}, method.title, known.error()});
+            rows.push_back({&method, {}, method.title, known.error(), {}, true});
             continue;
         }
         const std::size_t before = rows.size();
@@ -79,11 +79,11 @@ std::vector<LeagueRow> league_rows(const MethodOptions& given) {
             if (contradicts(variant.options, *known)) continue;
             MethodOptions options = variant.options;
             for (const auto& [path, value] : known->values()) options.set(path, value);
-            rows.push_back({&method, std::move(options), row_title(method, variant.name), {}});
+            rows.push_back({&method, std::move(options), row_title(method, variant.name), {}, {}, true});
         }
         if (rows.size() > before) continue;
         const auto controller = known->text(kController);
-        rows.push_back({&method, *known, row_title(method, controller.value_or("")), {}});
+        rows.push_back({&method, *known, row_title(method, controller.value_or("")), {}, {}, true});
     }
     return rows;
 }

@@ -11,44 +11,11 @@
 namespace tunewright {
 namespace {
 
-constexpr double kNoticeable = 1.01;  // of a limit, before a warning
-constexpr const char* kAll = "all";
+constexpr double kNoticeable = 1.01;    // of a limit, before a warning
 constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
 constexpr double kRowsShare = 0.3;      // of what then remains, where optima are computed for every row
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
-
-// A row to come, with its place in the answer's errors ("tune/2").
-struct Planned {
-    LeagueRow row;
-    std::string where;
-    bool of_all = false;
-};
-
-Error unknown_method(const std::string& id, const std::string& where) {
-    std::string known;
-    for (const auto& method : method_registry()) known += method.id + ", ";
-    return {ErrorKind::invalid_argument, where + "/method",
-            "method is \"" + id + "\"; it must be one of " + known + "or all."};
-}
-
-Expected<std::vector<Planned>> plan(const std::vector<MethodRequest>& requests) {
-    std::vector<Planned> planned;
-    for (size_t i = 0; i < requests.size(); ++i) {
-        const auto& [id, options] = requests[i];
-        const std::string where = "tune/" + std::to_string(i);
-        if (id == kAll) {
-            for (LeagueRow& row : league_rows(options)) planned.push_back({std::move(row), where, true});
-            continue;
-        }
-        const TuningMethod* method = find_method(id);
-        if (!method) return unknown_method(id, where);
-        planned.push_back({{method, options, method->title, {}}, where});
-    }
-    if (planned.empty())
-        return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
-    return planned;
-}
 
 bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
 
@@ -72,8 +39,8 @@ std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& 
     return value ? std::optional(*value) : std::nullopt;
 }
 
-void warn_of_region(Evaluation& evaluation, const Planned& planned, bool identified) {
-    const auto limit = Ms_limit(*planned.row.method, planned.row.options);
+void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified) {
+    const auto limit = Ms_limit(*planned.method, planned.options);
     if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
     const double worst = *evaluation.region->worst_Ms;
     if (worst <= kNoticeable * *limit) return;
@@ -111,10 +78,10 @@ private:
     std::optional<Error> find_plant();
     std::optional<Error> take_plant(const PlantModel& plant);
     std::optional<Error> state_problem();
-    Expected<TunedController> tuned_with(const Planned& planned, const RunControl& control) const;
-    TuningEntry entry(const Planned& planned, double from, double to);
+    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
+    TuningEntry entry(const PlannedRow& planned, double from, double to);
     bool repeats(const TuningEntry& entry) const;
-    bool tune_rows(const std::vector<Planned>& planned, double from, double to);
+    bool tune_rows(const std::vector<PlannedRow>& planned, double from, double to);
     bool wants_optima() const;
     void compare_with_optima(double from);
     TuningEntry baseline();
@@ -251,10 +218,10 @@ std::optional<Error> Run::state_problem() {
     return std::nullopt;
 }
 
-Expected<TunedController> Run::tuned_with(const Planned& planned, const RunControl& control) const {
-    const TuningMethod& method = *planned.row.method;
-    const MethodOptions& options = planned.row.options;
-    if (planned.row.refusal) return *planned.row.refusal;
+Expected<TunedController> Run::tuned_with(const PlannedRow& planned, const RunControl& control) const {
+    const TuningMethod& method = *planned.method;
+    const MethodOptions& options = planned.options;
+    if (planned.refusal) return *planned.refusal;
     if (!measured_) return method.tune(*problem_, options, control);
     if (method.tune_on_points) return method.tune_on_points(*measured_, options, control);
     return Error{ErrorKind::unsupported, "",
@@ -262,12 +229,12 @@ Expected<TunedController> Run::tuned_with(const Planned& planned, const RunContr
                      " needs a model of the plant; points of a frequency response serve the method robust."};
 }
 
-TuningEntry Run::entry(const Planned& planned, double from, double to) {
+TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     TuningEntry entry;
-    entry.method = planned.row.method->id;
-    entry.title = planned.row.title;
-    entry.source = planned.row.method->source;
-    entry.options = planned.row.options;
+    entry.method = planned.method->id;
+    entry.title = planned.title;
+    entry.source = planned.method->source;
+    entry.options = planned.options;
     const double started = now_ms();
     auto tuned = tuned_with(planned, share(from, to));
     if (!tuned) {
@@ -340,11 +307,11 @@ bool Run::repeats(const TuningEntry& entry) const {
 }
 
 // False: stopped before the last row.
-bool Run::tune_rows(const std::vector<Planned>& planned, double from, double to) {
+bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double to) {
     const double share_of_one = (to - from) / static_cast<double>(planned.size());
-    for (const Planned& next : planned) {
+    for (const PlannedRow& next : planned) {
         if (stopped()) return false;
-        report(from, "tune", "Tuning with " + next.row.title + ".");
+        report(from, "tune", "Tuning with " + next.title + ".");
         TuningEntry entry = this->entry(next, from, from + share_of_one);
         if (entry.error && entry.error->kind == ErrorKind::cancelled) return false;
         keep_best(entry);
@@ -371,12 +338,12 @@ void Run::compare_with_optima(double from) {
 }
 
 bool Run::wants_optima() const {
-    const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.method == kAll; });
+    const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
     return !measured_ && request_.evaluate.optimum_at_Ms.value_or(league);
 }
 
 Expected<TuningResult> Run::result() {
-    const auto planned = plan(request_.tune);
+    const auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
     if (!measured_)

@@ -8,17 +8,13 @@
 #include "engine/evaluate.h"
 #include "engine/identification/identify.h"
 #include "engine/optimum_at_ms.h"
+#include "engine/plan.h"
 #include "engine/progress.h"
 #include "engine/rimc_entry.h"
 #include "engine/tradeoff_entry.h"
 #include "engine/tuning/method.h"
 
 namespace tunewright {
-
-struct MethodRequest {
-    std::string method = "robust";  ///< or "all": every method in all its variants, each with those options it knows
-    MethodOptions options;
-};
 
 struct TuningRequest {
     std::optional<PlantModel> plant;  ///< exactly one of plant and record

@@ -167,8 +167,9 @@ void read_method(const Json& value, MethodRequest& target, Reader& reader) {
     const TuningMethod* method = word->is_string() ? find_method(word->get<std::string>()) : nullptr;
     if (!method) {
         const std::string meant = word->is_string() ? nearest(word->get<std::string>(), ids) : "";
-        return reader.fault_at("method", "method is " + shown(*word) + "; it must be " + listed(ids) + "." +
-                                             (meant.empty() ? "" : " Did you mean " + meant + "?"));
+        const std::string known =
+            meant.empty() ? "it must be " + listed(ids) + "." : "there is no such method. Did you mean " + meant + "?";
+        return reader.fault_at("method", "method is " + shown(*word) + "; " + known);
     }
     target.method = method->id;
     read_options(value, method->options, "", method->id, target.options, reader);

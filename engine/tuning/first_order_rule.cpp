@@ -7,6 +7,19 @@
 namespace tunewright {
 namespace {
 
+std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderRule& rule) {
+    if (model.integrators > 0) return {};
+    const double ratio = model.L / model.T1;
+    if (ratio >= rule.least && ratio <= rule.most) return {};
+    std::string range = "outside " + text(rule.least) + " to " + text(rule.most);
+    if (rule.least == 0) range = "above " + text(rule.most);
+    if (rule.most == std::numeric_limits<double>::infinity()) range = "below " + text(rule.least);
+    return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range in which " + rule.name +
+                             " holds. Check Ms, or use robust.")};
+}
+
+}  // namespace
+
 std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule) {
     if (model.integrators == 1 && !rule.has_integrating_form)
         return degenerate("plant", rule.name + " has no form for integrating plants.",
@@ -20,19 +33,6 @@ std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule
                           "Use amigo, improved_simc or robust.");
     return std::nullopt;
 }
-
-std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderRule& rule) {
-    if (model.integrators > 0) return {};
-    const double ratio = model.L / model.T1;
-    if (ratio >= rule.least && ratio <= rule.most) return {};
-    std::string range = "outside " + text(rule.least) + " to " + text(rule.most);
-    if (rule.least == 0) range = "above " + text(rule.most);
-    if (rule.most == std::numeric_limits<double>::infinity()) range = "below " + text(rule.least);
-    return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range in which " + rule.name +
-                             " holds. Check Ms, or use robust.")};
-}
-
-}  // namespace
 
 Expected<TunedController> tune_first_order(const TuningProblem& problem, const MethodOptions& options,
                                            const FirstOrderRule& rule,

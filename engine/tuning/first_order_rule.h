@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "engine/tuning/rule.h"
@@ -16,6 +17,9 @@ struct FirstOrderRule {
     bool has_integrating_form = false;                      ///< also for K e^(-Ls)/s
     TangentTime tangent_time = TangentTime::at_63_percent;  ///< T of the tangent that plants of other forms get
 };
+
+/// What such a rule refuses: L = 0, T = 0 and, without an integrating form, an integrator.
+std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule);
 
 /// `settings` on the model of the plant (by option `reduction`, tangent first), with a derivative filter by option
 /// `filter`. Warns "outside-validity" with L/T beyond the rule's range.

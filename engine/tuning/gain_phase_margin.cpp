@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "engine/number_text.h"
-#include "engine/tuning/rule.h"
+#include "engine/tuning/first_order_rule.h"
 
 namespace tunewright {
 namespace {
@@ -25,20 +25,6 @@ SeriesPid settings(const ReducedModel& model, const Margins& margins) {
             .Td = model.T2};
 }
 
-std::optional<Error> unfit(const ReducedModel& model) {
-    if (model.integrators > 0)
-        return degenerate("plant", "Ho, Hang and Cao's rule has no form for integrating plants.",
-                          "Use simc, lambda or robust.");
-    if (model.L <= 0)
-        return degenerate("plant/L", "Ho, Hang and Cao's rule divides by the dead time, and that of the model is 0.",
-                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
-                          "a fixed filter Tf.");
-    if (model.T1 <= 0)
-        return degenerate("plant/T", "Ho, Hang and Cao's rule needs a lag, and the model is a pure dead time (T = 0).",
-                          "Use amigo, improved_simc or robust.");
-    return std::nullopt;
-}
-
 Error contradiction(const Margins& margins) {
     return {ErrorKind::invalid_argument, "phase_margin_deg",
             "A gain margin of " + text(margins.gain) + " with a phase margin of " + text(margins.phase_deg) +
@@ -53,7 +39,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
         problem, options,
         {.order = wants_PID ? ReducedOrder::second : ReducedOrder::first, .preferred = ReductionMethod::half_rule});
     if (!model) return model.error();
-    if (const auto error = unfit(*model)) return *error;
+    if (const auto error = unfit(*model, {.name = "Ho, Hang and Cao's rule"})) return *error;
     const Margins margins{options.number("gain_margin").value_or(kGainMargin),
                           options.number("phase_margin_deg").value_or(kPhaseMargin)};
     const SeriesPid series = settings(*model, margins);

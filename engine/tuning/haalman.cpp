@@ -3,24 +3,10 @@
 #include <optional>
 
 #include "engine/number_text.h"
-#include "engine/tuning/rule.h"
+#include "engine/tuning/first_order_rule.h"
 
 namespace tunewright {
 namespace {
-
-std::optional<Error> unfit(const ReducedModel& model) {
-    if (model.integrators > 0)
-        return degenerate("plant", "Haalman's rule gives no integral action for integrating plants.",
-                          "Use simc, lambda, amigo or robust.");
-    if (model.L <= 0)
-        return degenerate("plant/L", "Haalman's rule divides by the dead time, and that of the model is 0.",
-                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
-                          "a fixed filter Tf.");
-    if (model.T1 <= 0)
-        return degenerate("plant/T", "Haalman's rule sets Ti = T, and the model is a pure dead time (T = 0).",
-                          "Use amigo, improved_simc or robust.");
-    return std::nullopt;
-}
 
 Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
     const bool wants_PID = chosen_controller(options) == "PID";
@@ -28,7 +14,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
         problem, options,
         {.order = wants_PID ? ReducedOrder::second : ReducedOrder::first, .preferred = ReductionMethod::half_rule});
     if (!model) return model.error();
-    if (const auto error = unfit(*model)) return *error;
+    if (const auto error = unfit(*model, {.name = "Haalman's rule"})) return *error;
     const double Ti = model->T1 + model->T2;
     Pid answer{.Kp = 2 * Ti / (3 * model->K * model->L), .Ti = Ti, .Td = model->T1 * model->T2 / Ti};
     answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);

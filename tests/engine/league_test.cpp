@@ -38,9 +38,9 @@ MethodOptions options(const std::string& path, OptionValue value) {
     return options;
 }
 
-std::vector<LeagueRow> rows_of(const std::string& method, const MethodOptions& given) {
-    std::vector<LeagueRow> rows;
-    for (LeagueRow& row : league_rows(given))
+std::vector<PlannedRow> rows_of(const std::string& method, const MethodOptions& given) {
+    std::vector<PlannedRow> rows;
+    for (PlannedRow& row : league_rows(given))
         if (row.method->id == method) rows.push_back(std::move(row));
     return rows;
 }

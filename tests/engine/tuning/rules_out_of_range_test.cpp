@@ -58,6 +58,12 @@ const std::vector<Case> kWarns{
     {"haalman", kPI, kLittleDeadTime, "slow answer to loads"},
     {"haalman", {}, kUsual, "no second lag"},
     {"gain_phase_margin", {}, kUsual, "no second lag"},
+    {"arrieta_ms", {}, Fopdt{.K = 1, .T = 1, .L = 3}, "L/T is 3, outside 0.1 to 2"},
+    {"arrieta_degradation", {}, Fopdt{.K = 1, .T = 10, .L = 0.9}, "L/T is 0.09, outside 0.1 to 2"},
+    {"arrieta_degradation", {{"degradation", 0.4}}, kUsual, "those for 0.4 were solved for on the model"},
+    {"npid_ise", {}, kMuchDeadTime, "outside 0.01 to 3, for which the rule was fitted"},
+    {"npid_iae", {}, Fopdt{.K = 1, .T = 100, .L = 0.9}, "L/T is 0.009"},
+    {"npid_itae", {}, Fopdt{.K = 1, .T = 1, .L = 0.95}, "between 0.9 and 1"},
 };
 
 TEST(RulesOutOfRange, AreAnsweredWithAWarningThatNamesTheFigure) {
@@ -79,6 +85,13 @@ TEST(RulesOutOfRange, AreSilentWithin) {
 }
 
 const std::vector<Case> kRefuses{
+    {"arrieta_ms", {}, kIntegrating, "plant: The rule is written for stable first-order models"},
+    {"arrieta_ms", {}, kNoDeadTime, "dead time"},
+    {"arrieta_degradation", {}, kNoLag, "T = 0"},
+    {"npid_iae", {}, kIntegrating, "plant: The rule is written for a stable first-order lag"},
+    {"npid_ise", {}, kNoDeadTime, "plant/L: The rule raises L/T to a negative power"},
+    {"npid_itae", {}, kNoLag, "plant/T: The rule divides by the lag T"},
+    {"rimc", {}, kUnstable, "plant"},
     {"cohen_coon", {}, kNoDeadTime, "plant/L: Cohen-Coon divides by the dead time, and that of the model is 0. Give"},
     {"chien_hrones_reswick", {}, kNoDeadTime, "plant/L: Chien-Hrones-Reswick divides by the dead time"},
     {"lopez", {}, kNoDeadTime, "plant/L: Lopez divides by the dead time"},
@@ -91,9 +104,9 @@ const std::vector<Case> kRefuses{
     {"cohen_coon", {}, kIntegrating, "plant: Cohen-Coon has no form for integrating plants"},
     {"chien_hrones_reswick", {word("mode", "servo")}, kIntegrating, "Chien-Hrones-Reswick for set points has no form"},
     {"kappa_tau", {}, kIntegrating, "has no form for integrating plants"},
-    {"haalman", {}, kIntegrating, "Haalman's rule gives no integral action for integrating plants"},
+    {"haalman", {}, kIntegrating, "Haalman's rule has no form for integrating plants"},
     {"haalman", {}, kNoDeadTime, "plant/L: Haalman's rule divides by the dead time"},
-    {"haalman", {}, kNoLag, "plant/T: Haalman's rule sets Ti = T"},
+    {"haalman", {}, kNoLag, "plant/T: Haalman's rule needs a lag"},
     {"gain_phase_margin", {}, kIntegrating, "Ho, Hang and Cao's rule has no form for integrating plants"},
     {"gain_phase_margin", {}, kNoDeadTime, "plant/L: Ho, Hang and Cao's rule divides by the dead time"},
     {"gain_phase_margin", {}, kNoLag, "plant/T: Ho, Hang and Cao's rule needs a lag"},

@@ -143,7 +143,7 @@ test("faults that the service finds stand at their fields, several at once", asy
 test("several methods and today's settings are compared; a second plot and the keyboard follow", async () => {
   await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
     await page.getByText(/^Compare with/).click();
-    await page.getByRole("checkbox", { name: /simc$/ }).check();
+    await page.getByRole("checkbox", { name: / simc$/ }).check();
     await page.getByLabel("Kp", { exact: true }).fill("1.2");
     await page.getByLabel("Ti", { exact: true }).fill("40");
     await page.getByRole("button", { name: "Tune this model" }).click();
@@ -359,7 +359,7 @@ for (const scheme of ["light", "dark"]) {
   test(`axe finds nothing on Start and Design in the ${scheme} theme`, async () => {
     await withPage("#/new/fopdt?K=1.25&T=40&L=8", { scheme }, async (page) => {
       await page.getByText(/^Compare with/).click();
-      await page.getByRole("checkbox", { name: /simc$/ }).check();
+      await page.getByRole("checkbox", { name: / simc$/ }).check();
       await page.getByLabel("Kp", { exact: true }).fill("1.2");
       assert.deepEqual(await accessibilityViolations(page), []);
       await page.getByRole("button", { name: "Tune this model" }).click();

@@ -142,6 +142,7 @@ TEST(Tradeoffs, OfANonlinearPidAreThoseOfItsResponsesToTheGivenSteps) {
     const auto evaluation = evaluate(plant, Npid{.Kp = 0.7, .Ti = 10}, options);
     EXPECT_NEAR(*own.plant.J_r / (*evaluation->performance.setpoint.IAE / 3), 1, 1e-12);
     EXPECT_NEAR(*own.plant.J_d / (*evaluation->performance.load.IAE / (0.5 * 2)), 1, 1e-12);
+    EXPECT_GT(std::abs(*own.plant.J_r / *linear.plant.J_r - 1), 0.01) << "the integral sees less of a large error";
 }
 
 TEST(Tradeoffs, WithoutAModelThePlantKeepsItsOwnFigures) {

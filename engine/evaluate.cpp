@@ -100,7 +100,7 @@ Verification verify(const LinearPlant& plant, const Loop& loop, std::optional<do
                     const LinearResponse& load, double load_step, std::optional<double> IAE) {
     Verification v;
     const LoopGrid other = make_loop_grid(loop, 0.2, 17);
-    v.ms_grid_difference = std::abs(find_peaks(loop, other).S.value / peaks.S.value - 1);
+    v.ms_grid_difference = std::abs(find_sensitivity_peak(loop, other).value / peaks.S.value - 1);
     if (const auto pole = rightmost_pole(loop)) v.stability_methods_agree = pole->real() < 0;
     if (!IAE || !load.error_integral_final) return v;
     StepSchedule finer = load.schedule;

@@ -20,6 +20,9 @@ struct Peaks {
 /// beyond it (dead time turning faster than any grid) the envelope's maximum is searched turn by turn.
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid);
 
+/// That of |S| alone, at a third of the cost.
+Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid);
+
 /// Peaks of any stable loop among and between the grid's points, without what lies beyond them.
 Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
 

@@ -71,8 +71,10 @@ void RimcBranch::find_admissible() {
 double RimcBranch::nearest_approach(const Pid& pid) const {
     const double Ki = pid.Kp / pid.Ti, Kd = pid.Kp * pid.Td, Tf = pid.filter.Tf;
     const auto squared = [&](std::size_t i) {
-        const std::complex<double> s(0, omega_[i]);
-        return std::norm(1.0 + response_[i] * (pid.Kp + Ki / s + Kd * s / (1.0 + Tf * s)));
+        // C(j omega) written out: the divisions of complex numbers would take most of the time.
+        const double omega = omega_[i], corner = omega * Tf, lead = Kd * omega / (1 + corner * corner);
+        const std::complex<double> C(pid.Kp + lead * corner, lead - Ki / omega);
+        return std::norm(1.0 + response_[i] * C);
     };
     std::size_t lowest = 1;
     double value = squared(1);
@@ -138,7 +140,7 @@ std::optional<Loop> RimcBranch::stable_loop(double x) const {
     return made && count_unstable_poles(*made).stable() ? made : std::nullopt;
 }
 
-double RimcBranch::Ms_of(const Loop& loop) { return find_peaks(loop, make_peak_grid(loop)).S.value; }
+double RimcBranch::Ms_of(const Loop& loop) { return find_sensitivity_peak(loop, make_peak_grid(loop)).value; }
 
 double RimcBranch::peak_of(const Loop& loop, double x) const {
     ResponseOptions options;

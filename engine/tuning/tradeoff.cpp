@@ -104,7 +104,7 @@ TradeoffFigures TradeoffScale::figures(const ParallelPid& controller) const {
     if (!K_) return no_tradeoff(no_gain_);
     const auto loop = usable_loop(plant_, controller);
     if (!loop) return no_tradeoff(loop.error().message);
-    const double Ms = find_peaks(*loop, make_peak_grid(*loop)).S.value;
+    const double Ms = find_sensitivity_peak(*loop, make_peak_grid(*loop)).value;
     if (controller.Ki == 0) return placed(Ms, std::nullopt, std::nullopt, kNoIntegral);
     return placed(Ms, step_iae(*loop, {.r = 1}), step_iae(*loop, {.d = 1 / *K_}), kUnsettled);
 }

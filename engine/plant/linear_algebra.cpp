@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -208,6 +209,15 @@ std::optional<std::vector<double>> solve(std::span<const double> matrix, std::sp
     if (!lu.isInvertible()) return std::nullopt;
     const Eigen::VectorXd x = columns.cwiseProduct(Eigen::VectorXd(lu.solve(right)));
     return std::vector<double>(x.data(), x.data() + x.size());
+}
+
+std::vector<double> least_norm_solution(std::span<const double> matrix, std::span<const double> b, int n,
+                                        double cutoff) {
+    const Matrix M = as_matrix(matrix, n);
+    Eigen::JacobiSVD<Matrix> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    svd.setThreshold(cutoff);
+    const Eigen::VectorXd x = svd.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
+    return {x.data(), x.data() + n};
 }
 
 }  // namespace tunewright

@@ -39,4 +39,8 @@ std::vector<double> matrix_exponential(std::span<const double> matrix, int n);
 /// Solves M x = b by LU with partial pivoting; empty if M is singular to working precision.
 std::optional<std::vector<double>> solve(std::span<const double> matrix, std::span<const double> b, int n);
 
+/// The shortest x with the smallest |M x - b|, singular values below `cutoff` times the largest taken as 0 (SVD).
+std::vector<double> least_norm_solution(std::span<const double> matrix, std::span<const double> b, int n,
+                                        double cutoff);
+
 }  // namespace tunewright

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/expected.h"
-#include "engine/plant/expression/program.h"
 #include "engine/plant/nonlinear_plant.h"
 #include "engine/plant/plant.h"
+#include "engine/plant/plant_program.h"
 
 namespace tunewright {
 
@@ -46,16 +46,20 @@ public:
     bool output_gradient(std::span<const double> x, std::span<double> C) const;
     /// Which operation of which equation fails at x and u, as a sentence; empty inside the domain.
     std::string domain_fault(std::span<const double> x, double u) const;
+    /// The same where a value is finite and its derivative is not, as that of sqrt at 0.
+    std::string derivative_fault(std::span<const double> x, double u) const;
 
     /// About the steady state, with the dead time; exact derivatives.
     const StateSpace& linearised() const { return linearised_; }
 
     /// Outputs 0 to n - 1 are f, output n is h; variables 0 to n - 1 are x, variable n is u.
-    const Program& program() const { return *program_; }
+    const Program& program() const { return program_->joint; }
 
 private:
+    bool linearise();
+
     NonlinearPlant plant_;
-    std::shared_ptr<const Program> program_;
+    std::shared_ptr<const PlantProgram> program_;
     std::vector<double> x_steady_;
     double y_steady_ = 0;
     StateSpace linearised_;

@@ -1,0 +1,77 @@
+// What a number type must offer so that a program runs on it: its value part decides comparisons, `apply` does one
+// operation.
+#pragma once
+
+#include <cmath>
+#include <complex>
+
+#include "engine/plant/expression/dual.h"
+#include "engine/plant/expression/operation.h"
+
+namespace tunewright {
+
+inline double value_part(double x) { return x; }
+inline double value_part(const std::complex<double>& x) { return x.real(); }
+template <int N>
+double value_part(const Dual<N>& x) {
+    return x.v;
+}
+
+inline void set_constant(double& x, double value) { x = value; }
+inline void set_constant(std::complex<double>& x, double value) { x = value; }
+template <int N>
+void set_constant(Dual<N>& x, double value) {
+    x = constant_dual<N>(value);
+}
+
+inline bool all_finite(double x) { return std::isfinite(x); }
+inline bool all_finite(const std::complex<double>& x) { return std::isfinite(x.real()) && std::isfinite(x.imag()); }
+template <int N>
+bool all_finite(const Dual<N>& x) {
+    for (const double d : x.d)
+        if (!std::isfinite(d)) return false;
+    return std::isfinite(x.v);
+}
+
+/// 1 where it holds, 0 where not, not a number where one side is none.
+template <class T>
+T truth(bool holds, const T& a, const T& b) {
+    T result;
+    const double x = value_part(a), y = value_part(b);
+    set_constant(result, std::isnan(x) || std::isnan(y) ? x + y : holds ? 1.0 : 0.0);
+    return result;
+}
+
+/// One operation of a program; `c` is used by `select` alone. Where a value is undefined the result is not finite.
+/// At the kink of abs, min and max the derivative is that from the right, or of the first operand.
+template <class T>
+T apply(Operation operation, const T& a, const T& b, const T& c) {
+    using std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tan, std::tanh;
+    const double x = value_part(a), y = value_part(b);
+    switch (operation) {
+        case Operation::add: return a + b;
+        case Operation::subtract: return a - b;
+        case Operation::multiply: return a * b;
+        case Operation::divide: return a / b;
+        case Operation::negate: return -a;
+        case Operation::power: return pow(a, y);
+        case Operation::less: return truth(x < y, a, b);
+        case Operation::less_equal: return truth(x <= y, a, b);
+        case Operation::equal: return truth(x == y, a, b);
+        case Operation::not_equal: return truth(x != y, a, b);
+        case Operation::select: return std::isnan(x) ? a : x != 0 ? b : c;
+        case Operation::exp: return exp(a);
+        case Operation::log: return log(a);
+        case Operation::sqrt: return sqrt(a);
+        case Operation::sin: return sin(a);
+        case Operation::cos: return cos(a);
+        case Operation::tan: return tan(a);
+        case Operation::tanh: return tanh(a);
+        case Operation::abs: return x < 0 ? -a : a;
+        case Operation::min: return std::isnan(x) || x <= y ? a : b;
+        case Operation::max: return std::isnan(x) || x >= y ? a : b;
+        default: return a;
+    }
+}
+
+}  // namespace tunewright

@@ -3,7 +3,7 @@
 FROM debian:bookworm-slim AS binary
 RUN apt-get update && apt-get install -y --no-install-recommends \
         g++ make cmake ninja-build pkg-config libcpp-httplib-dev nlohmann-json3-dev libeigen3-dev libnlopt-dev \
-        libsqlitecpp-dev libsqlite3-dev libspdlog-dev libcli11-dev prometheus-cpp-dev \
+        libsqlitecpp-dev libsqlite3-dev libspdlog-dev libcli11-dev prometheus-cpp-dev libboost-dev \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./

@@ -54,6 +54,8 @@ public:
 
     /// Outputs 0 to n - 1 are f, output n is h; variables 0 to n - 1 are x, variable n is u.
     const Program& program() const { return program_->joint; }
+    /// h alone, of the same variables.
+    const Program& output_program() const { return program_->output; }
 
 private:
     bool linearise();

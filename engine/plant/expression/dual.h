@@ -60,6 +60,14 @@ Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
 }
 
 template <int N>
+Dual<N> operator*(const Dual<N>& a, double factor) {
+    Dual<N> result;
+    result.v = a.v * factor;
+    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] * factor;
+    return result;
+}
+
+template <int N>
 Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
     Dual<N> result;
     result.v = a.v / b.v;

@@ -22,8 +22,12 @@ std::string Program::describe(int instruction, double a, double b, bool value_is
     } else {
         what = text(a) + " " + name + " " + text(b) + " is beyond the range of numbers";
     }
-    return sources_[static_cast<std::size_t>(origin.source)] + ", character " + std::to_string(origin.position) + ": " +
-           what;
+    return place(instruction) + ": " + what;
+}
+
+std::string Program::place(int instruction) const {
+    const Origin& origin = origins_[static_cast<std::size_t>(instruction)];
+    return sources_[static_cast<std::size_t>(origin.source)] + ", character " + std::to_string(origin.position);
 }
 
 std::vector<bool> Program::variables_of(int output) const {

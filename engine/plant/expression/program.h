@@ -50,6 +50,9 @@ public:
     template <class T>
     std::string fault(std::span<const T> variables, int count) const;
 
+    /// Where an instruction comes from: "equation T, character 17".
+    std::string place(int instruction) const;
+
     /// Which variables an output depends on.
     std::vector<bool> variables_of(int output) const;
 

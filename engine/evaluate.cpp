@@ -199,6 +199,8 @@ void add_region(Evaluation& evaluation, const PlantFamily& family) {
 }  // namespace
 
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
+    if (std::holds_alternative<NonlinearPlant>(plant))
+        return Error{ErrorKind::unsupported, "plant", "A nonlinear plant cannot be evaluated by this build."};
     const auto* points = std::get_if<FrequencyResponse>(&plant);
     if (points == nullptr) {
         const auto* set = std::get_if<PlantSet>(&plant);

@@ -132,6 +132,8 @@ std::optional<Error> Run::take_plant(const PlantModel& plant) {
         measured_ = std::move(*measured);
         return std::nullopt;
     }
+    if (std::holds_alternative<NonlinearPlant>(plant))
+        return Error{ErrorKind::unsupported, "plant", "A nonlinear plant cannot be tuned by this build."};
     const auto* set = std::get_if<PlantSet>(&plant);
     family_ = set ? family_of(*set) : family_of(std::get<Plant>(plant));
     if (!family_.single()) held_ = family_;

@@ -97,8 +97,9 @@ std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
         if (auto linear = check_linear(*plant, reader)) plants.push_back(std::move(*linear));
         return plants;
     }
-    if (std::holds_alternative<FrequencyResponse>(model)) return plants;
-    const auto& members = std::get<PlantSet>(model).plants;
+    const auto* set = std::get_if<PlantSet>(&model);
+    if (set == nullptr) return plants;
+    const auto& members = set->plants;
     const Reader::At list(reader, "plants");
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Reader::At member(reader, i);

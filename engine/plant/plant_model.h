@@ -1,10 +1,12 @@
-// What a request may be about: one linear plant (perhaps with uncertain parameters), several, or measured points.
+// What a request may be about: one linear plant (perhaps with uncertain parameters), several, measured points of one, or
+// differential equations.
 #pragma once
 
 #include <variant>
 #include <vector>
 
 #include "engine/plant/frequency_response.h"
+#include "engine/plant/nonlinear_plant.h"
 #include "engine/plant/plant.h"
 
 namespace tunewright {
@@ -14,6 +16,6 @@ struct PlantSet {
     std::vector<Plant> plants;
 };
 
-using PlantModel = std::variant<Plant, PlantSet, FrequencyResponse>;
+using PlantModel = std::variant<Plant, PlantSet, FrequencyResponse, NonlinearPlant>;
 
 }  // namespace tunewright

@@ -32,7 +32,7 @@ struct LinearisingOptions {
     double horizon = 0;  ///< > 0
     int samples = 401;   ///< >= 2, from 0 to the horizon
     double tolerance = 1e-10;
-    std::vector<double> initial;  ///< absolute states at t = 0; empty: the steady state
+    std::vector<double> initial = {};  ///< absolute states at t = 0; empty: the steady state
 };
 
 struct LinearisingResponse {

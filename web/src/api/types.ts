@@ -198,6 +198,76 @@ export interface Tradeoff {
   why_null?: WhyNull;
 }
 
+/** A response beside that of the nonlinear controller; absolute values at the times of their scenario. */
+export interface Followed {
+  t?: number[];
+  y?: (number | null)[];
+  u?: (number | null)[];
+}
+
+export interface EmulationScenario extends Followed {
+  setpoint_step: number;
+  initial?: Record<string, number>;
+  parameters?: Record<string, number>;
+  y_rest: number;
+  u_rest: number;
+  t: number[];
+  y_nl: (number | null)[];
+  u_nl: (number | null)[];
+  /** A limit of the input clipped the nonlinear controller's u. */
+  limited?: boolean;
+  /** Why a run ended early. */
+  ended?: string | null;
+}
+
+/** Settings of the first level: a classical rule on a simulated test or on the linear model. */
+export interface LevelOne extends Followed {
+  method: string;
+  test?: string;
+  title?: string;
+  model?: Plant | null;
+  controller?: Controller | null;
+  error?: Problem | string | null;
+  J?: number | null;
+  why_null?: WhyNull;
+}
+
+export type Tuned = "Kp" | "Ti" | "Td" | "Tf";
+export type Spreads = Partial<Record<Tuned, number | null>>;
+
+/** What an entry of the method emulation adds: how well its PID follows the nonlinear controller. */
+export interface Emulation {
+  formulation?: string;
+  J: number | null;
+  J_y?: number | null;
+  J_u?: number | null;
+  weights?: { wy: number; wu: number };
+  horizon?: number;
+  active_bounds?: { parameter: Tuned; bound: "low" | "high"; value: number }[];
+  bounds?: Partial<Record<Tuned, [number, number]>>;
+  /** By how much each may move until J has grown by 5 %: the others follow, or stay. */
+  flatness?: Spreads & { why_null?: WhyNull };
+  flatness_alone?: Spreads & { why_null?: WhyNull };
+  relative_degree?: number;
+  zero_dynamics_stable?: boolean;
+  zeros?: Complex[];
+  target?: { beta?: number[] };
+  fit?: { u_left?: number | null; y_left?: number | null; adequate?: boolean; sentence?: string };
+  level1?: LevelOne[];
+  scenarios?: EmulationScenario[];
+  t?: number[];
+  y_nl?: (number | null)[];
+  u_nl?: (number | null)[];
+  why_null?: WhyNull;
+}
+
+/** The steady state that everything on a nonlinear plant is a deviation from. */
+export interface OperatingPoint {
+  states: Record<string, number>;
+  u: number;
+  y: number;
+}
+
 export interface Entry {
   method: string;
   title?: string;
@@ -217,6 +287,9 @@ export interface Entry {
   rimc?: Rimc;
   optimum_at_Ms?: OptimumAtMs;
   tradeoff?: Tradeoff;
+  /** On a nonlinear plant, whose own figures and responses stand above: those of the linearised loop. */
+  linear?: Pick<Entry, "performance" | "responses">;
+  emulation?: Emulation;
   /** Of the nonlinear form: what can be said of errors of every size. */
   nonlinear?: { statement?: string };
   compute_ms?: number;
@@ -282,6 +355,9 @@ export interface Model {
 
 export interface Result {
   model?: Model;
+  /** Of a nonlinear plant. */
+  operating_point?: OperatingPoint;
+  linear_model?: Plant;
   controllers: Entry[];
   ranking?: number[];
   ranking_by?: string;

@@ -1,15 +1,40 @@
 // Set-point and load responses: y over u on one time axis.
 import type { TuningRequest } from "../api/types.ts";
+import { extent } from "../plot/axis.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
+import { inputOf } from "../words/plant.ts";
 import type { Drawn } from "./drawn.ts";
 
-export function responseFrame(kind: "setpoint" | "load", drawn: Drawn[], request: TuningRequest | undefined): Frame {
+/** With more entries than these the linear counterparts of all would be a thicket. */
+const MOST_WITH_LINEAR = 2;
+
+/** Whether the responses are those of a nonlinear plant, with the linearised loop's beside them. */
+export const hasLinear = (drawn: Drawn[]): boolean => drawn.some((item) => item.entry.linear?.responses);
+
+/** What stands above such plots. */
+export const BESIDE_LINEAR =
+  "Responses are those of the equations; thin and dotted: the same controller on their linear model.";
+
+/** `selected`: whose linear counterpart is drawn where many are. */
+export function responseFrame(
+  kind: "setpoint" | "load",
+  drawn: Drawn[],
+  request: TuningRequest | undefined,
+  selected?: number,
+): Frame {
   const units = unitNames(request?.units);
   const traces = (signal: "y" | "u"): Trace[] =>
     drawn.flatMap((item): Trace[] => {
       const response = item.entry.responses?.[kind];
-      return response ? [{ name: item.name, look: item.look, x: response.t, y: response[signal] }] : [];
+      const beside = drawn.length <= MOST_WITH_LINEAR || item.index === selected;
+      const linear = beside ? item.entry.linear?.responses?.[kind] : undefined;
+      return [
+        ...(response ? [{ name: item.name, look: item.look, x: response.t, y: response[signal] }] : []),
+        ...(linear
+          ? [{ name: `${item.name}, linear model`, look: item.look, thin: true, x: linear.t, y: linear[signal] }]
+          : []),
+      ];
     });
   const step = request?.evaluate?.setpoint_step ?? 1;
   const setpoint: Mark[] =
@@ -20,7 +45,11 @@ export function responseFrame(kind: "setpoint" | "load", drawn: Drawn[], request
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
       { y: { kind: "linear", label: withUnit("y", units.y) }, traces: traces("y"), marks: setpoint, weight: 1.5 },
-      { y: { kind: "linear", label: withUnit("u", units.u) }, traces: traces("u"), marks: actuatorMarks(request) },
+      {
+        y: { kind: "linear", label: withUnit("u", units.u) },
+        traces: traces("u"),
+        marks: limitMarks(request, traces("u")),
+      },
     ],
     link: "time",
     cursorLabel: withUnit("time", units.time),
@@ -29,11 +58,18 @@ export function responseFrame(kind: "setpoint" | "load", drawn: Drawn[], request
   };
 }
 
-function actuatorMarks(request: TuningRequest | undefined): Mark[] {
+/** Limits of u as deviations: the request's, and of a nonlinear plant's own those that u comes near. */
+function limitMarks(request: TuningRequest | undefined, traces: Trace[]): Mark[] {
   const actuator = request?.evaluate?.actuator;
-  return [actuator?.min, actuator?.max].flatMap((value): Mark[] =>
-    typeof value === "number" ? [{ kind: "level", value, role: "limit" }] : [],
+  const input = inputOf(request?.plant);
+  const [lo, hi] = extent(
+    traces.map((trace) => trace.y),
+    "linear",
   );
+  const near = (value: number): boolean => value > lo - (hi - lo) / 2 && value < hi + (hi - lo) / 2;
+  const own = [input?.min, input?.max].flatMap((value) => (typeof value === "number" ? [value - input!.nominal] : []));
+  const values = [actuator?.min, actuator?.max, ...own.filter(near)].filter((value) => typeof value === "number");
+  return values.map((value): Mark => ({ kind: "level", value, role: "limit" }));
 }
 
 function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: string): string {

@@ -9,6 +9,8 @@ export interface ControlOptions {
   value?: string;
   placeholder?: string;
   wide?: boolean;
+  /** The label is there for those who do not see the row's heading. */
+  bare?: boolean;
   rows?: number;
   pointer: () => string | null;
 }
@@ -19,6 +21,7 @@ export interface Field<T extends Control["input"]> {
   /** What the form's errors know this field by. */
   control: Control;
   setUnit(unit: string): void;
+  setLabel(label: string): void;
 }
 
 function assemble<T extends Control["input"]>(input: T, options: ControlOptions, errors: FormErrors): Field<T> {
@@ -29,10 +32,11 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
   input.setAttribute("aria-describedby", [hint?.id, error.id].filter(Boolean).join(" "));
   const control: Control = { input, error, pointer: options.pointer };
   errors.add(control);
+  const label = h("span", {}, options.label);
   const element = h(
     "div",
     { class: options.wide ? "field wide" : "field" },
-    h("label", { for: input.id }, options.label, unit),
+    h("label", { for: input.id, class: options.bare ? "visually-hidden" : null }, label, unit),
     input,
     error,
     hint,
@@ -43,6 +47,9 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
     control,
     setUnit(text) {
       unit.textContent = text ? ` (${text})` : "";
+    },
+    setLabel(text) {
+      label.textContent = text;
     },
   };
 }

@@ -1,9 +1,12 @@
 // From a method's JSON Schema to form fields, and from what was typed back to values. No DOM.
 import type { Schema } from "../api/types.ts";
-import { parseNumber, parseNumbers } from "./number.ts";
+import { parseCases, writeCases } from "./cases.ts";
+import { parseNumber, parseNumbers, parseRoots, writeRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
 
-export type FieldKind = "number" | "integer" | "boolean" | "choice" | "numbers" | "text";
+/** "spread": a number, or two between which it may lie; "roots": numbers or complex pairs; "cases": a list of objects. */
+export type FieldKind =
+  "number" | "integer" | "boolean" | "choice" | "numbers" | "spread" | "roots" | "cases" | "names" | "text";
 
 export interface FieldSpec {
   /** Where the value goes inside the object, e.g. ["filter", "Tf"]. */
@@ -15,6 +18,8 @@ export interface FieldSpec {
   choices: string[];
   /** Words that a number field also takes, e.g. "free". */
   words: string[];
+  /** Of cases: the member that stands first without its name. */
+  lead: string;
   /** What is used when the field is left empty, as text; "" if nothing is. */
   defaultText: string;
 }
@@ -30,7 +35,8 @@ export function fieldsOf(
     const property = resolve(raw, root);
     if (!property) return [];
     const here = [...path, name];
-    if (property.properties) return path.length < 3 ? fieldsOf(property, root, here) : [];
+    const inside = membersOf(property, root);
+    if (inside) return path.length < 3 ? fieldsOf({ properties: inside }, root, here) : [];
     const spec = fieldOf(property, root);
     if (!spec) return [];
     const own = property["x-unit"] ?? "";
@@ -55,11 +61,29 @@ function resolve(schema: Schema | undefined, root: Schema | undefined): Schema |
   return match ? { ...root?.$defs?.[match[1]!], ...schema } : schema;
 }
 
+/** Members of an object, or of whichever of several objects is given. */
+function membersOf(schema: Schema, root: Schema | undefined): Record<string, Schema> | null {
+  if (schema.properties) return schema.properties;
+  const objects = (schema.oneOf ?? schema.anyOf ?? [])
+    .flatMap((item) => resolve(item, root) ?? [])
+    .filter((item) => item.type !== "null");
+  if (objects.length === 0 || objects.some((item) => !item.properties)) return null;
+  return Object.assign({}, ...objects.map((item) => item.properties)) as Record<string, Schema>;
+}
+
 function sentences(schema: Schema): string {
   return schema.description ?? schema.title ?? "";
 }
 
-type Shape = Pick<FieldSpec, "kind" | "choices" | "words">;
+type Shape = Pick<FieldSpec, "kind" | "choices" | "words" | "lead">;
+
+const shape = (kind: FieldKind, given: Partial<Shape> = {}): Shape => ({
+  kind,
+  choices: [],
+  words: [],
+  lead: "",
+  ...given,
+});
 
 function fieldOf(schema: Schema, root: Schema | undefined): Shape | null {
   const alternatives = schema.oneOf ?? schema.anyOf;
@@ -68,23 +92,35 @@ function fieldOf(schema: Schema, root: Schema | undefined): Shape | null {
       alternatives.flatMap((item) => resolve(item, root) ?? []),
       root,
     );
-  if (schema.enum)
-    return { kind: "choice", choices: schema.enum.filter((item) => item !== null).map(String), words: [] };
+  if (schema.enum) return shape("choice", { choices: schema.enum.filter((item) => item !== null).map(String) });
   const type = Array.isArray(schema.type) ? schema.type.find((item) => item !== "null") : schema.type;
   switch (type) {
     case "number":
     case "integer":
     case "boolean":
-      return { kind: type, choices: [], words: [] };
+      return shape(type);
     case "string":
-      return { kind: "text", choices: [], words: [] };
-    case "array": {
-      const item = resolve(schema.items, root)?.type;
-      return item === "number" || item === "integer" ? { kind: "numbers", choices: [], words: [] } : null;
-    }
+      return shape("text");
+    case "array":
+      return listOf(resolve(schema.items, root), root);
     default:
       return null;
   }
+}
+
+const isNumber = (schema: Schema): boolean => schema.type === "number" || schema.type === "integer";
+
+/** A list of numbers, of numbers or pairs, of names, or of objects with a number in front. */
+function listOf(item: Schema | undefined, root: Schema | undefined): Shape | null {
+  if (!item) return null;
+  if (isNumber(item)) return shape("numbers");
+  if (item.type === "string") return shape("names");
+  const alternatives = (item.oneOf ?? item.anyOf ?? []).flatMap((one) => resolve(one, root) ?? []);
+  if (alternatives.some(isNumber) && alternatives.some((one) => one.type === "array")) return shape("roots");
+  const members = Object.entries(item.properties ?? {});
+  const numeric = members.filter(([, member]) => isNumber(resolve(member, root) ?? {})).map(([name]) => name);
+  const lead = numeric.find((name) => item.required?.includes(name)) ?? numeric[0];
+  return lead === undefined ? null : shape("cases", { lead });
 }
 
 /** "a number or one of these words" and "one of these words" are the unions that options have. */
@@ -93,9 +129,11 @@ function combined(alternatives: Schema[], root: Schema | undefined): Shape | nul
     typeof item.const === "string" ? [item.const] : (item.enum ?? []).map(String),
   );
   const rest = alternatives.filter((item) => item.const === undefined && !item.enum && item.type !== "null");
-  if (rest.length === 0) return { kind: "choice", choices: words, words: [] };
-  const first = rest.map((item) => fieldOf(item, root)).find((shape) => shape !== null);
-  return first ? { ...first, words } : null;
+  if (rest.length === 0) return shape("choice", { choices: words });
+  const shapes = rest.flatMap((item) => fieldOf(item, root) ?? []);
+  if (shapes.some(({ kind }) => kind === "number") && shapes.some(({ kind }) => kind === "numbers"))
+    return shape("spread", { words });
+  return shapes[0] ? { ...shapes[0], words } : null;
 }
 
 /** The typed text as a value; undefined: left empty, the default holds. */
@@ -113,6 +151,16 @@ export function readField(spec: FieldSpec, typed: string): Parsed<unknown> {
     }
     case "numbers":
       return parseNumbers(text, spec.label);
+    case "spread": {
+      const single = parseNumber(text, spec.label);
+      return single.ok ? single : parseNumbers(text, spec.label);
+    }
+    case "roots":
+      return parseRoots(text, spec.label);
+    case "cases":
+      return parseCases(text, spec.label, spec.lead);
+    case "names":
+      return { ok: true, value: text.split(/[\s,;]+/).filter((name) => name !== "") };
     case "boolean":
       return { ok: true, value: text === "true" };
     case "choice":
@@ -121,27 +169,10 @@ export function readField(spec: FieldSpec, typed: string): Parsed<unknown> {
   }
 }
 
-/** Puts a value at its path; undefined puts nothing. */
-export function place(target: Record<string, unknown>, path: string[], value: unknown): void {
-  if (value === undefined) return;
-  let at = target;
-  for (const key of path.slice(0, -1)) {
-    if (typeof at[key] !== "object" || at[key] === null) at[key] = {};
-    at = at[key] as Record<string, unknown>;
-  }
-  at[path[path.length - 1]!] = value;
-}
-
-/** The value at a path, or undefined. */
-export function pick(source: unknown, path: string[]): unknown {
-  return path.reduce<unknown>(
-    (at, key) => (typeof at === "object" && at !== null ? (at as Record<string, unknown>)[key] : undefined),
-    source,
-  );
-}
-
 /** A value as it would be typed. */
-export function typedText(value: unknown): string {
+export function typedText(value: unknown, spec?: Pick<FieldSpec, "kind" | "lead">): string {
   if (value === undefined || value === null) return "";
-  return Array.isArray(value) ? value.map(typedText).join(" ") : String(value);
+  if (spec?.kind === "roots") return writeRoots(value);
+  if (spec?.kind === "cases") return writeCases(value, spec.lead);
+  return Array.isArray(value) ? value.map((item: unknown) => typedText(item)).join(" ") : String(value);
 }

@@ -113,3 +113,15 @@ export function parseRoots(text: string, name: string): Parsed<(number | [number
   }
   return { ok: true, value: roots };
 }
+
+/** Roots as they would be typed. */
+export const writeRoots = (value: unknown): string =>
+  Array.isArray(value)
+    ? value
+        .map((root: unknown) =>
+          Array.isArray(root)
+            ? `${String(root[0])}${Number(root[1]) < 0 ? "-" : "+"}${Math.abs(Number(root[1]))}i`
+            : String(root),
+        )
+        .join(" ")
+    : "";

@@ -1,6 +1,6 @@
 // The model card's fields: which plants can be entered, and how their parameters are written.
 import type { Plant } from "../api/types.ts";
-import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots } from "./number.ts";
+import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots, writeRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
 
 export interface PlantField {
@@ -25,16 +25,6 @@ export interface PlantForm {
 
 const writeNumber = (value: unknown): string => (typeof value === "number" ? String(value) : "");
 const writeList = (value: unknown): string => (Array.isArray(value) ? value.map(String).join(" ") : writeNumber(value));
-const writeRoots = (value: unknown): string =>
-  Array.isArray(value)
-    ? value
-        .map((root: unknown) =>
-          Array.isArray(root)
-            ? `${String(root[0])}${Number(root[1]) < 0 ? "-" : "+"}${Math.abs(Number(root[1]))}i`
-            : String(root),
-        )
-        .join(" ")
-    : "";
 const writeMatrix = (value: unknown): string =>
   Array.isArray(value)
     ? value.map((row: unknown) => (Array.isArray(row) ? row.map(String).join(" ") : String(row))).join("; ")

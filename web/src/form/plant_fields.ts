@@ -21,7 +21,8 @@ export interface PlantFields {
   setUnits(units: UnitNames): void;
 }
 
-export function plantFields(errors: FormErrors, onChange: () => void): PlantFields {
+/** `active`: whether a request that is sent now is about these fields' plant. */
+export function plantFields(errors: FormErrors, active: () => boolean, onChange: () => void): PlantFields {
   let form: PlantForm = PLANT_FORMS[0]!;
   let units: UnitNames = { time: "s", u: "", y: "" };
   let fields: { name: string; unit: "gain" | "slope" | "time" | ""; field: Field<HTMLInputElement> }[] = [];
@@ -29,7 +30,7 @@ export function plantFields(errors: FormErrors, onChange: () => void): PlantFiel
     {
       label: "Kind of process",
       choices: PLANT_FORMS.map((candidate) => [candidate.id, candidate.title] as const),
-      pointer: () => "/plant/type",
+      pointer: () => (active() ? "/plant/type" : null),
       wide: true,
     },
     errors,
@@ -68,7 +69,7 @@ export function plantFields(errors: FormErrors, onChange: () => void): PlantFiel
           hint: item.hint,
           unit: unitText(item.unit),
           value: values[item.name] ?? "",
-          pointer: () => `/plant/${item.name}`,
+          pointer: () => (active() ? `/plant/${item.name}` : null),
           wide: item.example.includes(" ") || item.name === "num" || item.name === "uncertainty",
         },
         errors,

@@ -31,13 +31,13 @@ export function toMarkup(tree: TreeNode, palette: Palette): string {
 }
 
 function legend(frame: Frame, width: number): TreeNode[] {
-  const seen = new Map(frame.panes.flatMap((pane) => pane.traces.map((trace) => [trace.name, trace.look] as const)));
+  const seen = new Map(frame.panes.flatMap((pane) => pane.traces.map((trace) => [trace.name, trace] as const)));
   let x = 14;
   const nodes: TreeNode[] = [];
-  for (const [name, look] of seen) {
+  for (const [name, { look, thin }] of seen) {
     const length = 36 + name.length * 6.6;
     if (x + length > width) break;
-    nodes.push(node("path", { d: `M${x} 34H${x + 26}`, fill: "none", ...lineOf(look) }));
+    nodes.push(node("path", { d: `M${x} 34H${x + 26}`, fill: "none", ...lineOf(look, thin) }));
     nodes.push(node("text", { x: x + 32, y: 38, fill: "var(--text)", "font-size": 12 }, name));
     x += length + 18;
   }

@@ -7,6 +7,8 @@ export type Look = 1 | 2 | 3 | 4 | "data";
 export interface Trace {
   name: string;
   look: Look;
+  /** Thin and dotted, in the look's colour: what stands beside a line of the same look. */
+  thin?: boolean;
   x: readonly (number | null)[];
   y: readonly (number | null)[];
   /** The cursor's variable where it is not x: a curve in a plane run through by a parameter. */

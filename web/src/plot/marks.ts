@@ -23,7 +23,9 @@ const ROLES: Record<"setpoint" | "limit" | "zero", Attributes> = {
   zero: { stroke: "var(--control)", "stroke-width": 1 },
 };
 
-export const lineOf = (look: Look): Attributes => LINES[look];
+const THIN: Attributes = { "stroke-width": 1.3, "stroke-dasharray": "1 3", "stroke-linecap": "round" };
+
+export const lineOf = (look: Look, thin = false): Attributes => (thin ? { ...LINES[look], ...THIN } : LINES[look]);
 
 const FONT = { "font-size": 12 };
 const MINUS = "−";
@@ -149,7 +151,7 @@ function drawTrace(box: PaneBox, trace: Trace): TreeNode {
     d: tracePath(box, trace) || "M0 0",
     fill: "none",
     "stroke-linejoin": "round",
-    ...LINES[trace.look],
+    ...lineOf(trace.look, trace.thin),
   });
 }
 

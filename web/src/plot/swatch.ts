@@ -3,8 +3,8 @@ import { h, node, svgElement } from "../dom.ts";
 import type { Frame, Look } from "./frame.ts";
 import { lineOf } from "./marks.ts";
 
-export function swatch(look: Look): Element {
-  const line = node("path", { d: "M1 5H27", fill: "none", ...lineOf(look) });
+export function swatch(look: Look, thin = false): Element {
+  const line = node("path", { d: "M1 5H27", fill: "none", ...lineOf(look, thin) });
   return svgElement(
     node("svg", { width: 28, height: 10, viewBox: "0 0 28 10", "aria-hidden": "true", focusable: "false" }, line),
   );
@@ -16,6 +16,6 @@ export function paneLegend(frame: Frame): HTMLElement {
   return h(
     "p",
     { class: "pane-legend" },
-    traces.map((trace) => h("span", {}, swatch(trace.look), trace.name)),
+    traces.map((trace) => h("span", {}, swatch(trace.look, trace.thin), trace.name)),
   );
 }

@@ -5,7 +5,7 @@ import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { nyquistFrame } from "../charts/nyquist.ts";
-import { responseFrame } from "../charts/responses.ts";
+import { BESIDE_LINEAR, hasLinear, responseFrame } from "../charts/responses.ts";
 import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h } from "../dom.ts";
 import { asksForAll } from "../form/retune.ts";
@@ -57,10 +57,12 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     star,
     all,
   );
+  const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   const overlay = h(
     "section",
     { class: "main-column", "aria-labelledby": "overlay-title" },
     h("div", { class: "overlay-head" }, h("h2", { id: "overlay-title" }, "Chosen rows, together"), legend),
+    linearNote,
     plots.element,
     tradeoff.element,
   );
@@ -152,7 +154,9 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     plots.show("load", responses ? responseFrame("load", drawn, request) : null);
     plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
     plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
-    tradeoff.show(drawn, job.result?.model?.plant ?? request?.plant, unitNames(request?.units).time);
+    linearNote.hidden = !hasLinear(drawn);
+    const plant = job.result?.model?.plant ?? job.result?.linear_model ?? request?.plant;
+    tradeoff.show(drawn, plant, unitNames(request?.units).time);
   }
 
   function showResult(job: Job, result: Result, workspace: Workspace): void {

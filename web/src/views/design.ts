@@ -6,7 +6,7 @@ import { defaultDrawn, drawnEntries, entryNames } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { nyquistFrame } from "../charts/nyquist.ts";
 import { recordFrame } from "../charts/record.ts";
-import { responseFrame } from "../charts/responses.ts";
+import { BESIDE_LINEAR, hasLinear, responseFrame } from "../charts/responses.ts";
 import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h } from "../dom.ts";
 import { withLambda } from "../form/retune.ts";
@@ -18,10 +18,12 @@ import { figureGroups } from "../words/figures.ts";
 import { commonLimits } from "../words/limits.ts";
 import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { emulationCard } from "./emulation_card.ts";
 import { figuresTable } from "./figures_table.ts";
 import { createLegend } from "./legend.ts";
 import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
+import { operatingCard } from "./operating_card.ts";
 import { progressCard } from "./progress_card.ts";
 import { rimcCard } from "./rimc_card.ts";
 import { settingsCard } from "./settings_card.ts";
@@ -64,11 +66,22 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
   const rimc = rimcCard(announce, retune);
+  const emulation = emulationCard(announce);
   const tradeoff = tradeoffCard(announce);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
+  const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   const side = h("div", { class: "side" }, settings.element, figures, model, notes, computed);
-  const main = h("div", { class: "main-column" }, rimc.element, legend.element, plots.element, tradeoff.element);
+  const main = h(
+    "div",
+    { class: "main-column" },
+    rimc.element,
+    emulation.element,
+    legend.element,
+    linearNote,
+    plots.element,
+    tradeoff.element,
+  );
   const body = h("div", { class: "design-body" });
   const headRight = h("div", { class: "head-right" }, trouble, verdict, progress.element);
   const element = h(
@@ -131,13 +144,14 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     );
   }
 
-  function showPlots(job: Job, result: Result, drawn: Drawn[]): void {
+  function showPlots(job: Job, result: Result, drawn: Drawn[], selected: number): void {
     const request = job.request;
     const responses = drawn.some((item) => item.entry.responses);
     const frequency = drawn.some((item) => item.entry.frequency);
     const limits = commonLimits(drawn.map((item) => item.entry));
-    plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request) : null);
-    plots.show("load", responses ? responseFrame("load", drawn, request) : null);
+    linearNote.hidden = !hasLinear(drawn);
+    plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
+    plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
     plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
     plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
     plots.show("record", result.model ? recordFrame(result.model, request) : null);
@@ -156,10 +170,15 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showVerdict(verdict, job, result, names, selected, listed);
     settings.show(entries[selected]!, names[selected]!, units);
     showFigures(result, listed, drawn, names, units);
-    const plant = result.model?.plant ?? job.request?.plant;
+    // Rules and robustness of a nonlinear plant rest on its linear model.
+    const plant = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     rimc.show(entries[selected]!, plant, units);
-    model.hidden = !result.model;
-    if (result.model && model.childElementCount === 0) model.replaceChildren(modelResult(result.model, units));
+    emulation.show(entries[selected]!, job.request?.plant, units);
+    if (model.childElementCount === 0) {
+      const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
+      model.replaceChildren(...(about ? [about] : []));
+    }
+    model.hidden = model.childElementCount === 0;
     showNotes(
       notes,
       listed.map((index) => entries[index]!),
@@ -168,7 +187,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showComputed(computed, result, entries[selected]!, names, units);
     legend.show(entries, listed, names, drawn, selected);
     tradeoff.show([{ name: names[selected]!, entry: entries[selected]! }], plant, units.time);
-    showPlots(job, result, drawn);
+    showPlots(job, result, drawn, selected);
   }
 
   let announced: Result | null = null;
@@ -203,6 +222,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     dispose() {
       leave();
       rimc.dispose();
+      emulation.dispose();
       plots.dispose();
       tradeoff.dispose();
     },

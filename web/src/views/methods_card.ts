@@ -5,8 +5,9 @@ import { choiceField, textField } from "../form/controls.ts";
 import type { Field } from "../form/controls.ts";
 import type { Control, FormErrors } from "../form/errors.ts";
 import { asksForAll } from "../form/retune.ts";
-import { fieldsOf, pick, place, readField, typedText } from "../form/fields.ts";
-import type { FieldSpec } from "../form/fields.ts";
+import { fieldsOf, readField, typedText } from "../form/fields.ts";
+import type { FieldKind, FieldSpec } from "../form/fields.ts";
+import { pick, place } from "../form/place.ts";
 import { formatRoute } from "../routes.ts";
 import { mentions } from "../words/methods.ts";
 import { namedUnit, unitNames } from "../words/numbers.ts";
@@ -21,7 +22,19 @@ export interface MethodsCard {
 }
 
 /** Options that decide what comes out: shown at once, the others on request. */
-const MAIN_OPTIONS = ["controller", "Ms", "Mt", "Mks", "tau_c", "lambda"];
+const MAIN_OPTIONS = [
+  "controller",
+  "Ms",
+  "Mt",
+  "Mks",
+  "tau_c",
+  "lambda",
+  "formulation",
+  "target",
+  "scenarios",
+  "horizon",
+  "bounds",
+];
 /** What the page draws, and the service computes only if it is asked to. */
 const DRAWN_OPTIONS = ["curve", "profile"];
 /** More methods than these are searched, not looked through. */
@@ -85,7 +98,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     row.fields = fieldsOf(method.options)
       .filter((spec) => spec.path[0] !== "method")
       .map((spec) => ({ spec, field: optionField(spec, pointer(spec.path), errors) }));
-    const main = row.fields.filter(({ spec }) => spec.path.length === 1 && MAIN_OPTIONS.includes(spec.path[0]!));
+    const main = row.fields.filter(({ spec }) => MAIN_OPTIONS.includes(spec.path[0]!));
     const others = row.fields.filter((item) => !main.includes(item));
     row.options = h(
       "div",
@@ -146,7 +159,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     const known = new Set(row.fields.map(({ spec }) => spec.path[0]!));
     for (const [name, value] of Object.entries(entry))
       if (name !== "method" && !known.has(name)) row.rest[name] = value;
-    for (const { spec, field } of row.fields) field.input.value = typedText(pick(entry, spec.path));
+    for (const { spec, field } of row.fields) field.input.value = typedText(pick(entry, spec.path), spec);
   }
 
   function writeUnits(): void {
@@ -221,8 +234,18 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   };
 }
 
+/** How lists are typed, where a number alone would not show it. */
+const HOW_TO_WRITE: Partial<Record<FieldKind, string>> = {
+  spread: "One number, or two as limits.",
+  roots: "As -4 -4, or -3±2i for a pair.",
+  cases: "As 10; -5; each may be followed by names with numbers, such as 10 initial.x 0.5.",
+  names: "Spaces between the names.",
+};
+
 function optionField(spec: FieldSpec, pointer: () => string | null, errors: FormErrors): Field<Control["input"]> {
-  const hint = [spec.hint, spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""].filter(Boolean).join(" ");
+  const hint = [spec.hint, HOW_TO_WRITE[spec.kind], spec.words.length > 0 ? `Also: ${spec.words.join(", ")}.` : ""]
+    .filter(Boolean)
+    .join(" ");
   const shared = { label: spec.label, hint, pointer };
   const standard = spec.defaultText ? `as usual (${spec.defaultText})` : "as usual";
   if (spec.kind === "choice")

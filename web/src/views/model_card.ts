@@ -25,8 +25,9 @@ export interface ModelCardEvents {
   onRelay(form: string, values: Record<string, string>): void;
 }
 
-export function modelCard(errors: FormErrors, events: ModelCardEvents): ModelCard {
-  const fields = plantFields(errors, () => {
+/** `active`: whether a request that is sent now is about this card's model. */
+export function modelCard(errors: FormErrors, active: () => boolean, events: ModelCardEvents): ModelCard {
+  const fields = plantFields(errors, active, () => {
     const { form, values } = fields.typed();
     events.onChange(form, values);
   });

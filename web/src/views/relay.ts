@@ -68,11 +68,15 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   let plot: Plot | null = null;
   const heading = h("h1", { tabindex: -1 }, "What would a relay test on this plant show?");
   const busy = h("p", { class: "hint busy", hidden: true }, "Simulating...");
-  const plant = plantFields(errors, () => {
-    const { form, values } = plant.typed();
-    events.onPlant(form, values);
-    simulate();
-  });
+  const plant = plantFields(
+    errors,
+    () => true,
+    () => {
+      const { form, values } = plant.typed();
+      events.onPlant(form, values);
+      simulate();
+    },
+  );
   const settings = SETTINGS.map((setting) => ({
     ...setting,
     field: textField({ ...setting, unit: "", pointer: () => `/relay/${setting.name}` }, errors),

@@ -4,11 +4,13 @@ import { postJob } from "../api/jobs.ts";
 import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import type { PlantReading } from "../form/plant.ts";
 import { byAllMethods, EVERY_METHOD } from "../form/retune.ts";
 import type { TuneSubject } from "../form/tune_subject.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
+import { equationsCard } from "./equations_card.ts";
 import { methodsCard } from "./methods_card.ts";
 import { modelCard } from "./model_card.ts";
 import { recordCard } from "./record_card.ts";
@@ -53,11 +55,19 @@ export function startView(store: Store, events: StartEvents): StartView {
   let busy = false;
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
-  const model = modelCard(errors, {
+  // Faults of a plant belong to the card that it was written on.
+  let subject: "model" | "equations" = "model";
+  const model = modelCard(errors, () => subject === "model", {
     onTune: () => void tuneModel(false),
     onCompare: () => void tuneModel(true),
     onChange: events.onModel,
     onRelay: events.onRelay,
+  });
+  const equations = equationsCard(errors, () => subject === "equations", {
+    onTune: () => void tuneEquations(false),
+    onCompare: () => void tuneEquations(true),
+    onChange: (values) => events.onModel("nonlinear", values),
+    onExample: (example) => load(example.request),
   });
   const record = recordCard(errors, {
     onIdentify: identifyRecord,
@@ -68,6 +78,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   const today = todayCard(errors, () => {
     const units = unitNames(today.readUnits());
     model.setUnits(units);
+    equations.setUnits(units);
     methods.setUnits(units);
   });
   const examples = h("div", { class: "examples" });
@@ -97,6 +108,7 @@ export function startView(store: Store, events: StartEvents): StartView {
         examples,
       ),
     ),
+    equations.element,
     h("div", { class: "cards two" }, methods.element, today.element),
   );
 
@@ -139,10 +151,19 @@ export function startView(store: Store, events: StartEvents): StartView {
     return { request: { ...request, ...subject }, faults };
   }
 
-  async function tuneModel(all: boolean): Promise<void> {
-    const reading = model.read();
+  async function tunePlant(reading: PlantReading, all: boolean): Promise<void> {
     const { request, faults } = compose({ plant: reading.plant }, all);
     await send(request, [...reading.errors, ...faults], all);
+  }
+
+  async function tuneModel(all: boolean): Promise<void> {
+    subject = "model";
+    await tunePlant(model.read(), all);
+  }
+
+  async function tuneEquations(all: boolean): Promise<void> {
+    subject = "equations";
+    await tunePlant(equations.read(), all);
   }
 
   async function tuneRecord(all: boolean): Promise<void> {
@@ -166,7 +187,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);
-    if (request.plant && !model.load(request.plant)) {
+    if (request.plant && !equations.load(request.plant) && !model.load(request.plant)) {
       status.textContent = `A plant of type ${request.plant.type} in this shape has no form here; send it to the service's API, or choose another kind.`;
       status.hidden = false;
     }
@@ -181,6 +202,7 @@ export function startView(store: Store, events: StartEvents): StartView {
       exampleElement(example, (all) => void send(all ? byAllMethods(example.request) : example.request, [], all)),
     );
     const [first, others] = [elements.slice(0, EXAMPLES_SHOWN), elements.slice(EXAMPLES_SHOWN)];
+    equations.setExamples(workspace.examples);
     examples.replaceChildren(
       ...first,
       ...(others.length > 0
@@ -216,7 +238,10 @@ export function startView(store: Store, events: StartEvents): StartView {
     heading,
     dispose: leave,
     load,
-    loadTyped: model.loadTyped,
+    loadTyped(form, values) {
+      if (form === "nonlinear") equations.loadTyped(values);
+      else model.loadTyped(form, values);
+    },
     loadRecord: record.load,
     compose,
     units: today.readUnits,

@@ -52,14 +52,9 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
   }
   function label(): void {
-    names().forEach((text, index) => {
-      const element = slots[index]!.element.querySelector("label")!;
-      element.firstChild!.textContent = text;
-    });
+    names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";
   }
-  // A label starts with its text node; give the empty ones theirs.
-  for (const slot of slots) slot.element.querySelector("label")!.prepend("Kp");
   label();
   form.input.addEventListener("change", label);
 

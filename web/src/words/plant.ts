@@ -10,9 +10,23 @@ const TITLES: Record<string, string> = {
   transfer_function: "transfer function",
   zpk: "zeros, poles and gain",
   state_space: "state space",
+  nonlinear: "nonlinear equations",
 };
 
 export const plantTitle = (type: string): string => TITLES[type] ?? type.replaceAll("_", " ");
+
+export interface PlantInput {
+  name: string;
+  nominal: number;
+  min?: number | null;
+  max?: number | null;
+}
+
+/** The manipulated input of a plant given by equations. */
+export function inputOf(plant: Plant | undefined): PlantInput | null {
+  const input = plant?.["input"] as Partial<PlantInput> | undefined;
+  return typeof input?.nominal === "number" ? { name: "u", ...input, nominal: input.nominal } : null;
+}
 
 /** What an identified model is called: its structure, and what is unusual about it. */
 export function structureTitle(plant: Plant): string {
@@ -35,6 +49,7 @@ export function parameterUnit(plant: Plant, name: string, units: UnitNames): str
 
 /** "K 1.25 °C/%, T 40 s, L 8 s"; the plant's kind where it has no such parameters. */
 export function plantWords(plant: Plant, units: UnitNames): string {
+  if (plant.type === "nonlinear") return equationWords(plant, units);
   const parts = ["K", "T", "T1", "T2", "zeta", "L"].flatMap((name) => {
     const value = plant[name];
     if (typeof value !== "number" || (name === "L" && value === 0)) return [];
@@ -42,4 +57,14 @@ export function plantWords(plant: Plant, units: UnitNames): string {
     return [`${name} ${formatParameter(value)}${unit ? ` ${unit}` : ""}`];
   });
   return parts.length > 0 ? parts.join(", ") : plantTitle(plant.type);
+}
+
+function equationWords(plant: Plant, units: UnitNames): string {
+  const states = Object.keys((plant["states"] as object | undefined) ?? {}).length;
+  const parts = [
+    `${states} ${states === 1 ? "state" : "states"}`,
+    `from ${inputOf(plant)?.name ?? "u"} to ${String(plant["output"])}`,
+  ];
+  if (plant.L) parts.push(`L ${formatParameter(plant.L)} ${units.time}`);
+  return parts.join(", ");
 }

@@ -1,0 +1,46 @@
+// A list of cases on one line: "10; -5 initial.T 380; 10 parameters.k0 5e8" is three objects, a number in front of each.
+import { parseNumber } from "./number.ts";
+import type { Parsed } from "./number.ts";
+import { place } from "./place.ts";
+
+type Case = Record<string, unknown>;
+
+/** `lead`: the member that the number in front is. Others follow as name and number, members of members with a point. */
+export function parseCases(text: string, name: string, lead: string): Parsed<Case[]> {
+  const cases: Case[] = [];
+  for (const part of text.split(/[;\n]/)) {
+    const words = part.trim().split(/\s+/).filter(Boolean);
+    if (words.length === 0) continue;
+    const first = parseNumber(words[0]!, lead);
+    const pairs = first.ok ? words.slice(1) : words;
+    const entry: Case = first.ok ? { [lead]: first.value } : {};
+    const bad = (): Parsed<Case[]> => ({
+      ok: false,
+      sentence: `${name}: "${part.trim()}" cannot be read. Write ${lead} first, then names with their numbers: 10; 10 initial.x 0.5 for example.`,
+    });
+    if (pairs.length % 2 === 1) return bad();
+    for (let at = 0; at < pairs.length; at += 2) {
+      const value = parseNumber(pairs[at + 1]!, pairs[at]!);
+      if (!value.ok || !/^[A-Za-z_]/.test(pairs[at]!)) return bad();
+      place(entry, pairs[at]!.split("."), value.value);
+    }
+    cases.push(entry);
+  }
+  return { ok: true, value: cases };
+}
+
+/** The cases as they would be typed. */
+export function writeCases(value: unknown, lead: string): string {
+  if (!Array.isArray(value)) return "";
+  return value
+    .map((entry: Case) => [entry[lead], ...pairsOf(entry, lead)].filter((word) => word !== undefined).join(" "))
+    .join("; ");
+}
+
+function pairsOf(entry: Case, lead: string, above = ""): string[] {
+  return Object.entries(entry).flatMap(([name, value]): string[] => {
+    if (above === "" && name === lead) return [];
+    if (typeof value === "object" && value !== null) return pairsOf(value as Case, lead, `${above}${name}.`);
+    return value === undefined || value === null ? [] : [`${above}${name} ${String(value)}`];
+  });
+}

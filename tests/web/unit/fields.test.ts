@@ -113,7 +113,10 @@ test("an uncertain plant is shown and read back as it was", () => {
   const texts = Object.fromEntries(
     form.fields.map((field) => [field.name, field.write((plant as Record<string, unknown>)[field.name])]),
   );
-  assert.deepEqual(readPlant(form, (name) => texts[name]!), { plant, errors: [] });
+  assert.deepEqual(
+    readPlant(form, (name) => texts[name]!),
+    { plant, errors: [] },
+  );
 });
 
 test("addresses are read back as the routes they came from", () => {
@@ -129,4 +132,85 @@ test("addresses are read back as the routes they came from", () => {
   }
   assert.deepEqual(parseRoute("#/nowhere/%E0%A4%A"), { screen: "start" });
   assert.deepEqual(parseRoute(""), { screen: "start" });
+});
+
+const emulation: Schema = {
+  type: "object",
+  properties: {
+    target: {
+      type: "object",
+      properties: {
+        gamma: { type: "number" },
+        poles: {
+          type: "array",
+          items: { oneOf: [{ type: "number" }, { type: "array", items: { type: "number" } }] },
+        },
+      },
+    },
+    scenarios: {
+      type: "array",
+      items: {
+        type: "object",
+        required: ["setpoint_step"],
+        properties: {
+          initial: { type: "object", additionalProperties: { type: "number" } },
+          setpoint_step: { type: "number" },
+        },
+      },
+    },
+    Tf: { oneOf: [{ type: "number" }, { type: "array", items: { type: "number" } }] },
+    bounds: {
+      oneOf: [{ type: "null" }, { type: "object", properties: { Kp: { type: "array", items: { type: "number" } } } }],
+    },
+    bounds_from: { type: "object", properties: { methods: { type: "array", items: { type: "string" } } } },
+  },
+};
+
+test("options of lists, spreads, roots and cases are typed as text and read back as they were", () => {
+  const fields = fieldsOf(emulation);
+  assert.deepEqual(
+    fields.map((field) => [field.label, field.kind]),
+    [
+      ["target gamma", "number"],
+      ["target poles", "roots"],
+      ["scenarios", "cases"],
+      ["Tf", "spread"],
+      ["bounds Kp", "numbers"],
+      ["bounds_from methods", "names"],
+    ],
+  );
+  const entry: Record<string, unknown> = { method: "emulation" };
+  const texts = [
+    "",
+    "-3±2i -4",
+    "10; -5 initial.T 380 initial.CA 0,5; setpoint_step 2",
+    "0.05 0.2",
+    "-2000 -1000",
+    "imc, simc",
+  ];
+  fields.forEach((field, index) => {
+    const parsed = readField(field, texts[index]!);
+    assert.ok(parsed.ok, field.label);
+    place(entry, field.path, parsed.value);
+  });
+  assert.deepEqual(entry, {
+    method: "emulation",
+    target: {
+      poles: [[-3, 2], [-3, -2], -4],
+    },
+    scenarios: [{ setpoint_step: 10 }, { setpoint_step: -5, initial: { T: 380, CA: 0.5 } }, { setpoint_step: 2 }],
+    Tf: [0.05, 0.2],
+    bounds: { Kp: [-2000, -1000] },
+    bounds_from: { methods: ["imc", "simc"] },
+  });
+  const again: Record<string, unknown> = { method: "emulation" };
+  for (const field of fields) {
+    const parsed = readField(field, typedText(pick(entry, field.path), field));
+    assert.ok(parsed.ok);
+    place(again, field.path, parsed.value);
+  }
+  assert.deepEqual(again, entry);
+  assert.deepEqual(readField(fields[3]!, "0,1"), { ok: true, value: 0.1 });
+  assert.equal(readField(fields[2]!, "10 initial.T").ok, false);
+  assert.equal(readField(fields[2]!, "ten").ok, false);
 });

@@ -38,7 +38,7 @@ export function emulationFrame(
     ? [{ kind: "level", value: goal, role: "setpoint", label: "set point" }]
     : [];
   return {
-    title: "Following the nonlinear controller",
+    title: "PID and nonlinear controller",
     description: `${scenarioWords(shown)}. J is ${formatNumber(emulation.J)}.`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [

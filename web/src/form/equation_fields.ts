@@ -46,7 +46,6 @@ export function equationFields(errors: FormErrors, active: () => boolean, onChan
     "div",
     { class: "equations" },
     h("fieldset", { class: "equation-states" }, h("legend", {}, "States and equations"), states.element),
-    h("fieldset", { class: "equation-parameters" }, h("legend", {}, "Parameters"), parameters.element),
     h(
       "fieldset",
       { class: "equation-signals" },
@@ -57,6 +56,7 @@ export function equationFields(errors: FormErrors, active: () => boolean, onChan
         SINGLE_FIELDS.map((name) => single[name].element),
       ),
     ),
+    h("fieldset", { class: "equation-parameters" }, h("legend", {}, "Parameters"), parameters.element),
   );
   element.addEventListener("change", onChange);
 

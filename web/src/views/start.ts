@@ -90,7 +90,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     h(
       "p",
       { class: "lead" },
-      "Describe your process in one of three ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
+      "Describe your process in one of four ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
     ),
     recent,
     status,

@@ -12,6 +12,9 @@ export interface TransferFunction {
 const ROUNDING = 1e-11;
 /** More states than these make no formula to read. */
 const MOST_STATES = 5;
+const MOST_PASSES = 500;
+/** Of a root's size: a double real root splits by the square root of rounding. */
+const NO_ANGLE = 1e-7;
 
 /** C (sI - A)^-1 B by Faddeev and LeVerrier's recursion; null for another plant or one of many states. */
 export function transferFunction(plant: Plant | undefined): TransferFunction | null {
@@ -45,40 +48,34 @@ function cleanSum(terms: number[]): number {
 
 /** All roots at once (Weierstrass, Durand and Kerner), the rightmost first. */
 export function rootsOf(coefficients: number[]): [number, number][] {
-  const lead = coefficients.findIndex((value) => value !== 0);
-  if (lead < 0) return [];
-  const monic = coefficients.slice(lead).map((value) => value / coefficients[lead]!);
+  const first = coefficients.findIndex((value) => value !== 0);
+  if (first < 0) return [];
+  const atZero = [...coefficients].reverse().findIndex((value) => value !== 0);
+  const monic = coefficients.slice(first, coefficients.length - atZero).map((value) => value / coefficients[first]!);
   const degree = monic.length - 1;
-  if (degree < 1) return [];
-  const radius = 1 + Math.max(...monic.slice(1).map(Math.abs));
-  const scale = Math.min(
-    radius,
-    Math.max(...monic.slice(1).map((value, k) => Math.abs(value) ** (1 / (k + 1))), 1e-300),
-  );
-  let roots = Array.from({ length: degree }, (_, k): [number, number] => {
+  const scale = Math.max(...monic.slice(1).map((value, k) => Math.abs(value) ** (1 / (k + 1))));
+  let roots = Array.from({ length: degree }, (_, k): Pair => {
     const angle = (2 * Math.PI * k) / degree + 0.4;
     return [scale * Math.cos(angle), scale * Math.sin(angle)];
   });
-  for (let pass = 0; pass < 500; pass += 1) {
+  for (let pass = 0; pass < MOST_PASSES; pass += 1) {
     const next = roots.map((root, k) => minus(root, over(valueAt(monic, root), others(roots, k))));
-    const moved = Math.max(
-      ...next.map((root, k) => Math.hypot(...minus(root, roots[k]!)) / (Math.hypot(...root) || scale)),
-    );
+    const moved = Math.max(0, ...next.map((root, k) => size(minus(root, roots[k]!)) / (size(root) || scale)));
     roots = next;
     if (moved < 1e-14) break;
   }
-  const real = (root: [number, number]): boolean => Math.abs(root[1]) < 1e-7 * Math.hypot(...root);
-  return roots
-    .map((root): [number, number] => (real(root) ? [root[0], 0] : root))
-    .sort((a, b) => b[0] - a[0] || b[1] - a[1]);
+  const real = roots.map((root): Pair => (Math.abs(root[1]) < NO_ANGLE * size(root) ? [root[0], 0] : root));
+  const zeros = Array.from({ length: atZero }, (): Pair => [0, 0]);
+  return [...real, ...zeros].sort((a, b) => b[0] - a[0] || b[1] - a[1]);
 }
 
 type Pair = [number, number];
+const size = (a: Pair): number => Math.hypot(a[0], a[1]);
 const minus = (a: Pair, b: Pair): Pair => [a[0] - b[0], a[1] - b[1]];
 const times = (a: Pair, b: Pair): Pair => [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
 const over = (a: Pair, b: Pair): Pair => {
-  const size = b[0] * b[0] + b[1] * b[1] || Number.MIN_VALUE;
-  return [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size];
+  const square = b[0] * b[0] + b[1] * b[1] || Number.MIN_VALUE;
+  return [(a[0] * b[0] + a[1] * b[1]) / square, (a[1] * b[0] - a[0] * b[1]) / square];
 };
 const valueAt = (monic: number[], at: Pair): Pair =>
   monic.slice(1).reduce(

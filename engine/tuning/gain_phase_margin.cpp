@@ -35,9 +35,7 @@ Error contradiction(const Margins& margins) {
 
 Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
     const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = rule_model(
-        problem, options,
-        {.order = wants_PID ? ReducedOrder::second : ReducedOrder::first, .preferred = ReductionMethod::half_rule});
+    const auto model = half_rule_model(problem, options);
     if (!model) return model.error();
     if (const auto error = unfit(*model, {.name = "Ho, Hang and Cao's rule"})) return *error;
     const Margins margins{options.number("gain_margin").value_or(kGainMargin),
@@ -50,10 +48,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     ideal->b = 1;
     ideal->filter = chosen_filter(options, FilterType::derivative, ideal->Td);
     std::vector<Warning> warnings;
-    if (wants_PID && series.Td == 0)
-        warnings.push_back({"no-derivative",
-                            "The model has no second lag, which the rule's derivative action would cancel: the answer "
-                            "is a PI controller."});
+    if (wants_PID && series.Td == 0) warnings.push_back(no_second_lag());
     return rule_answer(problem, *model, *ideal, std::move(warnings));
 }
 

@@ -10,19 +10,14 @@ namespace {
 
 Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
     const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = rule_model(
-        problem, options,
-        {.order = wants_PID ? ReducedOrder::second : ReducedOrder::first, .preferred = ReductionMethod::half_rule});
+    const auto model = half_rule_model(problem, options);
     if (!model) return model.error();
     if (const auto error = unfit(*model, {.name = "Haalman's rule"})) return *error;
     const double Ti = model->T1 + model->T2;
     Pid answer{.Kp = 2 * Ti / (3 * model->K * model->L), .Ti = Ti, .Td = model->T1 * model->T2 / Ti};
     answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
-    if (wants_PID && answer.Td == 0)
-        warnings.push_back({"no-derivative",
-                            "The model has no second lag, which the rule's derivative action would cancel: the answer "
-                            "is a PI controller."});
+    if (wants_PID && answer.Td == 0) warnings.push_back(no_second_lag());
     if (model->L < 0.1 * model->T1)
         warnings.push_back(outside_validity("L/T is " + text(model->L / model->T1) +
                                             ", below 0.1: the lag that the rule cancels comes back as a slow answer "

@@ -108,6 +108,11 @@ Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOpti
     return reduce(problem.linear, request);
 }
 
+Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const MethodOptions& options) {
+    const auto order = chosen_controller(options) == "PID" ? ReducedOrder::second : ReducedOrder::first;
+    return rule_model(problem, options, {.order = order, .preferred = ReductionMethod::half_rule});
+}
+
 double normalised_dead_time(const ReducedModel& model) {
     return model.integrators > 0 || model.L == 0 ? 0 : model.L / (model.L + model.T1);
 }
@@ -117,6 +122,12 @@ Error degenerate(const std::string& where, const std::string& sentence, const st
 }
 
 Warning outside_validity(const std::string& detail) { return {"outside-validity", detail}; }
+
+Warning no_second_lag() {
+    return {
+        "no-derivative",
+        "The model has no second lag, which the rule's derivative action would cancel: the answer is a PI controller."};
+}
 
 Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warnings) {
     const bool finite = std::isfinite(pid.Kp) && pid.Kp != 0 && pid.Ti > 0 && std::isfinite(pid.Td) && pid.Td >= 0;

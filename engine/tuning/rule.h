@@ -33,6 +33,9 @@ Filter chosen_filter(const MethodOptions& options, FilterType type, double Td);
 /// The model that the rule works on, by option `reduction`. Errors: those of reduce().
 Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options, ReductionRequest request);
 
+/// The same by the half rule, where no other is asked for: of second order for a PID, else of first.
+Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const MethodOptions& options);
+
 /// L/(L + T1): 0 lag-dominated, 1 dead-time-dominated; 0 with an integrator.
 double normalised_dead_time(const ReducedModel& model);
 
@@ -40,6 +43,9 @@ double normalised_dead_time(const ReducedModel& model);
 Error degenerate(const std::string& where, const std::string& sentence, const std::string& cure);
 
 Warning outside_validity(const std::string& detail);
+
+/// Of a rule whose derivative action cancels the second lag, where there is none.
+Warning no_second_lag();
 
 /// The answer: controller, warnings of the reduction first, the reduced model unless the plant was given in its form.
 /// Errors: numerical_failure if a parameter is not a finite number or Kp is 0.

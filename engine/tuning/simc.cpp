@@ -58,9 +58,7 @@ std::optional<Error> unfit(const ReducedModel& model, double tau_c) {
 
 Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
     const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = rule_model(
-        problem, options,
-        {.order = wants_PID ? ReducedOrder::second : ReducedOrder::first, .preferred = ReductionMethod::half_rule});
+    const auto model = half_rule_model(problem, options);
     if (!model) return model.error();
     const double tau_c = options.number("tau_c").value_or(model->L);
     if (const auto error = unfit(*model, tau_c)) return *error;

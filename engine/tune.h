@@ -7,6 +7,7 @@
 
 #include "engine/evaluate.h"
 #include "engine/identification/identify.h"
+#include "engine/operating_point.h"
 #include "engine/optimum_at_ms.h"
 #include "engine/plan.h"
 #include "engine/progress.h"
@@ -43,6 +44,7 @@ struct TuningEntry {
 
 struct TuningResult {
     std::optional<IdentifiedModel> model;
+    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
     std::string ranking_by;

@@ -5,6 +5,7 @@
 #include "api/contract/evaluation.h"
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
+#include "api/contract/operating_point.h"
 #include "api/contract/optimum_at_ms.h"
 #include "api/contract/plant.h"
 #include "api/contract/rimc.h"
@@ -61,6 +62,8 @@ const Description<CostSurface>& surface_contract() {
     }();
     return description;
 }
+
+const OperatingPoint* pointer(const std::optional<OperatingPoint>& point) { return point ? &*point : nullptr; }
 
 bool no_method(const TuningEntry& entry) { return entry.method.empty(); }
 
@@ -236,14 +239,14 @@ const Description<ResultAnswer>& result_contract() {
             .field(
                 "model", {}, [](const ResultAnswer& a, Writer& out) { model_contract().write(*a.result.model, out); },
                 [](SchemaBook& book) { return model_contract().schema(book); }, "Of a record.", none,
-                [](const ResultAnswer& a) { return !a.result.model; })
-            .field(
-                "controllers", {},
-                [](const ResultAnswer& a, Writer& out) {
-                    list_of(answer(entry_contract())).write(a.result.controllers, out);
-                },
-                list_of(answer(entry_contract())).schema,
-                "One entry a method, in the order asked for; the baseline last.")
+                [](const ResultAnswer& a) { return !a.result.model; });
+        add_operating_point<ResultAnswer>(d, [](const ResultAnswer& a) { return pointer(a.result.operating_point); });
+        d.field(
+             "controllers", {},
+             [](const ResultAnswer& a, Writer& out) {
+                 list_of(answer(entry_contract())).write(a.result.controllers, out);
+             },
+             list_of(answer(entry_contract())).schema, "One entry a method, in the order asked for; the baseline last.")
             .field(
                 "ranking", {},
                 [](const ResultAnswer& a, Writer& out) {
@@ -280,6 +283,7 @@ const Description<ResultAnswer>& result_contract() {
 const Description<EvaluateAnswer>& evaluate_answer_contract() {
     static const auto description = [] {
         Description<EvaluateAnswer> d("EvaluateAnswer", "The controllers in the order sent.");
+        add_operating_point<EvaluateAnswer>(d, [](const EvaluateAnswer& a) { return pointer(a.operating_point); });
         d.field("controllers", &EvaluateAnswer::controllers, list_of(answer(entry_contract())),
                 "One entry a controller.");
         return d;

@@ -16,6 +16,7 @@ struct ResultAnswer {
 };
 
 struct EvaluateAnswer {
+    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
     std::vector<TuningEntry> controllers;  ///< without a method
 };
 

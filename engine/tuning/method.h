@@ -44,6 +44,8 @@ inline Controller answered(const TunedController& tuned) {
     return pid;
 }
 
+class NonlinearSystem;
+
 /// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
 /// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits
 /// work on the nominal plant.
@@ -53,6 +55,8 @@ struct TuningProblem {
     std::optional<double> dead_time_std;
     std::optional<PlantFamily> family = {};
     std::optional<UltimatePoint> relay_point = {};  ///< by the describing function of a recorded relay test
+    /// Where `linear` is only the linearisation of this plant, which lives as long as the problem; else null.
+    const NonlinearSystem* nonlinear = nullptr;
 };
 
 /// Options that make one row of a comparison of all methods.

@@ -145,7 +145,13 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     EvaluateAnswer answer;
     std::optional<Tradeoffs> tradeoffs;
     std::optional<RobustOptima> optima;
-    const auto nominal = nominal_plant(*request.plant);
+    if (const auto* equations = std::get_if<NonlinearPlant>(&*request.plant)) {
+        const auto system = NonlinearSystem::make(*equations);
+        if (!system) return refusal(to_problem(system.error()));
+        answer.operating_point = operating_point(*system);
+    }
+    auto nominal = nominal_plant(*request.plant);
+    if (answer.operating_point) nominal = Plant(answer.operating_point->linear_model);
     if (request.evaluate.tradeoff) tradeoffs.emplace(nominal, request.evaluate);
     if (request.evaluate.optimum_at_Ms.value_or(false) && nominal)
         optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, request.evaluate);

@@ -8,6 +8,7 @@
 #include "engine/loop/measured_loop.h"
 #include "engine/nonlinear_figures.h"
 #include "engine/number_text.h"
+#include "engine/plant/nonlinear_system.h"
 #include "engine/performance_figures.h"
 #include "engine/robustness_figures.h"
 #include "engine/simulation/indices.h"
@@ -199,8 +200,11 @@ void add_region(Evaluation& evaluation, const PlantFamily& family) {
 }  // namespace
 
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
-    if (std::holds_alternative<NonlinearPlant>(plant))
-        return Error{ErrorKind::unsupported, "plant", "A nonlinear plant cannot be evaluated by this build."};
+    if (const auto* equations = std::get_if<NonlinearPlant>(&plant)) {
+        const auto system = NonlinearSystem::make(*equations);
+        if (!system) return system.error();
+        return evaluate(family_of(Plant(system->linearised())), controller, options);
+    }
     const auto* points = std::get_if<FrequencyResponse>(&plant);
     if (points == nullptr) {
         const auto* set = std::get_if<PlantSet>(&plant);

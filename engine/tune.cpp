@@ -77,6 +77,7 @@ public:
 private:
     std::optional<Error> find_plant();
     std::optional<Error> take_plant(const PlantModel& plant);
+    std::optional<Error> take_equations(const NonlinearPlant& plant);
     std::optional<Error> state_problem();
     Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
@@ -100,8 +101,9 @@ private:
     PlantFamily family_;               // what every controller is judged on
     std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
-    std::optional<TuningProblem> problem_;   // what methods work on, unless
-    std::optional<MeasuredPlant> measured_;  // the plant is known by points alone
+    std::optional<TuningProblem> problem_;      // what methods work on, unless
+    std::optional<MeasuredPlant> measured_;     // the plant is known by points alone
+    std::optional<NonlinearSystem> nonlinear_;  // what family_ is the linearisation of, if it is one
     std::optional<BestSoFar> best_;
     std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
     std::vector<std::pair<Pid, Evaluation>> evaluated_;
@@ -125,6 +127,15 @@ RunControl Run::share(double from, double to) const {
     return part;
 }
 
+std::optional<Error> Run::take_equations(const NonlinearPlant& plant) {
+    auto system = NonlinearSystem::make(plant);
+    if (!system) return system.error();
+    result_.operating_point = operating_point(*system);
+    family_ = family_of(Plant(system->linearised()));
+    nonlinear_ = std::move(*system);
+    return std::nullopt;
+}
+
 std::optional<Error> Run::take_plant(const PlantModel& plant) {
     if (const auto* points = std::get_if<FrequencyResponse>(&plant)) {
         auto measured = MeasuredPlant::make(*points);
@@ -132,8 +143,7 @@ std::optional<Error> Run::take_plant(const PlantModel& plant) {
         measured_ = std::move(*measured);
         return std::nullopt;
     }
-    if (std::holds_alternative<NonlinearPlant>(plant))
-        return Error{ErrorKind::unsupported, "plant", "A nonlinear plant cannot be tuned by this build."};
+    if (const auto* equations = std::get_if<NonlinearPlant>(&plant)) return take_equations(*equations);
     const auto* set = std::get_if<PlantSet>(&plant);
     family_ = set ? family_of(*set) : family_of(std::get<Plant>(plant));
     if (!family_.single()) held_ = family_;
@@ -215,6 +225,7 @@ std::optional<Error> Run::state_problem() {
     auto linear = LinearPlant::make(nominal);
     if (!linear) return placed(linear.error(), "");
     problem_ = TuningProblem{nominal, std::move(*linear), dead_time_std_, held_};
+    if (nonlinear_) problem_->nonlinear = &*nonlinear_;
     if (result_.model && result_.model->limit_cycle)
         problem_->relay_point = result_.model->limit_cycle->describing_function;
     return std::nullopt;

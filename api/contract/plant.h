@@ -9,7 +9,7 @@ namespace tunewright::api {
 /// One linear plant; answers carry only these.
 const Union<Plant>& plant_contract();
 
-/// What a request may be about: a linear plant, several, or measured points of one.
+/// What a request may be about: a linear plant, several, measured points of one, or differential equations.
 const Union<PlantModel>& plant_model_contract();
 
 }  // namespace tunewright::api

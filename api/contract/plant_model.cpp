@@ -1,3 +1,4 @@
+#include "api/contract/nonlinear_plant.h"
 #include "api/contract/plant.h"
 
 namespace tunewright::api {
@@ -55,21 +56,18 @@ const Description<FrequencyResponse>& frequency_response() {
     return description;
 }
 
-std::string later(const std::string& type) {
-    return "type " + type +
-           " is not available yet; the types are fopdt, sopdt, ipdt, transfer_function, zpk, state_space, set and "
-           "frequency_response.";
-}
-
 }  // namespace
 
 const Union<PlantModel>& plant_model_contract() {
     static const auto contract = [] {
         Union<PlantModel> plant("PlantModel",
-                                "One linear plant, several that one controller must serve, or measured points of one.",
+                                "One linear plant, several that one controller must serve, measured points of one, or "
+                                "differential equations.",
                                 "type");
-        plant.include(plant_contract()).alternative(plant_set()).alternative(frequency_response());
-        plant.refuse("nonlinear", later("nonlinear"));
+        plant.include(plant_contract())
+            .alternative(plant_set())
+            .alternative(frequency_response())
+            .alternative(nonlinear_plant_contract());
         return plant;
     }();
     return contract;

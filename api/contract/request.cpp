@@ -5,6 +5,7 @@
 #include "api/contract/plant.h"
 #include "engine/loop/loop.h"
 #include "engine/plant/linear_plant.h"
+#include "engine/plant/nonlinear_system.h"
 
 namespace tunewright::api {
 namespace {
@@ -97,9 +98,17 @@ std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
         if (auto linear = check_linear(*plant, reader)) plants.push_back(std::move(*linear));
         return plants;
     }
-    const auto* set = std::get_if<PlantSet>(&model);
-    if (set == nullptr) return plants;
-    const auto& members = set->plants;
+    if (std::holds_alternative<FrequencyResponse>(model)) return plants;
+    if (const auto* equations = std::get_if<NonlinearPlant>(&model)) {
+        const auto system = NonlinearSystem::make(*equations);
+        if (!system) {
+            reader.fault_below(system.error().where, 1, system.error().message);
+        } else if (auto linear = check_linear(system->linearised(), reader)) {
+            plants.push_back(std::move(*linear));
+        }
+        return plants;
+    }
+    const auto& members = std::get<PlantSet>(model).plants;
     const Reader::At list(reader, "plants");
     for (std::size_t i = 0; i < members.size(); ++i) {
         const Reader::At member(reader, i);

@@ -18,10 +18,15 @@ double dot(const std::vector<double>& a, const std::vector<double>& x) {
 
 }  // namespace
 
-double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
+std::optional<double> tracking_time(const ParallelPid& controller) {
     if (controller.Ki == 0) return std::numeric_limits<double>::infinity();
     if (controller.Kd != 0) return std::sqrt(std::abs(controller.Kd / controller.Ki));  // Ti Td = Kd/Ki
     if (controller.Kp != 0) return std::abs(controller.Kp / controller.Ki);
+    return std::nullopt;
+}
+
+double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
+    if (const auto time = tracking_time(controller)) return *time;
     double lags = plant.dead_time();
     for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
     return 0.1 * (lags > 0 ? lags : 1 / std::abs(controller.Ki * plant.gain()));

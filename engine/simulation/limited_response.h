@@ -32,6 +32,8 @@ struct OutputLimits {
 /// action, which has no time of its own: a tenth of the plant's dead time and lags, or of 1/|Ki K| on a static plant.
 /// Magnitudes of the gains count. Without integral action: infinity.
 double tracking_time(const LinearPlant& plant, const ParallelPid& controller);
+/// The same where the controller alone decides it; empty for pure integral action.
+std::optional<double> tracking_time(const ParallelPid& controller);
 
 /// As `simulate_linear`, with u the limited output. Differences:
 /// - `y_final`, `u_final`: the steady state if the limits admit it; the plant's rest at the nearer limit if they do not

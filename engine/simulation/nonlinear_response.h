@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct NonlinearOptions {
     std::optional<double> delta_r;         ///< the integral of the nonlinear PID (Npid)
     int samples = 0;                       ///< with a horizon: fills `even` with that many values (0 or >= 2)
     bool nodes = true;                     ///< false: `loop.nodes` stays empty, for searches
+    std::stop_token stop;                  ///< ends the run between two steps
 };
 
 struct NonlinearResponse {

@@ -1,0 +1,393 @@
+#include "engine/simulation/nonlinear_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "engine/number_text.h"
+#include "engine/plant/linear_algebra.h"
+#include "engine/plant/linear_plant.h"
+#include "engine/simulation/nonlinear_loop.h"
+#include "engine/simulation/nonlinear_rest.h"
+#include "engine/simulation/ode_integrator.h"
+#include "engine/simulation/response_recorder.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kEscaped = 1e6;  // of the scale of y
+constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
+constexpr int kEchoes = 6;        // of a jump: smoothed by the plant at each passage, to the method's order
+constexpr int kMostEchoes = 2000;
+constexpr int kRestInterval = 32;   // steps between two looks for where the loop comes to rest
+constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
+
+OutputLimits limits_of(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
+    OutputLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
+    if (actuator) {
+        limits.min = std::max(limits.min, actuator->min);
+        limits.max = std::min(limits.max, actuator->max);
+    }
+    return limits;
+}
+
+double tracking_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits) {
+    if (controller.Ki == 0 || (std::isinf(limits.min) && std::isinf(limits.max))) return 0;
+    auto time = tracking_time(controller);
+    if (!time)
+        if (const auto plant = LinearPlant::make(system.linearised())) time = tracking_time(*plant, controller);
+    return time && *time > 0 ? 1 / *time : 0;
+}
+
+/// The size of y to which d drives it over the plant's own time.
+double effect_of_load(const NonlinearSystem& system, double d) {
+    if (d == 0) return 0;
+    const StateSpace& plant = system.linearised();
+    const int n = system.order();
+    std::vector<double> A;
+    for (const auto& row : plant.A) A.insert(A.end(), row.begin(), row.end());
+    double time = plant.L;
+    for (const auto pole : eigenvalues(A, n))
+        if (std::abs(pole) > 0) time += 1 / std::abs(pole);
+    const double omega = time > 0 ? 1 / time : 1;
+    const double effect = std::abs(d * resolvent_response(A, plant.B, plant.C, 0, n, {0, omega}));
+    return std::isfinite(effect) ? effect : 0;
+}
+
+/// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
+class Run {
+public:
+    Run(const NonlinearSystem& system, const ParallelPid& controller, const StepInputs& in,
+        const NonlinearOptions& options)
+        : options_(options),
+          in_(in),
+          loop_(system,
+                PidLaw(controller, in.r, options.delta_r,
+                       tracking_rate(system, controller, limits_of(system, options.actuator))),
+                in, limits_of(system, options.actuator)),
+          L_(system.dead_time()),
+          integrator_(equations(), options.tolerance),
+          recorder_(response_, options, in.r),
+          z_(Index(loop_.order())) {
+        if (loop_.delayed() && loop_.law().pure_derivative()) {
+            double q = 0;
+            for (int i = 0; i < system.order(); ++i)
+                q += system.linearised().C[Index(i)] * system.linearised().B[Index(i)];
+            q = std::min(std::abs(controller.Kd * q), 0.999);
+            if (q > 0) echoes_ = std::min(kMostEchoes, kEchoes + int(std::log(1e-3 * options.tolerance) / std::log(q)));
+        }
+    }
+
+    NonlinearResponse run() {
+        if (begin()) {
+            while (!over()) {
+                if (!take_step()) break;
+            }
+        }
+        return finish();
+    }
+
+private:
+    // ---- equations ----------------------------------------------------------------------------------------------
+
+    OdeSystem equations() {
+        OdeSystem system{loop_.order(), [this](double t, std::span<const double> z, std::span<double> dz) {
+                             return loop_.rates(region_, z, w_then(t), dz);
+                         }};
+        if (loop_.has_jacobian())
+            system.jacobian = [this](double t, std::span<const double> z, std::span<double> J, std::span<double> ft) {
+                const double slope = loop_.delayed() ? history_.slope(t - L_, at_step_end(t)) : 0;
+                return loop_.jacobian(region_, z, w_then(t), slope, J, ft);
+            };
+        return system;
+    }
+
+    double slack() const { return 8 * kEpsilon * std::max(integrator_.t(), L_); }
+    bool at_step_end(double t) const { return t >= step_end_ - slack(); }
+    /// The plant's input, L ago: before a jump for the step that ends there, after it for the one that begins.
+    double w_then(double t) const { return loop_.delayed() ? history_.at(t - L_, at_step_end(t)) : 0; }
+
+    // ---- one step -----------------------------------------------------------------------------------------------
+
+    bool begin() {
+        const auto& initial = options_.initial;
+        const auto steady = loop_.system().x_steady();
+        std::copy(steady.begin(), steady.end(), z_.begin());
+        if (!initial.empty()) std::copy(initial.begin(), initial.end(), z_.begin());
+        const double y0 = loop_.system().output(loop_.plant_states(z_)) - loop_.system().y_steady();
+        loop_.law().rest(y0, std::span<double>(z_).subspan(Index(loop_.system().order())));
+        largest_y_ = std::max(std::abs(in_.r), std::abs(y0));
+        scale_y_ = std::max(largest_y_, effect_of_load(loop_.system(), in_.d));
+        if (!std::isfinite(y0)) return fail(OdeStep::left_domain);
+        region_ = loop_.region(z_, w_then(0));
+        response_.limited = region_ != Region::inside;
+        const auto out = loop_.output(region_, z_, w_then(0));
+        largest_u_ = std::abs(out.u);
+        largest_command_ = std::abs(out.command);
+        update_sizes();
+        if (!integrator_.start(0, z_)) return fail(OdeStep::left_domain);
+        add_break(L_, 0);
+        if (!options_.horizon) look_for_rest();
+        return true;
+    }
+
+    void add_break(double t, int passages) {
+        if (!loop_.delayed() || passages > echoes_) return;
+        const auto near = breaks_.lower_bound(t - slack());
+        if (near != breaks_.end() && near->first <= t + slack())
+            near->second = std::min(near->second, passages);
+        else
+            breaks_.emplace(t, passages);
+    }
+
+    double next_stop() const {
+        const double t = integrator_.t();
+        double stop = options_.horizon.value_or(kInfinity);
+        if (!breaks_.empty() && breaks_.begin()->first < stop + slack()) stop = std::min(stop, breaks_.begin()->first);
+        if (loop_.delayed() && t + L_ < stop - slack()) stop = t + L_;
+        return stop;
+    }
+
+    bool take_step() {
+        step_end_ = next_stop();
+        const OdeStep outcome = integrator_.step(step_end_);
+        ++steps_;
+        if (outcome != OdeStep::made) return fail(outcome);
+        if (!read_signals()) return fail(OdeStep::left_domain);
+        if (const auto crossing = find_crossing()) {
+            const OdeStep again = integrator_.shorten(*crossing);
+            if (again != OdeStep::made || !read_signals()) return fail(again);
+            keep_step();
+            cross();
+            return true;
+        }
+        keep_step();
+        const bool at_break = !breaks_.empty() && breaks_.begin()->first <= integrator_.t() + slack();
+        return at_break ? pass_break() : true;
+    }
+
+    /// The last step's signals as polynomials.
+    bool read_signals() {
+        const double from = integrator_.t_before(), h = integrator_.t() - from;
+        std::array<double, 6> y{}, command{};
+        for (Index k = 0; k < 6; ++k) {
+            const double t = k == 5 ? integrator_.t() : from + kSixPoints[k] * h;
+            integrator_.at(t, z_);
+            const auto out = loop_.output(region_, z_, w_then(t));
+            if (!out.exists) return false;
+            y[k] = out.y;
+            command[k] = out.command;
+        }
+        y_ = StepPolynomial::through(from, h, y);
+        command_ = StepPolynomial::through(from, h, command);
+        u_ = region_ == Region::inside ? command_ : StepPolynomial::constant(from, h, loop_.limit(region_));
+        for (const double c : command) largest_command_ = std::max(largest_command_, std::abs(c));
+        return true;
+    }
+
+    void keep_step() {
+        recorder_.add(y_, u_);
+        if (loop_.delayed()) {
+            StepPolynomial w = u_;
+            w.c[0] += in_.d;
+            history_.add(w);
+        }
+        for (const double s : kSixPoints) note(y_.t + s * y_.h, y_.at(s), u_.at(s));
+        update_sizes();
+        if (!options_.horizon && steps_ % kRestInterval == 0) look_for_rest();
+    }
+
+    void note(double t, double y, double u) {
+        largest_y_ = std::max(largest_y_, std::abs(y));
+        largest_u_ = std::max(largest_u_, std::abs(u));
+        if (!rest_) return;
+        const double dy = std::abs(y - rest_->y), du = std::abs(u - rest_->u);
+        if (dy > options_.settled * largest_y_ || du > options_.settled * largest_u_) last_unsettled_ = t;
+    }
+
+    /// The law's states have the sizes of u and y.
+    void update_sizes() {
+        const int n = loop_.system().order();
+        integrator_.set_least_size(n, std::max(largest_u_, largest_command_));
+        for (int i = 1; i < loop_.law().order(); ++i) integrator_.set_least_size(n + i, largest_y_);
+    }
+
+    // ---- borders ------------------------------------------------------------------------------------------------
+
+    std::optional<double> find_crossing() const {
+        const OutputLimits& limits = loop_.limits();
+        const double noise = kNoise * largest_command_;
+        const auto rise = [&](double limit, double sign) -> std::optional<double> {
+            if (!std::isfinite(limit)) return std::nullopt;
+            return first_crossing([&](double s) { return sign * (command_.at(s) - limit) - noise; }, 0, 1);
+        };
+        std::optional<double> up, down;
+        if (region_ != Region::below) up = rise(limits.max, region_ == Region::inside ? 1 : -1);
+        if (region_ != Region::above) down = rise(limits.min, region_ == Region::inside ? -1 : 1);
+        if (!up && !down) return std::nullopt;
+        const double s = std::min(up.value_or(2), down.value_or(2));
+        return s < 1 ? command_.t + s * command_.h : integrator_.t();
+    }
+
+    void cross() {
+        response_.limited = true;
+        if (region_ != Region::inside)
+            region_ = Region::inside;
+        else
+            region_ = command_.at(1) > 0.5 * (loop_.limits().min + loop_.limits().max) ? Region::above : Region::below;
+        restart();
+        add_break(integrator_.t() + L_, 1);
+        if (!breaks_.empty() && breaks_.begin()->first <= integrator_.t() + slack()) pass_break();
+    }
+
+    /// What the plant sees jumps, and with a pure derivative the command too.
+    bool pass_break() {
+        const int passages = breaks_.begin()->second;
+        breaks_.erase(breaks_.begin());
+        step_end_ = kInfinity;
+        const Region before = region_;
+        if (loop_.law().pure_derivative()) region_ = loop_.region(integrator_.x(), w_then(integrator_.t()));
+        response_.limited = response_.limited || region_ != Region::inside;
+        add_break(integrator_.t() + L_, region_ == before ? passages + 1 : 0);
+        return restart();
+    }
+
+    bool restart() {
+        step_end_ = kInfinity;
+        recorder_.border();
+        z_.assign(integrator_.x().begin(), integrator_.x().end());
+        return integrator_.start(integrator_.t(), z_) || fail(OdeStep::left_domain);
+    }
+
+    // ---- the end ------------------------------------------------------------------------------------------------
+
+    void look_for_rest() {
+        const auto x = loop_.plant_states(integrator_.x());
+        auto rest =
+            find_rest(loop_, in_, {x.begin(), x.end()}, std::clamp(u_.at(1), loop_.limits().min, loop_.limits().max));
+        if (!rest) return;
+        const bool same = rest_ && std::abs(rest->y - rest_->y) <= options_.settled * largest_y_ &&
+                          std::abs(rest->u - rest_->u) <= options_.settled * largest_u_;
+        if (!same) last_unsettled_ = integrator_.t();
+        rest_ = std::move(rest);
+    }
+
+    bool over() {
+        const double t = integrator_.t();
+        if (options_.horizon && t >= *options_.horizon) return true;
+        if (options_.stop.stop_requested()) {
+            response_.ended = "The simulation was stopped.";
+            return true;
+        }
+        if (!options_.horizon && settled()) {
+            settled_ = true;
+            return true;
+        }
+        if (t > 0 && std::abs(y_.at(1)) > kEscaped * scale_y_) {
+            response_.ended = "At t = " + text(t) +
+                              " the output has left every bound: it is more than a million times the step's size.";
+            return true;
+        }
+        if (steps_ >= options_.max_steps) {
+            response_.ended = "At t = " + text(t) + " the run has taken the " + std::to_string(options_.max_steps) +
+                              " steps that it may" + (options_.horizon ? "." : ", and the loop has not come to rest.");
+            return true;
+        }
+        return false;
+    }
+
+    bool settled() const {
+        if (!rest_) return false;
+        const double t = integrator_.t(), quiet = std::max(2 * L_, 0.25 * last_unsettled_);
+        if (t < last_unsettled_ + quiet || t <= 0) return false;
+        const auto remaining = remaining_error_integral();
+        if (!remaining) return true;
+        // A slow tail that still has integral to add must at least have the sign to add it.
+        const double so_far = recorder_.error_integral();
+        return *remaining * (in_.r - y_.at(1)) >= 0 ||
+               std::abs(*remaining) <= options_.settled * (std::abs(so_far) + std::abs(*remaining));
+    }
+
+    /// Once the loop stays within its limits: what the integral has yet to change until rest.
+    std::optional<double> remaining_error_integral() const {
+        if (!rest_ || !rest_->within || !loop_.law().integrates() || region_ != Region::inside) return std::nullopt;
+        return loop_.law().error_integral_to_rest(loop_.law_states(integrator_.x()),
+                                                  loop_.law().integral_at_rest(rest_->u));
+    }
+
+    bool fail(OdeStep outcome) {
+        const double t = integrator_.t();
+        if (outcome == OdeStep::stalled) {
+            response_.ended =
+                "At t = " + text(t) + " the steps needed are too short to go on: the states change too fast.";
+            return false;
+        }
+        response_.ended = "At t = " + text(t) + " the states leave the model's domain. " + fault();
+        return false;
+    }
+
+    /// Which operation fails just ahead.
+    std::string fault() const {
+        const auto x = loop_.plant_states(integrator_.x()), dx = loop_.plant_states(integrator_.dx());
+        std::vector<double> ahead(x.size());
+        const double u = loop_.system().u_nominal() + (loop_.delayed() ? w_then(integrator_.t()) : u_.at(1) + in_.d);
+        for (double length = 0;
+             length<1e3; length = length> 0 ? 4 * length : kEpsilon * std::max(integrator_.t(), 1e-9)) {
+            for (Index i = 0; i < x.size(); ++i) ahead[i] = x[i] + length * dx[i];
+            const std::string sentence = loop_.system().domain_fault(ahead, u);
+            if (!sentence.empty()) return sentence;
+        }
+        return "Their rates of change do not exist there.";
+    }
+
+    NonlinearResponse finish() {
+        const double t = integrator_.t();
+        response_.t_end = t;
+        response_.loop.settles = options_.horizon ? t >= *options_.horizon : settled_;
+        recorder_.finish(t, y_.at(1), u_.at(1));
+        response_.loop.y_final = y_.at(1);
+        response_.loop.u_final = u_.at(1);
+        if (!options_.nodes || !response_.ended.empty() || t <= 0) return std::move(response_);
+        look_for_rest();
+        if (rest_ && std::abs(rest_->y - y_.at(1)) <= kNearRest * largest_y_ &&
+            std::abs(rest_->u - u_.at(1)) <= kNearRest * largest_u_) {
+            response_.loop.y_final = rest_->within && loop_.law().integrates() ? in_.r : rest_->y;
+            response_.loop.u_final = rest_->u;
+            if (const auto remaining = remaining_error_integral())
+                response_.loop.error_integral_final = recorder_.error_integral() + *remaining;
+        }
+        return std::move(response_);
+    }
+
+    const NonlinearOptions& options_;
+    StepInputs in_;
+    NonlinearLoop loop_;
+    double L_;
+    Region region_ = Region::inside;
+    SignalHistory history_;
+    double step_end_ = kInfinity;
+    OdeIntegrator integrator_;
+    NonlinearResponse response_;
+    ResponseRecorder recorder_;
+    std::vector<double> z_;
+    std::map<double, int> breaks_;
+    int steps_ = 0, echoes_ = kEchoes;
+    StepPolynomial y_, u_, command_;
+    std::optional<NonlinearRest> rest_;
+    bool settled_ = false;
+    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, scale_y_ = 0, last_unsettled_ = 0;
+};
+
+}  // namespace
+
+NonlinearResponse simulate_nonlinear(const NonlinearSystem& system, const ParallelPid& controller,
+                                     const StepInputs& inputs, const NonlinearOptions& options) {
+    return Run(system, controller, inputs, options).run();
+}
+
+}  // namespace tunewright

@@ -1,0 +1,48 @@
+// A signal over one step of an integrator: the quintic through six of its values. Values, slopes, integrals; a history
+// of such steps, for signals that are looked up later.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace tunewright {
+
+/// Where the six values are taken: fractions of the step, both ends included (Chebyshev's extreme points).
+extern const std::array<double, 6> kSixPoints;
+
+struct StepPolynomial {
+    double t = 0, h = 0;        ///< from t to t + h
+    std::array<double, 6> c{};  ///< of powers of s = (time - t)/h
+
+    static StepPolynomial through(double t, double h, const std::array<double, 6>& values);
+    static StepPolynomial constant(double t, double h, double value) { return {t, h, {value}}; }
+
+    double at(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5])))); }
+    double slope(double s) const {
+        return h > 0 ? (c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5])))) / h : 0;
+    }
+    /// From t to t + s h.
+    double integral(double s) const {
+        return h * s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * (c[3] / 4 + s * (c[4] / 5 + s * c[5] / 6)))));
+    }
+    double end() const { return t + h; }
+};
+
+/// 0 before its first step.
+class SignalHistory {
+public:
+    void clear() { steps_.clear(), cursor_ = 0; }
+    void add(const StepPolynomial& step) { steps_.push_back(step); }
+    /// Value and slope at `time`, of the earlier step (`before`) or the later where it is the border of two; beyond the
+    /// last step the last one continued.
+    double at(double time, bool before) const;
+    double slope(double time, bool before) const;
+
+private:
+    const StepPolynomial* find(double time, bool before) const;
+
+    std::vector<StepPolynomial> steps_;
+    mutable std::size_t cursor_ = 0;  // times are asked for in nearly ascending order
+};
+
+}  // namespace tunewright

@@ -1,0 +1,168 @@
+#include "engine/simulation/nonlinear_response.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engine/plant/linear_equations.h"
+#include "engine/simulation/indices.h"
+#include "tests/engine/plant/nonlinear_plants.h"
+#include "tests/test_data.h"
+
+namespace tunewright {
+namespace {
+
+using Json = nlohmann::json;
+
+NonlinearSystem written_out(const Plant& plant) { return *as_equations(*LinearPlant::make(plant)); }
+
+/// The largest difference of y and u at even times, relative to the largest values.
+double difference(const NonlinearResponse& a, const LinearResponse& b, double horizon) {
+    const auto values = sampled(b.nodes, horizon, int(a.even.y.size()));
+    double dy = 0, du = 0, y = 0, u = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        dy = std::max(dy, std::abs(a.even.y[i] - values[i].first));
+        du = std::max(du, std::abs(a.even.u[i] - values[i].second));
+        y = std::max(y, std::abs(values[i].first));
+        u = std::max(u, std::abs(values[i].second));
+    }
+    return std::max(dy / y, du / u);
+}
+
+/// `tolerance` is wider where the linear simulation's own steps are coarse for what follows a kick.
+struct LinearCase {
+    const char* name;
+    Plant plant;
+    ParallelPid controller;
+    StepInputs inputs;
+    double horizon;
+    double tolerance = 1e-6;
+};
+
+std::vector<LinearCase> linear_cases() {
+    const Zpk third{.K = 1, .zeros = {}, .poles = {-1.0, -1.0, -1.0}, .L = 0.3};
+    const Filter derivative{FilterType::derivative, 0.1}, first{FilterType::measurement_first_order, 0.2},
+        second{FilterType::measurement_second_order, 0.3};
+    return {
+        {"PI, no dead time", Fopdt{.K = 2, .T = 3, .L = 0}, {.Kp = 1, .Ki = 0.5}, {1, 0}, 20},
+        {"PI, load", Fopdt{.K = 2, .T = 3, .L = 1}, {.Kp = 0.7, .Ki = 0.25}, {0, 1}, 30},
+        {"PI, dead time, half the step", Fopdt{.K = 2, .T = 3, .L = 1}, {.Kp = 0.7, .Ki = 0.25, .b = 0.5}, {1, 0}, 30},
+        {"I alone", Fopdt{.K = 2, .T = 3, .L = 1}, {.Ki = 0.1}, {1, 0.5}, 40},
+        {"P alone", third, {.Kp = 2}, {1, 0}, 20},
+        {"PID, filtered derivative", third, {.Kp = 2, .Ki = 0.7, .Kd = 1.5, .filter = derivative}, {1, 0}, 20},
+        {"PID, kick", third, {.Kp = 2, .Ki = 0.7, .Kd = 1.5, .c = 1, .filter = derivative}, {1, 0}, 20, 3e-6},
+        {"PID, measurement filter", third, {.Kp = 2, .Ki = 0.7, .Kd = 1, .filter = first}, {1, 1}, 20},
+        {"PID, second-order filter", third, {.Kp = 2, .Ki = 0.7, .Kd = 1, .filter = second}, {1, 1}, 20},
+        {"PID, pure derivative", third, {.Kp = 2, .Ki = 0.7, .Kd = 1.5}, {1, 0}, 20},
+        {"PID, pure derivative against y' of the step",
+         Fopdt{.K = 1, .T = 2, .L = 0},
+         {.Kp = 3, .Ki = 2, .Kd = 0.8},
+         {1, 0},
+         10},
+        {"PID, neutral", Fopdt{.K = 1, .T = 2, .L = 0.5}, {.Kp = 1.5, .Ki = 0.7, .Kd = 0.5}, {1, 0}, 10},
+        {"PI, integrating", Ipdt{.K = 0.5, .L = 0.4}, {.Kp = 1.5, .Ki = 0.3}, {1, 1}, 30},
+        {"PID, unstable plant",
+         Zpk{.K = 2, .zeros = {}, .poles = {0.5, -3.0}, .L = 0.1},
+         {.Kp = 4, .Ki = 1, .Kd = 1, .filter = derivative},
+         {1, 1},
+         20},
+    };
+}
+
+TEST(NonlinearResponse, OfALinearPlantIsTheLinearOne) {
+    for (const LinearCase& c : linear_cases()) {
+        SCOPED_TRACE(c.name);
+        ResponseOptions exact;
+        exact.tolerance = 1e-8;
+        exact.horizon = c.horizon;
+        const auto linear = simulate_linear(*LinearPlant::make(c.plant), c.controller, c.inputs, exact);
+        NonlinearOptions options;
+        options.horizon = c.horizon;
+        options.samples = 401;
+        const auto response = simulate_nonlinear(written_out(c.plant), c.controller, c.inputs, options);
+        ASSERT_EQ(response.ended, "");
+        ASSERT_EQ(response.even.y.size(), 401u);
+        EXPECT_LT(difference(response, linear, c.horizon), c.tolerance);
+        EXPECT_FALSE(response.limited);
+    }
+}
+
+TEST(NonlinearResponse, OfALinearPlantWithLimitsIsTheLimitedOne) {
+    for (const LinearCase& c : linear_cases()) {
+        if (std::string(c.name).find("unstable") != std::string::npos) continue;
+        SCOPED_TRACE(c.name);
+        ResponseOptions exact;
+        exact.tolerance = 1e-8;
+        exact.horizon = c.horizon;
+        const auto plant = *LinearPlant::make(c.plant);
+        const auto free = simulate_linear(plant, c.controller, c.inputs, exact);
+        double max = 0, min = 0;
+        for (const auto& node : free.nodes) {
+            max = std::max(max, node.u);
+            min = std::min(min, node.u);
+        }
+        const OutputLimits limits{min - 0.1, std::max(0.7 * max, 1.1 * free.u_final)};
+        if (limits.max >= max) continue;
+        const auto linear = simulate_limited(plant, c.controller, c.inputs, limits, exact);
+        NonlinearOptions options;
+        options.horizon = c.horizon;
+        options.samples = 401;
+        options.actuator = limits;
+        const auto response = simulate_nonlinear(written_out(c.plant), c.controller, c.inputs, options);
+        ASSERT_EQ(response.ended, "");
+        EXPECT_TRUE(response.limited);
+        EXPECT_LT(difference(response, linear, c.horizon), c.tolerance);
+    }
+}
+
+TEST(NonlinearResponse, OfTheStirredTankHasTheReferencesFigures) {
+    const Json reference = Json::parse(std::ifstream(test_data("emulation/closed_loops.json")));
+    int rows = 0;
+    for (const Json& row : reference.at("rows")) {
+        if (!row.contains("params")) continue;
+        ++rows;
+        const std::string loop = row.at("loop");
+        const double r = row.at("r");
+        SCOPED_TRACE(loop + " " + row.at("tuning").get<std::string>() + " " + std::to_string(r));
+        const auto params = row.at("params").get<std::vector<double>>();
+        ParallelPid controller{.Kp = params[0], .Ki = params[0] / params[1]};
+        if (params.size() > 2) {
+            controller.Kd = params[0] * params[2];
+            controller.filter = {FilterType::derivative, 0.1};
+            controller.c = row.at("kick").get<bool>() ? 1 : 0;
+        }
+        NonlinearOptions options;
+        options.horizon = reference.at("horizon_" + loop);
+        const auto response = simulate_nonlinear(made_system(cstr(loop)), controller, {r, 0}, options);
+        if (!row.at("stable")) {
+            EXPECT_NE(response.ended.find("leave the model's domain"), std::string::npos) << response.ended;
+            EXPECT_LT(response.t_end, *options.horizon);
+            continue;
+        }
+        ASSERT_EQ(response.ended, "");
+        const auto& nodes = response.loop.nodes;
+        const double iae = integral_of_absolute_error(nodes, r, std::nullopt) / std::abs(r);
+        const Extremes extremes = extremes_of_y(nodes);
+        EXPECT_NEAR(iae, row.at("iae_over_r"), 1e-6);
+        EXPECT_NEAR(std::max(0.0, (r > 0 ? extremes.max : extremes.min) / r - 1), row.at("overshoot"), 1e-5);
+        const auto settled = last_outside(nodes, r, 0.02 * std::abs(r));
+        ASSERT_EQ(settled.has_value(), !row.at("settling_2pct").is_null());
+        if (settled) {
+            EXPECT_NEAR(*settled, row.at("settling_2pct"), 1e-4);
+        }
+        double u_max = -INFINITY, u_min = INFINITY;
+        for (const auto& node : nodes) {
+            u_max = std::max(u_max, node.u);
+            u_min = std::min(u_min, node.u);
+        }
+        EXPECT_NEAR(nodes.front().u, row.at("u0"), 1e-9 * std::abs(nodes.front().u));
+        EXPECT_NEAR(u_max, row.at("u_max"), 2e-3 * (u_max - u_min));
+        EXPECT_NEAR(u_min, row.at("u_min"), 2e-3 * (u_max - u_min));
+    }
+    EXPECT_GE(rows, 45);
+}
+
+}  // namespace
+}  // namespace tunewright

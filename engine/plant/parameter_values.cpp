@@ -21,8 +21,7 @@ public:
             if (const auto* text = std::get_if<std::string>(&parameter.value)) {
                 auto tree = parse_expression(*text, limits);
                 if (!tree) return failed(parameter.name, tree.error().message);
-                limits.nodes -= static_cast<int>(tree->nodes.size());
-                result_.nodes += static_cast<int>(tree->nodes.size());
+                limits.used += static_cast<int>(tree->nodes.size());
                 trees_.emplace(parameter.name, std::move(*tree));
             } else {
                 const double value = std::get<double>(parameter.value);
@@ -34,6 +33,7 @@ public:
         }
         for (const auto& [name, tree] : trees_)
             if (auto error = work_out(name)) return *error;
+        result_.nodes = limits.used;
         return std::move(result_);
     }
 

@@ -91,7 +91,7 @@ Expected<std::vector<const NamedExpression*>> equations_in_order(const Nonlinear
 class Compilation {
 public:
     Compilation(const NonlinearPlant& plant, const ParameterValues& parameters)
-        : plant_(plant), parameters_(parameters.values), limits_{.nodes = ExpressionLimits{}.nodes - parameters.nodes} {
+        : plant_(plant), parameters_(parameters.values), limits_{.used = parameters.nodes} {
         for (std::size_t i = 0; i < plant.states.size(); ++i) variables_.emplace(plant.states[i].name, i);
         variables_.emplace(plant.input.name, plant.states.size());
     }
@@ -131,7 +131,7 @@ private:
         auto error = tree ? builder.add_output(*tree, source, [this](const auto& name) { return meaning(name); })
                           : std::optional<Error>(tree.error());
         if (error) return invalid(where, source + ", " + error->message);
-        limits_.nodes -= static_cast<int>(tree->nodes.size());
+        limits_.used += static_cast<int>(tree->nodes.size());
         return std::nullopt;
     }
 

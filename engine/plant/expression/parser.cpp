@@ -92,7 +92,7 @@ private:
 
     int node(const SyntaxNode& made) {
         if (error_) return -1;
-        if (static_cast<int>(tree_.nodes.size()) >= limits_.nodes)
+        if (limits_.used + static_cast<int>(tree_.nodes.size()) >= limits_.nodes)
             return fail(made.position, "the expressions have more than " + std::to_string(limits_.nodes) +
                                            " numbers, names and operations.");
         tree_.nodes.push_back(made);

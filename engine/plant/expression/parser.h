@@ -22,7 +22,8 @@ namespace tunewright {
 struct ExpressionLimits {
     int length = 10000;  ///< bytes of one expression
     int depth = 100;     ///< parentheses, signs, powers and conditionals inside one another
-    int nodes = 5000;    ///< numbers, names and operations
+    int nodes = 5000;    ///< numbers, names and operations, together with
+    int used = 0;        ///< those of expressions read before
 };
 
 struct SyntaxNode {

@@ -30,5 +30,89 @@ TEST(LieDerivatives, ReducedCstrFormulas) {
     EXPECT_NEAR(lie.of_g, -dk * CA, 1e-15);
 }
 
+TEST(LieDerivatives, BioreactorAndTankFormulas) {
+    LieDerivatives lie;
+    const double X = 1.4, S = 0.21, mu = 0.53 * S / (0.12 + S + 0.4545 * S * S);
+    ASSERT_TRUE(lie_derivatives(made_system(bioreactor(1.53, 0.175)), 1, std::vector{X, S}, lie));
+    EXPECT_NEAR(lie.of_f[1], mu * X, 1e-15);
+    EXPECT_NEAR(lie.of_g, -X, 1e-15);
+    const double h = 0.6, area = std::acos(-1.0) * h * (1 - h);
+    ASSERT_TRUE(lie_derivatives(made_system(spherical_tank(0.49, 0.28)), 1, std::vector{h}, lie));
+    EXPECT_NEAR(lie.of_f[1], -0.4 * std::sqrt(h) / area, 1e-15);
+    EXPECT_NEAR(lie.of_g, 1 / area, 1e-15);
+}
+
+TEST(LieDerivatives, AChainIsExactToTheFourthOrder) {
+    NonlinearPlant plant{.states = {{"x1", 1}, {"x2", 0}, {"x3", 0}, {"x4", 0}},
+                         .parameters = {},
+                         .equations = {{"x1", "x2"}, {"x2", "x3"}, {"x3", "x4^2"}, {"x4", "x1*u"}},
+                         .input = {.name = "u", .nominal = 0},
+                         .output = "x1"};
+    const auto system = made_system(plant);
+    LieDerivatives lie;
+    ASSERT_TRUE(lie_derivatives(system, 4, std::vector{0.5, 0.6, 0.7, 0.8}, lie));
+    EXPECT_DOUBLE_EQ(lie.of_f[3], 0.64);
+    EXPECT_DOUBLE_EQ(lie.of_f[4], 0);
+    EXPECT_DOUBLE_EQ(lie.of_g, 2 * 0.8 * 0.5);  // 2 x4 x1: 0 at the operating point, where x4 = 0
+    EXPECT_FALSE(relative_degree(system).has_value());
+}
+
+TEST(RelativeDegree, ACancellationThatHoldsEverywhereIsNoEffect) {
+    // u moves both states alike and the output is their difference: it enters one derivative later.
+    NonlinearPlant plant{.states = {{"a", 0.3}, {"b", 0.6}},
+                         .parameters = {},
+                         .equations = {{"a", "-a + (1 + a*b)*u/3"}, {"b", "-0.5*b + u*a*b/3 + u/3"}},
+                         .input = {.name = "u", .nominal = 1},
+                         .output = "a - b"};
+    plant.states = {{"a", 0.44}, {"b", 0.88}};
+    EXPECT_EQ(*relative_degree(made_system(plant)), 2);
+    plant.output = "a - 1.001*b";
+    EXPECT_EQ(*relative_degree(made_system(plant)), 1);
+}
+
+TEST(RelativeDegree, NearTheSingularPointItIsStillDefined) {
+    for (const double x : {1e-3, 1e-2}) {
+        NonlinearPlant plant = scalar_plant("-x + x0 + sin(x)*u", x);
+        plant.parameters = {{"x0", x}};
+        EXPECT_EQ(*relative_degree(made_system(plant)), 1) << x;
+    }
+}
+
+TEST(RelativeDegree, ChainsHaveTheirLength) {
+    for (int n = 1; n <= 8; ++n) {
+        NonlinearPlant chain{.states = {},
+                             .parameters = {},
+                             .equations = {},
+                             .input = {.name = "u", .nominal = 1},
+                             .output = "x" + std::to_string(n)};
+        for (int i = 1; i <= n; ++i) {
+            const std::string name = "x" + std::to_string(i),
+                              before = i == 1 ? "u" : "x" + std::to_string(i - 1) + "^2";
+            chain.states.push_back({name, 1});
+            chain.equations.push_back({name, before + " - " + name + "^3"});
+        }
+        EXPECT_EQ(*relative_degree(made_system(chain)), n);
+        EXPECT_TRUE(zero_dynamics(made_system(chain)).zeros.empty());
+    }
+}
+
+TEST(ZeroDynamics, CstrAndBioreactor) {
+    const auto T = zero_dynamics(made_system(cstr("T")));
+    ASSERT_EQ(T.zeros.size(), 1U);
+    EXPECT_NEAR(T.zeros[0].real(), -1.9218572983488496, 1e-8);
+    EXPECT_TRUE(T.stable);
+    EXPECT_TRUE(zero_dynamics(made_system(cstr("CA"))).zeros.empty());
+    // 1/(s+1) - 1.5/(s+2)
+    NonlinearPlant inverse{.states = {{"x1", 1}, {"x2", -0.75}},
+                           .parameters = {},
+                           .equations = {{"x1", "-x1 + u"}, {"x2", "-2*x2 - 1.5*u"}},
+                           .input = {.name = "u", .nominal = 1},
+                           .output = "x1 + x2"};
+    const auto zeros = zero_dynamics(made_system(inverse));
+    ASSERT_EQ(zeros.zeros.size(), 1U);
+    EXPECT_NEAR(zeros.zeros[0].real(), 1, 1e-12);  // (s+2) - 1.5 (s+1) = 0.5 - 0.5 s
+    EXPECT_FALSE(zeros.stable);
+}
+
 }  // namespace
 }  // namespace tunewright

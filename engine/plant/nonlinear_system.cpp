@@ -134,7 +134,10 @@ bool NonlinearSystem::output_gradient(std::span<const double> x, std::span<doubl
 }
 
 std::string NonlinearSystem::domain_fault(std::span<const double> x, double u) const {
-    return program_->joint.fault<double>(variables(x, u), program_->joint.outputs());
+    std::string fault = program_->joint.fault<double>(variables(x, u), program_->joint.outputs());
+    if (fault.empty()) return fault;
+    fault[0] = fault[0] == 'e' ? 'E' : fault[0] == 'o' ? 'O' : fault[0];
+    return fault + ".";
 }
 
 std::string NonlinearSystem::derivative_fault(std::span<const double> x, double u) const {

@@ -46,7 +46,8 @@ public:
     bool output_gradient(std::span<const double> x, std::span<double> C) const;
     /// Which operation of which equation fails at x and u, as a sentence; empty inside the domain.
     std::string domain_fault(std::span<const double> x, double u) const;
-    /// The same where a value is finite and its derivative is not, as that of sqrt at 0.
+    /// The same also where a value is finite and its derivative is not, as that of sqrt at 0; without capital and full
+    /// stop.
     std::string derivative_fault(std::span<const double> x, double u) const;
 
     /// About the steady state, with the dead time; exact derivatives.

@@ -11,6 +11,8 @@ namespace tunewright {
 namespace {
 
 constexpr int kMostSteps = 200000;
+constexpr double kSide = 1e-10;   // of the input's scale: how far beyond a limit the law is before that counts
+constexpr double kEscaped = 1e6;  // of the input's scale
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
 class LinearisingLaw {
@@ -63,17 +65,30 @@ public:
         const double u = law_(x);
         limit_ = u > system_.u_max() ? Limit::high : u < system_.u_min() ? Limit::low : Limit::none;
         response_.limited = limit_ != Limit::none;
-        if (!std::isfinite(u) || !integrator_.start(0, x)) return ended(reason(x));
+        measure_input(u);
+        sign_of_effect_ = law_.input_effect() < 0 ? -1 : 1;
+        if (!integrator_.start(0, x)) return ended(reason(OdeStep::left_domain));
         sample_step();
         for (int steps = 0; integrator_.t() < options_.horizon; ++steps) {
-            if (stop_.stop_requested()) return ended("the run was stopped");
-            if (steps == kMostSteps) return ended("the run takes more than " + std::to_string(kMostSteps) + " steps");
-            if (integrator_.step(options_.horizon) != OdeStep::made) return ended(reason(integrator_.x()));
-            const auto crossing =
-                first_crossing([this](double t) { return beyond(t); }, integrator_.t_before(), integrator_.t());
-            if (crossing && integrator_.shorten(*crossing) != OdeStep::made) return ended(reason(integrator_.x()));
+            if (stop_.stop_requested()) return ended("The simulation was stopped.");
+            if (steps == kMostSteps)
+                return ended("At t = " + text(now()) + " the run has taken the " + std::to_string(kMostSteps) +
+                             " steps that it may.");
+            OdeStep outcome = integrator_.step(options_.horizon);
+            if (outcome != OdeStep::made) return ended(reason(outcome));
+            if (const auto pole = loss_of_effect()) {
+                outcome = integrator_.shorten(*pole);
+                sample_step();
+                return ended("At t = " + text(now()) +
+                             " the controller's law ceases to exist: the input has no effect on the output there.");
+            }
+            const auto crossing = end_of_side();
+            if (crossing && (outcome = integrator_.shorten(*crossing)) != OdeStep::made) return ended(reason(outcome));
             sample_step();
-            if (crossing && !change_side()) return ended(reason(integrator_.x()));
+            if (crossing && !change_side()) return ended(reason(OdeStep::left_domain));
+            if (escaped())
+                return ended("At t = " + text(now()) +
+                             " the input has left every bound: the plant's zero dynamics are unstable.");
         }
         response_.t_end = options_.horizon;
         return std::move(response_);
@@ -91,13 +106,44 @@ private:
         return law_(x);
     }
 
+    void measure_input(double u) {
+        scale_u_ = std::abs(system_.u_nominal());
+        for (const double size : {u, system_.u_min(), system_.u_max()})
+            if (std::isfinite(size)) scale_u_ = std::max(scale_u_, std::abs(size - system_.u_nominal()));
+    }
+
+    bool escaped() {
+        return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kEscaped * scale_u_;
+    }
+
+    std::optional<double> end_of_side() {
+        if (std::isinf(system_.u_min()) && std::isinf(system_.u_max())) return std::nullopt;
+        return first_crossing([this](double t) { return beyond(t); }, integrator_.t_before(), integrator_.t());
+    }
+
+    // L_g L_f^(r-1) h changes its sign within the step: u has a pole there, which y alone would not show.
+    std::optional<double> loss_of_effect() {
+        const auto reversed = [this](std::span<const double> x) {
+            law_(x);
+            return -sign_of_effect_ * law_.input_effect();
+        };
+        if (!(reversed(integrator_.x()) > 0)) return std::nullopt;
+        return first_crossing(
+            [&](double t) {
+                integrator_.at(t, inside_);
+                return reversed(inside_);
+            },
+            integrator_.t_before(), integrator_.t());
+    }
+
     // > 0 where the law has left the present side.
     double beyond(double t) {
         integrator_.at(t, inside_);
         const double u = law_(inside_);
-        if (limit_ == Limit::high) return system_.u_max() - u;
-        if (limit_ == Limit::low) return u - system_.u_min();
-        return std::max(u - system_.u_max(), system_.u_min() - u);
+        const double beyond = limit_ == Limit::high  ? system_.u_max() - u
+                              : limit_ == Limit::low ? u - system_.u_min()
+                                                     : std::max(u - system_.u_max(), system_.u_min() - u);
+        return beyond - kSide * scale_u_;
     }
 
     bool change_side() {
@@ -126,20 +172,25 @@ private:
 
     double now() const { return integrator_.t(); }
 
-    std::string reason(std::span<const double> x) {
+    // Why the loop cannot go on from here; whatever fails lies just ahead.
+    std::string reason(OdeStep outcome) {
+        const auto x = integrator_.x(), dx = integrator_.dx();
+        const std::string at = "At t = " + text(now());
         const double u = input(x);
-        const std::string at = "at t = " + text(integrator_.t());
-        if (!std::isfinite(u) || law_.input_effect() == 0)
-            return "the linearising law is undefined " + at + ": the input has no effect on the output there";
-        // Whatever fails lies just ahead.
-        std::vector<double> dx(x.size()), ahead(x.begin(), x.end());
-        for (double h = 1e-12 * options_.horizon; system_.rates(x, u, dx) && h < options_.horizon; h *= 2) {
-            for (std::size_t i = 0; i < dx.size(); ++i) ahead[i] = x[i] + h * dx[i];
-            const std::string fault = system_.domain_fault(ahead, u);
-            if (!fault.empty()) return "the states left the model's domain " + at + ": " + fault;
+        if (!std::isfinite(u) || law_.input_effect() == 0) {
+            const std::string fault = system_.domain_fault(x, system_.u_nominal());
+            return at + (fault.empty()
+                             ? " the controller's law is undefined: the input has no effect on the output there."
+                             : " the states leave the model's domain. " + fault);
         }
-        return "the motion cannot be followed beyond t = " + text(integrator_.t()) +
-               ": input or states grow without bound";
+        if (outcome == OdeStep::stalled) return at + " the steps needed are too short to go on: u grows beyond bounds.";
+        std::vector<double> ahead(x.size());
+        for (double h = 1e-15 * options_.horizon; h < options_.horizon; h *= 4) {
+            for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = x[i] + h * dx[i];
+            const std::string fault = system_.domain_fault(ahead, u);
+            if (!fault.empty()) return at + " the states leave the model's domain. " + fault;
+        }
+        return at + " the controller's law ceases to exist.";
     }
 
     LinearisingResponse ended(const std::string& why) {
@@ -157,6 +208,7 @@ private:
     LinearisingLaw law_;
     OdeIntegrator integrator_;
     Limit limit_ = Limit::none;
+    double scale_u_ = 0, sign_of_effect_ = 1;
     std::vector<double> inside_;
     LinearisingResponse response_;
 };
@@ -195,8 +247,9 @@ FreeMotion free_motion(const NonlinearSystem& system, const LinearisingOptions& 
     motion.x.assign(run.x().begin(), run.x().end());
     motion.t_end = run.t();
     if (!inside)
-        motion.ended = "the motion under the nominal input cannot be followed beyond t = " + text(run.t()) + ": " +
-                       (stop.stop_requested() ? "the run was stopped" : "the states leave the model's domain");
+        motion.ended = stop.stop_requested() ? "The simulation was stopped."
+                                             : "At t = " + text(run.t()) +
+                                                   " the states leave the model's domain under the nominal input.";
     return motion;
 }
 

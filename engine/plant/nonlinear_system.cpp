@@ -80,12 +80,13 @@ Expected<NonlinearSystem> NonlinearSystem::make(const NonlinearPlant& plant) {
 
 Expected<NonlinearSystem> NonlinearSystem::with(const std::vector<NamedValue>& parameters) const {
     NonlinearPlant plant = plant_;
-    for (const auto& [name, value] : parameters) {
+    for (const NamedValue& given : parameters) {
         const auto found = std::find_if(plant.parameters.begin(), plant.parameters.end(),
-                                        [&](const Parameter& parameter) { return parameter.name == name; });
+                                        [&](const Parameter& parameter) { return parameter.name == given.name; });
         if (found == plant.parameters.end())
-            return Error{ErrorKind::invalid_argument, name, quoted(name) + " is no parameter of this plant."};
-        found->value = value;
+            return Error{ErrorKind::invalid_argument, given.name,
+                         quoted(given.name) + " is no parameter of this plant."};
+        found->value = given.value;
     }
     for (std::size_t i = 0; i < plant.states.size(); ++i) plant.states[i].value = x_steady_[i];
     return make(plant);

@@ -1,0 +1,83 @@
+// libFuzzer on a plant's texts: whatever bytes come, either an error that can be shown to anybody, or a plant whose
+// numbers are finite. Lines: output, dx/dt, dz/dt, a parameter.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+#include "engine/plant/lie_derivatives.h"
+#include "engine/plant/nonlinear_system.h"
+
+namespace {
+
+using namespace tunewright;
+
+void require(bool holds, const char* what, const std::string& detail = "") {
+    if (holds) return;
+    std::cerr << "broken promise: " << what << "\n" << detail << "\n";
+    std::abort();
+}
+
+// Printable ASCII and whole UTF-8 sequences only.
+bool can_be_shown(const std::string& message) {
+    for (std::size_t i = 0; i < message.size();) {
+        const auto lead = static_cast<unsigned char>(message[i++]);
+        if (lead < 0x20 || lead == 0x7F || lead == 0xC0 || lead == 0xC1 || lead > 0xF4) return false;
+        int following = lead < 0x80 ? 0 : lead < 0xC0 ? -1 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : 3;
+        if (following < 0) return false;
+        for (; following > 0; --following, ++i)
+            if (i >= message.size() || (static_cast<unsigned char>(message[i]) & 0xC0) != 0x80) return false;
+    }
+    return !message.empty();
+}
+
+NonlinearPlant plant_of(const std::string& text) {
+    std::array<std::string, 4> lines;
+    std::size_t begin = 0;
+    for (std::string& line : lines) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        line = text.substr(std::min(begin, text.size()), end - std::min(begin, end));
+        begin = end + 1;
+        if (end == text.size()) break;
+    }
+    return {.states = {{"x", 0.5}, {"z", 2}},
+            .parameters = {{"a", lines[3]}, {"b", 3.0}},
+            .equations = {{"x", lines[1]}, {"z", lines[2]}},
+            .input = {.name = "u", .nominal = 1},
+            .output = lines[0]};
+}
+
+void examine(const NonlinearSystem& system) {
+    const StateSpace& linear = system.linearised();
+    for (std::size_t i = 0; i < 2; ++i) {
+        require(std::isfinite(system.x_steady()[i]), "a finite steady state");
+        require(std::isfinite(linear.B[i]) && std::isfinite(linear.C[i]), "finite derivatives");
+        for (const double a : linear.A[i]) require(std::isfinite(a), "finite derivatives");
+    }
+    require(system.domain_fault(system.x_steady(), system.u_nominal()).empty(), "a steady state inside the domain");
+    const auto r = relative_degree(system);
+    if (!r) return require(can_be_shown(r.error().message), "a readable error", r.error().message);
+    LieDerivatives lie;
+    require(lie_derivatives(system, *r, system.x_steady(), lie), "Lie derivatives at the operating point");
+    require(lie.of_g != 0, "an effect of the input");
+    for (const auto zero : zero_dynamics(system).zeros) require(!std::isnan(zero.real()), "zeros that are numbers");
+    // Off the operating point anything may fail, but says so.
+    const std::array<double, 2> far = {-3, 1e6};
+    std::array<double, 2> rates = {};
+    require(system.rates(far, -1, rates) || can_be_shown(system.domain_fault(far, -1)),
+            "a reason for leaving the domain");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto system = NonlinearSystem::make(plant_of(std::string(reinterpret_cast<const char*>(data), size)));
+    if (system)
+        examine(*system);
+    else
+        require(can_be_shown(system.error().message), "a readable error", system.error().message);
+    return 0;
+}

@@ -12,7 +12,7 @@ namespace tunewright {
 namespace {
 
 constexpr int kMostIterations = 100, kMostHalvings = 40;
-constexpr double kSingularCutoff = 1e-11, kLongestStep = 0.5, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
+constexpr double kSingularCutoff = 1e-11, kLongestStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 
 std::string precise(double x) {
     char buffer[32];

@@ -114,5 +114,23 @@ TEST(ZeroDynamics, CstrAndBioreactor) {
     EXPECT_FALSE(zeros.stable);
 }
 
+TEST(ZeroDynamics, VanDeVussesReactorIsUnstableLeftOfItsMaximum) {
+    // Doyle, Ogunnaike & Pearson (1995): A -> B -> C, 2A -> D; CA = 3.0, CB = 1.12 for F/V = 34.3 1/h.
+    const NonlinearPlant plant{.states = {{"CA", 3.0}, {"CB", 1.12}},
+                               .parameters = {{"k1", 50.0}, {"k2", 100.0}, {"k3", 10.0}, {"CAf", 10.0}},
+                               .equations = {{"CA", "-k1*CA - k3*CA^2 + u*(CAf - CA)"}, {"CB", "k1*CA - k2*CB - u*CB"}},
+                               .input = {.name = "u", .nominal = 34.3},
+                               .output = "CB"};
+    const auto system = made_system(plant);
+    const double CA = (-84.3 + std::sqrt(84.3 * 84.3 + 40 * 343)) / 20, CB = 50 * CA / 134.3;
+    EXPECT_NEAR(system.x_steady()[0], CA, 1e-13);
+    EXPECT_NEAR(system.y_steady(), CB, 1e-13);
+    EXPECT_EQ(*relative_degree(system), 1);
+    const auto zeros = zero_dynamics(system);
+    ASSERT_EQ(zeros.zeros.size(), 1U);
+    EXPECT_NEAR(zeros.zeros[0].real(), -(50 + 20 * CA + 34.3) + 50 * (10 - CA) / CB, 1e-9);
+    EXPECT_FALSE(zeros.stable);
+}
+
 }  // namespace
 }  // namespace tunewright

@@ -100,6 +100,19 @@ TEST(NonlinearSystem, PhVesselIsSolvedThroughItsSteepestPoint) {
     EXPECT_NEAR(acid.y_steady(), -std::log10(left), 1e-6);
 }
 
+TEST(NonlinearSystem, AnUprightPendulumStandsAtItsZeros) {
+    const NonlinearPlant plant{.states = {{"angle", 0}, {"rate", 0}},
+                               .parameters = {{"g", 9.81}, {"l", 0.5}},
+                               .equations = {{"angle", "rate"}, {"rate", "g/l*sin(angle) - u*cos(angle)/l"}},
+                               .input = {.name = "u", .nominal = 0},
+                               .output = "angle"};
+    const auto system = made_system(plant);
+    EXPECT_EQ(system.x_steady()[0], 0);
+    EXPECT_DOUBLE_EQ(system.linearised().A[1][0], 9.81 / 0.5);
+    EXPECT_DOUBLE_EQ(system.linearised().B[1], -2);
+    EXPECT_EQ(LinearPlant::make(system.linearised())->unstable_poles(), 1);
+}
+
 TEST(NonlinearSystem, RoughStatesReachTheSameSteadyState) {
     const double reference = made_system(cstr("T")).y_steady();
     for (const double CA : {0.4, 0.52, 0.7})

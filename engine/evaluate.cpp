@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/evaluate_request.h"
 #include "engine/family_figures.h"
 #include "engine/frequency_traces.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/nonlinear_figures.h"
 #include "engine/number_text.h"
-#include "engine/plant/nonlinear_system.h"
 #include "engine/performance_figures.h"
+#include "engine/plant/nonlinear_system.h"
 #include "engine/robustness_figures.h"
 #include "engine/simulation/indices.h"
 #include "engine/simulation/limited_response.h"
@@ -26,53 +27,9 @@ constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
 constexpr double kSettledForFigures = 1e-6;
 constexpr int kMostNonlinearSteps = 20000;  // a stalled integral may need any number
 
-/// The size of set-point change that an Npid without its own takes the error's measure from.
-Controller resolved(Controller controller, const EvaluateOptions& options) {
-    if (auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
-        npid->delta_r = std::abs(options.setpoint_step);
-    return controller;
-}
-
-/// What no Npid may have.
-std::optional<Error> check_npid(const Controller& controller) {
-    const auto* npid = std::get_if<Npid>(&controller);
-    if (npid == nullptr) return std::nullopt;
-    const auto invalid = [](const char* field, const std::string& message) {
-        return Error{ErrorKind::invalid_argument, std::string("controller/") + field, message};
-    };
-    if (!(npid->Ti > 0 && std::isfinite(npid->Ti)))
-        return invalid("Ti", "Ti is " + text(npid->Ti) +
-                                 "; the nonlinear form needs a finite Ti > 0. Without integral action it is the form "
-                                 "ideal.");
-    if (npid->delta_r && !(*npid->delta_r > 0 && std::isfinite(*npid->delta_r)))
-        return invalid("delta_r", "delta_r is " + text(*npid->delta_r) +
-                                      "; it must be a finite number > 0. Leave it out for the set-point step's size.");
-    if (npid->filter.type != FilterType::none && npid->filter.type != FilterType::derivative)
-        return invalid("filter", "The nonlinear form takes the filter none or derivative.");
-    return std::nullopt;
-}
-
 Error at_field(Error error, const char* prefix) {
     if (error.where.empty()) error.where = prefix;
     return error;
-}
-
-std::optional<Error> check_options(const EvaluateOptions& o) {
-    const auto invalid = [](const char* field, const std::string& message) {
-        return Error{ErrorKind::invalid_argument, std::string("evaluate/") + field, message};
-    };
-    if (!std::isfinite(o.setpoint_step) || o.setpoint_step == 0)
-        return invalid("setpoint_step", "setpoint_step must be a finite number that is not 0.");
-    if (!std::isfinite(o.load_step) || o.load_step == 0)
-        return invalid("load_step", "load_step must be a finite number that is not 0.");
-    if (o.horizon && !(std::isfinite(*o.horizon) && *o.horizon > 0))
-        return invalid("horizon", "horizon must be a time > 0 or \"auto\".");
-    if (o.points != 0 && (o.points < 2 || o.points > 20000))
-        return invalid("points", "points must be 0 or between 2 and 20000.");
-    if (o.actuator && !(o.actuator->min < o.actuator->max && o.actuator->min <= 0 && o.actuator->max >= 0))
-        return invalid("actuator",
-                       "The limits are deviations from the operating point: min <= 0 <= max and min < max.");
-    return std::nullopt;
 }
 
 Equivalents equivalents_of(const Controller& controller) {
@@ -171,7 +128,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
             {"does-not-settle",
              "The response does not settle within the time computed; figures that need it are empty."});
     if (o.points < 2) return;
-    const double horizon = o.horizon.value_or(covering_horizon(setpoint, load));
+    const double horizon = o.horizon ? *o.horizon : o.trace_horizon.value_or(covering_horizon(setpoint, load));
     evaluation.responses = Responses{trace_of(setpoint, horizon, o.points), trace_of(load, horizon, o.points),
                                      setpoint.settles && load.settles};
 }
@@ -203,7 +160,7 @@ Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& control
     if (const auto* equations = std::get_if<NonlinearPlant>(&plant)) {
         const auto system = NonlinearSystem::make(*equations);
         if (!system) return system.error();
-        return evaluate(family_of(Plant(system->linearised())), controller, options);
+        return evaluate(*system, controller, options);
     }
     const auto* points = std::get_if<FrequencyResponse>(&plant);
     if (points == nullptr) {
@@ -217,8 +174,7 @@ Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& control
 
 Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller,
                               const EvaluateOptions& options) {
-    if (auto error = check_options(options)) return *error;
-    if (auto error = check_npid(controller)) return *error;
+    if (auto error = refuse_evaluation(controller, options)) return *error;
     const auto loop = MeasuredLoop::make(plant, gains(controller));
     if (!loop) return at_field(loop.error(), "controller");
     if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
@@ -239,8 +195,7 @@ Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& cont
 }
 
 Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options) {
-    if (auto error = check_options(options)) return *error;
-    if (auto error = check_npid(controller)) return *error;
+    if (auto error = refuse_evaluation(controller, options)) return *error;
     const auto plant = LinearPlant::make(family.nominal());
     if (!plant) return at_field(plant.error(), "plant");
     const auto loop = Loop::make(*plant, gains(controller));

@@ -8,6 +8,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
+#include "engine/plant/nonlinear_system.h"
 #include "engine/plant/plant_family.h"
 #include "engine/warning.h"
 
@@ -24,10 +25,11 @@ struct NoiseOptions {
 };
 
 struct EvaluateOptions {
-    double setpoint_step = 1;       ///< != 0
-    double load_step = 1;           ///< != 0
-    std::optional<double> horizon;  ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
-    int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
+    double setpoint_step = 1;             ///< != 0
+    double load_step = 1;                 ///< != 0
+    std::optional<double> horizon;        ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
+    int points = 400;                     ///< of each trace: 0 (none) or 2 to 20,000
+    std::optional<double> trace_horizon;  ///< of the traces alone, where `horizon` is empty; empty: chosen by the loop
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
     double rank_Ms = 2.0;               ///< entries with Ms above it rank last
@@ -109,6 +111,12 @@ struct Equivalents {
     std::string why_no_series;
 };
 
+/// What a nonlinear plant's linearisation does with the same controller, steps and limits.
+struct LinearisedResponse {
+    Performance performance;
+    std::optional<Responses> responses;
+};
+
 /// Everything known about one controller on one plant, or on the nominal plant of a family.
 struct Evaluation {
     Controller controller;
@@ -119,6 +127,7 @@ struct Evaluation {
     std::optional<FrequencyTraces> frequency;  ///< with points > 0
     Verification verification;
     std::optional<NonlinearFigures> nonlinear;  ///< of an Npid whose linear part is stable
+    std::optional<LinearisedResponse> linear;   ///< of a nonlinear plant
     std::optional<RegionFigures> region;        ///< of a family of more than one plant
     std::vector<Warning> warnings;
     double compute_ms = 0;
@@ -130,8 +139,13 @@ struct Evaluation {
 /// and noise belong to its linear part, and actuator limits are not applied. Its delta_r is filled in.
 /// All figures are the nominal plant's; `region` says how the others fare. Of a frequency response everything in time
 /// is empty; unsupported where its band ends too early to judge the loop.
+/// Of a nonlinear plant performance and responses are its own, for these step sizes, within its input's limits; figures
+/// over frequency and noise belong to its linearisation. Where the linearised loop is unstable, responses show what
+/// happens all the same.
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options);
 Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options);
 Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller, const EvaluateOptions& options);
+Expected<Evaluation> evaluate(const NonlinearSystem& plant, const Controller& controller,
+                              const EvaluateOptions& options);
 
 }  // namespace tunewright

@@ -190,8 +190,9 @@ Expected<Evaluation> Run::evaluated(const Controller& controller) {
     if (pid != nullptr)
         for (const auto& [known, evaluation] : evaluated_)
             if (known == *pid) return evaluation;
-    auto evaluation = measured_ ? evaluate(*measured_, controller, request_.evaluate)
-                                : evaluate(family_, controller, request_.evaluate);
+    auto evaluation = measured_    ? evaluate(*measured_, controller, request_.evaluate)
+                      : nonlinear_ ? evaluate(*nonlinear_, controller, request_.evaluate)
+                                   : evaluate(family_, controller, request_.evaluate);
     if (evaluation && pid != nullptr) evaluated_.emplace_back(*pid, *evaluation);
     return evaluation;
 }

@@ -198,6 +198,20 @@ const Description<Responses>& responses_contract() {
     return description;
 }
 
+const Description<LinearisedResponse>& linear_contract() {
+    static const auto description = [] {
+        using R = LinearisedResponse;
+        Description<R> d(
+            "LinearResponse",
+            "What the linearisation of a nonlinear plant does with the same controller, steps and limits.");
+        d.field("performance", &R::performance, answer(performance_contract()), "Figures of its responses.")
+            .field("responses", &R::responses, maybe(answer(responses_contract())),
+                   "Its traces; left out with points 0 and for unstable loops.");
+        return d;
+    }();
+    return description;
+}
+
 const Description<FrequencyTraces>& frequency_contract() {
     static const auto description = [] {
         using F = FrequencyTraces;

@@ -12,6 +12,7 @@ const Description<LoadPerformance>& load_contract();
 const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
 const Description<NonlinearFigures>& nonlinear_contract();
+const Description<LinearisedResponse>& linear_contract();
 const Description<Verification>& verification_contract();
 
 const Description<RegionFigures>& region_contract();

@@ -105,6 +105,8 @@ const Description<TuningEntry>& entry_contract() {
                          "Figures of the responses.");
         evaluation_field(d, "responses", &Evaluation::responses, maybe(answer(responses_contract())),
                          "Traces over time; left out with points 0 and for unstable loops.");
+        evaluation_field(d, "linear", &Evaluation::linear, maybe(answer(linear_contract())),
+                         "Of a nonlinear plant, whose own performance and responses are above: its linearisation's.");
         evaluation_field(d, "frequency", &Evaluation::frequency, maybe(answer(frequency_contract())),
                          "Traces over frequency; left out with points 0.");
         evaluation_field(d, "verification", &Evaluation::verification, object(verification_contract()),

@@ -268,8 +268,11 @@ private:
 
     void look_for_rest() {
         const auto x = loop_.plant_states(integrator_.x());
-        auto rest =
-            find_rest(loop_, in_, {x.begin(), x.end()}, std::clamp(u_.at(1), loop_.limits().min, loop_.limits().max));
+        std::vector<double> sizes;
+        for (Index i = 0; i < x.size(); ++i) sizes.push_back(integrator_.size(int(i)));
+        sizes.push_back(std::max(largest_u_, std::abs(in_.d)));
+        auto rest = find_rest(loop_, in_, {x.begin(), x.end()},
+                              std::clamp(u_.at(1), loop_.limits().min, loop_.limits().max), sizes);
         if (!rest) return;
         const bool same = rest_ && std::abs(rest->y - rest_->y) <= options_.settled * largest_y_ &&
                           std::abs(rest->u - rest_->u) <= options_.settled * largest_u_;
@@ -289,6 +292,7 @@ private:
             return true;
         }
         if (t > 0 && std::abs(y_.at(1)) > kEscaped * scale_y_) {
+            response_.escaped = true;
             response_.ended = "At t = " + text(t) +
                               " the output has left every bound: it is more than a million times the step's size.";
             return true;
@@ -327,6 +331,7 @@ private:
                 "At t = " + text(t) + " the steps needed are too short to go on: the states change too fast.";
             return false;
         }
+        response_.escaped = true;
         response_.ended = "At t = " + text(t) + " the states leave the model's domain. " + fault();
         return false;
     }

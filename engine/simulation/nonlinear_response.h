@@ -37,6 +37,7 @@ struct NonlinearResponse {
     EvenSamples even;
     bool limited = false;  ///< u met a limit
     double t_end = 0;
+    bool escaped = false;  ///< it ended early because the states left the model's domain or every bound
     std::string ended;  ///< why it ended early (the states left the model's domain, too many steps); empty: it did not
 };
 

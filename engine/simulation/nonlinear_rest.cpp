@@ -11,7 +11,7 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMostIterations = 40, kMostHalvings = 20;
-constexpr double kDone = 1e-12;  // of a Newton step, relative to the values
+constexpr double kDone = 1e-12, kRounding = 1e-9;  // of a Newton step, relative to the values and to their sizes
 
 /// The equations of rest in (x, u): f = 0 and what closes the loop.
 struct Rest {
@@ -48,7 +48,7 @@ struct Rest {
     }
 
     /// Newton's method; a step that leaves the domain is halved.
-    bool solve_from(std::vector<double>& v) {
+    bool solve_from(std::vector<double>& v, const std::vector<double>& sizes) {
         std::vector<double> r(n + 1), M((n + 1) * (n + 1)), next(n + 1);
         if (!residual(v, r)) return false;
         for (int k = 0; k < kMostIterations; ++k) {
@@ -65,7 +65,7 @@ struct Rest {
             bool done = length == 1;
             for (Index i = 0; i <= n; ++i) {
                 if (!std::isfinite(next[i])) return false;
-                done = done && std::abs((*step)[i]) <= kDone * std::max(std::abs(next[i]), std::abs(v[i]));
+                done = done && std::abs((*step)[i]) <= std::max(kRounding * sizes[i], kDone * std::abs(next[i]));
             }
             v.swap(next);
             if (done) return true;
@@ -77,7 +77,7 @@ struct Rest {
 }  // namespace
 
 std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInputs& inputs, std::vector<double> x,
-                                       double u) {
+                                       double u, const std::vector<double>& sizes) {
     std::vector<double> v = std::move(x);
     v.push_back(u);
     const std::vector<double> start = v;
@@ -88,7 +88,7 @@ std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInpu
     };
     const OutputLimits& limits = loop.limits();
     double limit = u >= limits.max ? limits.max : limits.min;
-    if (Rest(loop, inputs, std::nullopt).solve_from(v)) {
+    if (Rest(loop, inputs, std::nullopt).solve_from(v, sizes)) {
         const double slack = 1e-9 * std::abs(v.back());
         if (v.back() <= limits.max + slack && v.back() >= limits.min - slack) return answer(true);
         limit = v.back() > limits.max ? limits.max : limits.min;
@@ -97,7 +97,7 @@ std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInpu
     }
     v = start;
     v.back() = limit;
-    if (std::isfinite(limit) && Rest(loop, inputs, limit).solve_from(v)) return answer(false);
+    if (std::isfinite(limit) && Rest(loop, inputs, limit).solve_from(v, sizes)) return answer(false);
     return std::nullopt;
 }
 

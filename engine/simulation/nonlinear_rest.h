@@ -15,8 +15,9 @@ struct NonlinearRest {
 };
 
 /// The rest nearest to these states, by Newton's method: under the control law if the limits admit it, else at the
-/// limit. Empty where none is found near.
+/// limit. Empty where none is found near. `sizes`: by how much the states, and last u, move in this loop; what is far
+/// below them is rounding.
 std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInputs& inputs, std::vector<double> x,
-                                       double u);
+                                       double u, const std::vector<double>& sizes);
 
 }  // namespace tunewright

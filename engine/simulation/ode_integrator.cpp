@@ -23,6 +23,7 @@ constexpr double kFirstStep = 0.02;          // in units of the fastest time con
 constexpr double kSafety = 0.9, kMostGrowth = 5, kMostShrinking = 0.2;
 constexpr double kExplicitPower = 1.0 / 5, kImplicitPower = 1.0 / 4;
 constexpr double kRounding = 20 * kEpsilon;      // of a state: errors below it are none
+constexpr double kExpected = 1e-2;               // of the movement expected: errors are relative to at least that
 constexpr int kStiffnessInterval = 20;           // steps between two looks at the spectrum
 constexpr double kStiff = 2.5, kNotStiff = 0.5;  // step times spectral radius; the explicit method is stable up to 3.3
 
@@ -38,21 +39,21 @@ struct OdeIntegrator::Work {
     bool implicit = false, last_implicit = false, fault = false;
 
     double t = 0, t_before = 0, h = 0;
-    Vector x, dx, x_before, dx_before, error, trial, trial_dx, least, first, moved;
+    Vector x, dx, x_before, dx_before, error, trial, trial_dx, least, expected, first, moved;
     Vector jacobian, ft, shifted, rates_shifted;
     bool started = false;
     int steps_since_look = 0;
 
     Work(OdeSystem s, double tol)
         : system(std::move(s)), tolerance(tol), n(Index(system.order)), implicit_stepper(system.order) {
-        for (Vector* v : {&x, &dx, &x_before, &dx_before, &error, &trial, &trial_dx, &least, &first, &moved, &ft,
-                          &shifted, &rates_shifted})
+        for (Vector* v : {&x, &dx, &x_before, &dx_before, &error, &trial, &trial_dx, &least, &expected, &first, &moved,
+                          &ft, &shifted, &rates_shifted})
             v->assign(n, 0.0);
         jacobian.assign(n * n, 0.0);
     }
 
     double size(Index i) const {
-        return std::max({least[i], moved[i], kRounding / tolerance * std::abs(x[i]), 1e-290});
+        return std::max({least[i], expected[i], moved[i], kRounding / tolerance * std::abs(x[i]), 1e-290});
     }
 
     /// f, remembered where it does not exist: the rest of the step is not worth its evaluations.
@@ -67,7 +68,7 @@ struct OdeIntegrator::Work {
         if (!system.rates(time, at, base)) return false;
         std::copy(at.begin(), at.end(), shifted.begin());
         for (Index j = 0; j < n; ++j) {
-            const double step = std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), 1e280), 1e-12});
+            const double step = std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), 1e280), 1e-6});
             shifted[j] = at[j] + step;
             if (!system.rates(time, shifted, rates_shifted)) return false;
             for (Index i = 0; i < n; ++i) jacobian[i * n + j] = (rates_shifted[i] - base[i]) / (shifted[j] - at[j]);
@@ -88,6 +89,23 @@ struct OdeIntegrator::Work {
         return radius;
     }
 
+    /// What the rates here set in motion within the fastest time constant, one state through the next: a state that
+    /// moves with a high power of time only would otherwise be compared with nearly nothing.
+    void expect_movement(double time_constant) {
+        for (Index i = 0; i < n; ++i) shifted[i] = time_constant * std::abs(dx[i]);
+        for (Index k = 0; k < n; ++k) {
+            for (Index i = 0; i < n; ++i) {
+                rates_shifted[i] = shifted[i];
+                for (Index j = 0; j < n; ++j)
+                    rates_shifted[i] =
+                        std::max(rates_shifted[i], time_constant * std::abs(jacobian[i * n + j]) * shifted[j]);
+            }
+            shifted.swap(rates_shifted);
+        }
+        for (Index i = 0; i < n; ++i)
+            if (std::isfinite(shifted[i])) expected[i] = std::max(expected[i], kExpected * shifted[i]);
+    }
+
     bool start(double time, std::span<const double> at) {
         if (!started) std::copy(at.begin(), at.end(), first.begin());
         t = t_before = time;
@@ -97,8 +115,9 @@ struct OdeIntegrator::Work {
         fault = false;
         evaluate(t, x.data(), dx.data());
         dx_before = dx;
+        const double radius = fault ? 0 : spectral_radius();
+        if (radius > 0) expect_movement(1 / radius);
         if (!started || !(h > 0)) {
-            const double radius = fault ? 0 : spectral_radius();
             h = radius > 0 ? kFirstStep / radius : kInfinity;
             started = true;
         }

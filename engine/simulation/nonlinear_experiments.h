@@ -12,16 +12,17 @@
 namespace tunewright {
 
 struct StepTest {
-    std::vector<double> t, u, y;  ///< deviations; u[i] holds from t[i]
+    std::vector<double> t, u, y;  ///< deviations; u[i] holds from t[i]; t[0] < 0: some rows at rest come first
     double du = 0;                ///< the step of u at t = 0
     bool settled = true;
 };
 
-/// From the operating point until y has settled (integrating and unstable plants: until it has moved enough). `du` is
-/// cut to the input's limits. Errors: unsupported where the states leave the model's domain or y does not move;
-/// cancelled.
+/// From the operating point until y has settled (integrating and unstable plants: until it has moved enough): some
+/// thousand rows at equal distances, exact. `du` is cut to the input's limits. Errors: unsupported where the states
+/// leave the model's domain or y does not move; cancelled.
 Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, const RunControl& control);
 
+/// Until periods and swings repeat to 1e-6, at least six: some thousand rows at equal distances and at every switch.
 /// Switches at the instant of crossing; amplitude and hysteresis as deviations (relay.h). Errors: unsupported where
 /// there is no oscillation (without dead time a hysteresis is needed) or the states leave the model's domain;
 /// cancelled.

@@ -11,6 +11,7 @@
 #include "engine/nonlinear_figures.h"
 #include "engine/number_text.h"
 #include "engine/performance_figures.h"
+#include "engine/simulation/nonlinear_loop.h"
 #include "engine/simulation/nonlinear_response.h"
 
 namespace tunewright {
@@ -27,15 +28,15 @@ struct Runs {
     static bool incomplete(const NonlinearResponse& run) { return run.escaped || !run.ended.empty(); }
 };
 
-/// The plant's limits and the actuator's, as deviations.
-std::optional<ActuatorLimits> limits_of(const NonlinearSystem& system, const std::optional<ActuatorLimits>& actuator) {
-    ActuatorLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
-    if (actuator) {
-        limits.min = std::max(limits.min, actuator->min);
-        limits.max = std::min(limits.max, actuator->max);
-    }
+/// None where both are infinite.
+std::optional<ActuatorLimits> limits_of(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
+    const OutputLimits limits = input_limits(system, actuator);
     if (std::isinf(limits.min) && std::isinf(limits.max)) return std::nullopt;
-    return limits;
+    return ActuatorLimits{limits.min, limits.max};
+}
+
+std::optional<OutputLimits> actuator_of(const EvaluateOptions& o) {
+    return o.actuator ? std::optional(OutputLimits{o.actuator->min, o.actuator->max}) : std::nullopt;
 }
 
 Runs simulate(const NonlinearSystem& system, const Controller& controller, const EvaluateOptions& o,
@@ -43,7 +44,7 @@ Runs simulate(const NonlinearSystem& system, const Controller& controller, const
     NonlinearOptions options;
     options.horizon = horizon;
     options.max_steps = kMostSteps;
-    if (o.actuator) options.actuator = OutputLimits{o.actuator->min, o.actuator->max};
+    options.actuator = actuator_of(o);
     if (const auto* npid = std::get_if<Npid>(&controller)) options.delta_r = npid->delta_r;
     const ParallelPid law = gains(controller);
     return {simulate_nonlinear(system, law, {o.setpoint_step, 0}, options),
@@ -141,7 +142,7 @@ Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& c
     const Runs runs = simulate(system, resolved(controller, options), options, horizon);
 
     EvaluateOptions of_linear = options;
-    of_linear.actuator = limits_of(system, options.actuator);
+    of_linear.actuator = limits_of(system, actuator_of(options));
     if (!horizon && runs.complete()) {
         horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
         of_linear.trace_horizon = horizon;
@@ -154,7 +155,9 @@ Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& c
                                 "depends-on-step-size", "integral-stalls"});
     if (stable) {
         add_performance(*evaluation, runs, options);
-        warn_of_distance(*evaluation);
+        // Limits are not applied to a linear plant under an Npid: what they do would count as the plant's nonlinearity.
+        const bool comparable = !evaluation->nonlinear || !(runs.setpoint.limited || runs.load.limited);
+        if (comparable) warn_of_distance(*evaluation);
         if (evaluation->nonlinear) {
             EvaluateOptions limits_apply = options;
             limits_apply.actuator.reset();

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/plant/linear_algebra.h"
+#include "engine/plant/linear_plant.h"
 namespace tunewright {
 namespace {
 
@@ -13,6 +14,37 @@ constexpr int kMostSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
 }  // namespace
+
+OutputLimits input_limits(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
+    OutputLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
+    if (actuator) {
+        limits.min = std::max(limits.min, actuator->min);
+        limits.max = std::min(limits.max, actuator->max);
+    }
+    return limits;
+}
+
+double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits) {
+    if (controller.Ki == 0 || (std::isinf(limits.min) && std::isinf(limits.max))) return 0;
+    auto time = tracking_time(controller);
+    if (!time)
+        if (const auto plant = LinearPlant::make(system.linearised())) time = tracking_time(*plant, controller);
+    return time && *time > 0 ? 1 / *time : 0;
+}
+
+double size_of_effect(const NonlinearSystem& system, double d) {
+    if (d == 0) return 0;
+    const StateSpace& plant = system.linearised();
+    const int n = system.order();
+    std::vector<double> A;
+    for (const auto& row : plant.A) A.insert(A.end(), row.begin(), row.end());
+    double time = plant.L;
+    for (const auto pole : eigenvalues(A, n))
+        if (std::abs(pole) > 0) time += 1 / std::abs(pole);
+    const double omega = time > 0 ? 1 / time : 1;
+    const double effect = std::abs(d * resolvent_response(A, plant.B, plant.C, 0, n, {0, omega}));
+    return std::isfinite(effect) ? effect : 0;
+}
 
 NonlinearLoop::NonlinearLoop(const NonlinearSystem& system, const PidLaw& law, const StepInputs& inputs,
                              const OutputLimits& limits)

@@ -12,6 +12,15 @@
 
 namespace tunewright {
 
+/// The plant's limits of u and the actuator's, as deviations; infinite where there is none.
+OutputLimits input_limits(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator);
+
+/// 1/Tt of the anti-windup (limited_response.h) for the plant's linearisation; 0 where nothing can wind up.
+double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits);
+
+/// The size of y to which a load d drives the linearisation over the plant's own time.
+double size_of_effect(const NonlinearSystem& system, double d);
+
 /// States z: those of the plant (absolute), then those of the PidLaw. y, u, w = u + d are deviations.
 class NonlinearLoop {
 public:

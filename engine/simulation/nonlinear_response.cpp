@@ -6,8 +6,6 @@
 #include <map>
 
 #include "engine/number_text.h"
-#include "engine/plant/linear_algebra.h"
-#include "engine/plant/linear_plant.h"
 #include "engine/simulation/nonlinear_loop.h"
 #include "engine/simulation/nonlinear_rest.h"
 #include "engine/simulation/ode_integrator.h"
@@ -24,40 +22,12 @@ constexpr double kEscaped = 1e6;  // of the scale of y
 constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
 constexpr int kEchoes = 6;        // of a jump: smoothed by the plant at each passage, to the method's order
 constexpr int kMostEchoes = 2000;
+constexpr double kLongStep = 4;  // in dead times: shorter steps are not worth repeating
+constexpr int kMostPasses = 12;
+constexpr double kAgreed = 0.1;     // of the tolerance: two passes of a long step agree
+constexpr double kPause = 50;       // dead times until long steps are tried again
 constexpr int kRestInterval = 32;   // steps between two looks for where the loop comes to rest
 constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
-
-OutputLimits limits_of(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
-    OutputLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
-    if (actuator) {
-        limits.min = std::max(limits.min, actuator->min);
-        limits.max = std::min(limits.max, actuator->max);
-    }
-    return limits;
-}
-
-double tracking_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits) {
-    if (controller.Ki == 0 || (std::isinf(limits.min) && std::isinf(limits.max))) return 0;
-    auto time = tracking_time(controller);
-    if (!time)
-        if (const auto plant = LinearPlant::make(system.linearised())) time = tracking_time(*plant, controller);
-    return time && *time > 0 ? 1 / *time : 0;
-}
-
-/// The size of y to which d drives it over the plant's own time.
-double effect_of_load(const NonlinearSystem& system, double d) {
-    if (d == 0) return 0;
-    const StateSpace& plant = system.linearised();
-    const int n = system.order();
-    std::vector<double> A;
-    for (const auto& row : plant.A) A.insert(A.end(), row.begin(), row.end());
-    double time = plant.L;
-    for (const auto pole : eigenvalues(A, n))
-        if (std::abs(pole) > 0) time += 1 / std::abs(pole);
-    const double omega = time > 0 ? 1 / time : 1;
-    const double effect = std::abs(d * resolvent_response(A, plant.B, plant.C, 0, n, {0, omega}));
-    return std::isfinite(effect) ? effect : 0;
-}
 
 /// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
 class Run {
@@ -68,8 +38,8 @@ public:
           in_(in),
           loop_(system,
                 PidLaw(controller, in.r, options.delta_r,
-                       tracking_rate(system, controller, limits_of(system, options.actuator))),
-                in, limits_of(system, options.actuator)),
+                       back_calculation_rate(system, controller, input_limits(system, options.actuator))),
+                in, input_limits(system, options.actuator)),
           L_(system.dead_time()),
           integrator_(equations(), options.tolerance),
           recorder_(response_, options, in.r),
@@ -122,7 +92,7 @@ private:
         const double y0 = loop_.system().output(loop_.plant_states(z_)) - loop_.system().y_steady();
         loop_.law().rest(y0, std::span<double>(z_).subspan(Index(loop_.system().order())));
         largest_y_ = std::max(std::abs(in_.r), std::abs(y0));
-        scale_y_ = std::max(largest_y_, effect_of_load(loop_.system(), in_.d));
+        scale_y_ = std::max(largest_y_, size_of_effect(loop_.system(), in_.d));
         if (!std::isfinite(y0)) return fail(OdeStep::left_domain);
         region_ = loop_.region(z_, w_then(0));
         response_.limited = region_ != Region::inside;
@@ -149,16 +119,24 @@ private:
         const double t = integrator_.t();
         double stop = options_.horizon.value_or(kInfinity);
         if (!breaks_.empty() && breaks_.begin()->first < stop + slack()) stop = std::min(stop, breaks_.begin()->first);
-        if (loop_.delayed() && t + L_ < stop - slack()) stop = t + L_;
+        if (loop_.delayed() && !long_step() && t + L_ < stop - slack()) stop = t + L_;
         return stop;
+    }
+
+    /// Worth it to go beyond the dead time at once, although the step then depends on itself?
+    bool long_step() const {
+        return loop_.delayed() && !history_.empty() && integrator_.next_length() > kLongStep * L_ &&
+               integrator_.t() >= no_long_steps_before_ && !loop_.law().pure_derivative();
     }
 
     bool take_step() {
         step_end_ = next_stop();
+        if (long_step()) history_.suppose_line(integrator_.t());
         const OdeStep outcome = integrator_.step(step_end_);
         ++steps_;
         if (outcome != OdeStep::made) return fail(outcome);
         if (!read_signals()) return fail(OdeStep::left_domain);
+        if (loop_.delayed() && y_.h > L_ + slack() && !agree_with_itself()) return false;
         if (const auto crossing = find_crossing()) {
             const OdeStep again = integrator_.shorten(*crossing);
             if (again != OdeStep::made || !read_signals()) return fail(again);
@@ -169,6 +147,30 @@ private:
         keep_step();
         const bool at_break = !breaks_.empty() && breaks_.begin()->first <= integrator_.t() + slack();
         return at_break ? pass_break() : true;
+    }
+
+    /// Repeats a step longer than the dead time until the input that it supposed is the one that it gives; cuts it to
+    /// the dead time where that does not come about.
+    bool agree_with_itself() {
+        for (int pass = 0; pass < kMostPasses; ++pass) {
+            const StepPolynomial w = plant_input();
+            double gap = 0;
+            for (const double s : kSixPoints)
+                gap = std::max(gap, std::abs(w.at(s) - history_.at(w.t + s * w.h, s > 0)));
+            history_.suppose(w);
+            if (gap <= kAgreed * options_.tolerance * std::max(largest_u_, std::abs(in_.d))) return true;
+            const OdeStep again = integrator_.shorten(integrator_.t());
+            if (again != OdeStep::made || !read_signals()) break;
+        }
+        no_long_steps_before_ = integrator_.t_before() + kPause * L_;
+        const OdeStep cut = integrator_.shorten(integrator_.t_before() + L_);
+        return (cut == OdeStep::made && read_signals()) || fail(cut);
+    }
+
+    StepPolynomial plant_input() const {
+        StepPolynomial w = u_;
+        w.c[0] += in_.d;
+        return w;
     }
 
     /// The last step's signals as polynomials.
@@ -192,11 +194,7 @@ private:
 
     void keep_step() {
         recorder_.add(y_, u_);
-        if (loop_.delayed()) {
-            StepPolynomial w = u_;
-            w.c[0] += in_.d;
-            history_.add(w);
-        }
+        if (loop_.delayed()) history_.add(plant_input());
         for (const double s : kSixPoints) note(y_.t + s * y_.h, y_.at(s), u_.at(s));
         update_sizes();
         if (!options_.horizon && steps_ % kRestInterval == 0) look_for_rest();
@@ -381,6 +379,7 @@ private:
     ResponseRecorder recorder_;
     std::vector<double> z_;
     std::map<double, int> breaks_;
+    double no_long_steps_before_ = 0;
     int steps_ = 0, echoes_ = kEchoes;
     StepPolynomial y_, u_, command_;
     std::optional<NonlinearRest> rest_;

@@ -43,8 +43,19 @@ StepPolynomial StepPolynomial::through(double t, double h, const std::array<doub
     return p;
 }
 
+void SignalHistory::add(const StepPolynomial& step) {
+    steps_.push_back(step);
+    supposed_.reset();
+}
+
+void SignalHistory::suppose_line(double time) {
+    const StepPolynomial& last = steps_.back();
+    supposed_ = StepPolynomial{time, last.h, {last.at(1), last.slope(1) * last.h}};
+}
+
 const StepPolynomial* SignalHistory::find(double time, bool before) const {
     const double slack = 8 * std::numeric_limits<double>::epsilon() * std::abs(time);
+    if (supposed_ && time > supposed_->t + slack) return &*supposed_;
     if (steps_.empty()) return nullptr;
     if (cursor_ >= steps_.size()) cursor_ = steps_.size() - 1;
     // The step that begins last before `time`, or at it if the value after a border is wanted.

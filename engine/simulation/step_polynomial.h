@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace tunewright {
@@ -31,8 +32,13 @@ struct StepPolynomial {
 /// 0 before its first step.
 class SignalHistory {
 public:
-    void clear() { steps_.clear(), cursor_ = 0; }
-    void add(const StepPolynomial& step) { steps_.push_back(step); }
+    /// Replaces what was supposed.
+    void add(const StepPolynomial& step);
+    bool empty() const { return steps_.empty(); }
+    /// From its beginning on, until the next step is added.
+    void suppose(const StepPolynomial& step) { supposed_ = step; }
+    /// From `time`, the end of the last step, on as it went there.
+    void suppose_line(double time);
     /// Value and slope at `time`, of the earlier step (`before`) or the later where it is the border of two; beyond the
     /// last step the last one continued.
     double at(double time, bool before) const;
@@ -42,6 +48,7 @@ private:
     const StepPolynomial* find(double time, bool before) const;
 
     std::vector<StepPolynomial> steps_;
+    std::optional<StepPolynomial> supposed_;
     mutable std::size_t cursor_ = 0;  // times are asked for in nearly ascending order
 };
 

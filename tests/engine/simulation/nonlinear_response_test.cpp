@@ -117,6 +117,26 @@ TEST(NonlinearResponse, OfALinearPlantWithLimitsIsTheLimitedOne) {
     }
 }
 
+TEST(NonlinearResponse, TakesStepsFarBeyondATinyDeadTime) {
+    const ParallelPid controller{.Kp = 2, .Ki = 0.7, .Kd = 1.5, .filter = {FilterType::derivative, 0.1}};
+    ResponseOptions exact;
+    exact.tolerance = 1e-8;
+    exact.horizon = 20;
+    for (const double L : {1e-2, 1e-4, 1e-6})
+        for (const double limit : {HUGE_VAL, 1.6}) {
+            const Zpk plant{.K = 1, .zeros = {}, .poles = {-1.0, -1.0, -1.0}, .L = L};
+            NonlinearOptions options;
+            options.horizon = 20;
+            options.samples = 401;
+            options.max_steps = 3000;
+            options.actuator = OutputLimits{-limit, limit};
+            const auto response = simulate_nonlinear(written_out(plant), controller, {1, 0}, options);
+            ASSERT_EQ(response.ended, "");
+            const auto linear = simulate_limited(*LinearPlant::make(plant), controller, {1, 0}, {-limit, limit}, exact);
+            EXPECT_LT(difference(response, linear, 20), 2e-6) << L;
+        }
+}
+
 TEST(NonlinearResponse, OfTheStirredTankHasTheReferencesFigures) {
     const Json reference = Json::parse(std::ifstream(test_data("emulation/closed_loops.json")));
     int rows = 0;

@@ -13,8 +13,8 @@ public:
           first_(program.registers() - static_cast<int>(program.instructions().size())),
           degrees_(static_cast<std::size_t>(program.registers()), InputDegree::absent) {
         degrees_[static_cast<std::size_t>(program.variables()) - 1] = InputDegree::affine;
-        for (int i = 0; i < static_cast<int>(program.instructions().size()); ++i)
-            degrees_[static_cast<std::size_t>(first_ + i)] = of(program.instructions()[static_cast<std::size_t>(i)]);
+        auto next = degrees_.begin() + first_;
+        for (const Instruction& instruction : program.instructions()) *next++ = of(instruction);
     }
 
     InputDegree at(int where) const { return degrees_[static_cast<std::size_t>(where)]; }
@@ -63,6 +63,7 @@ private:
 std::vector<InputDegree> input_degrees(const NonlinearSystem& system) {
     const DegreeAnalysis analysis(system.program());
     std::vector<InputDegree> result;
+    result.reserve(static_cast<std::size_t>(system.order()));
     for (int i = 0; i < system.order(); ++i) result.push_back(analysis.at(system.program().output_register(i)));
     return result;
 }

@@ -113,6 +113,7 @@ Expected<int> relative_degree(const NonlinearSystem& system) {
     if (auto error = not_affine(system)) return *error;
     const auto points = neighbourhood(system);
     std::vector<std::vector<double>> sizes;
+    sizes.reserve(points.size());
     for (const auto& point : points) sizes.push_back(term_sizes(system, point, system.order()));
     const std::string& u = system.description().input.name;
     for (int r = 1; r <= system.order(); ++r) {

@@ -77,8 +77,7 @@ public:
             OdeStep outcome = integrator_.step(options_.horizon);
             if (outcome != OdeStep::made) return ended(reason(outcome));
             if (const auto pole = loss_of_effect()) {
-                outcome = integrator_.shorten(*pole);
-                sample_step();
+                if ((outcome = integrator_.shorten(*pole)) == OdeStep::made) sample_step();
                 return ended("At t = " + text(now()) +
                              " the controller's law ceases to exist: the input has no effect on the output there.");
             }
@@ -185,10 +184,11 @@ private:
         }
         if (outcome == OdeStep::stalled) return at + " the steps needed are too short to go on: u grows beyond bounds.";
         std::vector<double> ahead(x.size());
-        for (double h = 1e-15 * options_.horizon; h < options_.horizon; h *= 4) {
+        double h = 1e-15 * options_.horizon;
+        for (int doubling = 0; doubling < 50; ++doubling, h *= 2) {
             for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = x[i] + h * dx[i];
             const std::string fault = system_.domain_fault(ahead, u);
-            if (!fault.empty()) return at + " the states leave the model's domain. " + fault;
+            if (!fault.empty()) return (at + " the states leave the model's domain. ").append(fault);
         }
         return at + " the controller's law ceases to exist.";
     }
@@ -262,7 +262,7 @@ TargetResponse second_order_target(double tau_cl, double xi) { return {{1, 2 * x
 TargetResponse target_of_poles(const std::vector<std::complex<double>>& poles) {
     std::vector<std::complex<double>> product = {1};
     for (const auto& pole : poles) {
-        product.push_back(0);
+        product.emplace_back(0);
         for (auto k = product.size() - 1; k > 0; --k) product[k] -= product[k - 1] / pole;
     }
     TargetResponse target;

@@ -55,17 +55,35 @@ private:
 
     // The sizes of the states and of the terms of each rate.
     void measure(const std::vector<double>& x, const std::vector<double>& A, const std::vector<double>& B) {
-        state_size_.assign(n_, 1);
-        rate_size_.assign(n_, 1);
+        state_size_.assign(n_, 0);
+        for (std::size_t i = 0; i < n_; ++i)
+            if (start_[i] != 0) state_size_[i] = std::max(std::abs(x[i]), std::abs(start_[i]));
+        const std::vector<double> others = terms(A, B);
+        for (std::size_t j = 0; j < n_; ++j)
+            if (start_[j] == 0) state_size_[j] = std::max(size_beside(others, A, j), std::abs(x[j]));
+        rate_size_ = terms(A, B);
+        for (double& size : rate_size_)
+            if (!(size > 0)) size = 1;
+    }
+
+    // The largest term of each rate.
+    std::vector<double> terms(const std::vector<double>& A, const std::vector<double>& B) const {
+        std::vector<double> result(n_);
         for (std::size_t i = 0; i < n_; ++i) {
-            const double size = std::max(std::abs(x[i]), std::abs(start_[i]));
-            if (size > 0) state_size_[i] = size;
+            result[i] = std::abs(B[i] * u_);
+            for (std::size_t j = 0; j < n_; ++j)
+                result[i] = std::max(result[i], std::abs(A[i * n_ + j]) * state_size_[j]);
         }
-        for (std::size_t i = 0; i < n_; ++i) {
-            double size = std::abs(B[i] * u_);
-            for (std::size_t j = 0; j < n_; ++j) size = std::max(size, std::abs(A[i * n_ + j]) * state_size_[j]);
-            if (size > 0) rate_size_[i] = size;
-        }
+        return result;
+    }
+
+    // A state that is 0, such as a speed, has no size of its own: it is what would weigh as much as the others do in
+    // one of the rates; 1 where there is none.
+    double size_beside(const std::vector<double>& others, const std::vector<double>& A, std::size_t j) const {
+        double size = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < n_; ++i)
+            if (A[i * n_ + j] != 0 && others[i] > 0) size = std::min(size, others[i] / std::abs(A[i * n_ + j]));
+        return std::isfinite(size) ? size : 1;
     }
 
     double norm(const std::vector<double>& rates) const {

@@ -113,6 +113,21 @@ TEST(NonlinearSystem, AnUprightPendulumStandsAtItsZeros) {
     EXPECT_EQ(LinearPlant::make(system.linearised())->unstable_poles(), 1);
 }
 
+// Its speed is 0 there: a state without a size of its own.
+TEST(NonlinearSystem, AHangingPendulumRestsWhereItsTorqueHoldsIt) {
+    for (const double drag : {0.0, 0.2}) {
+        const NonlinearPlant plant{
+            .states = {{"angle", 0.5}, {"rate", 0}},
+            .parameters = {{"g", 9.81}, {"a", drag}},
+            .equations = {{"angle", "rate"}, {"rate", "u - g*sin(angle) - a*rate - 0.3*rate*abs(rate)"}},
+            .input = {.name = "u", .nominal = 4.703},
+            .output = "angle"};
+        const auto system = made_system(plant);
+        EXPECT_NEAR(system.x_steady()[0], std::asin(4.703 / 9.81), 1e-12) << drag;
+        EXPECT_NEAR(system.x_steady()[1], 0, 1e-12) << drag;
+    }
+}
+
 TEST(NonlinearSystem, RoughStatesReachTheSameSteadyState) {
     const double reference = made_system(cstr("T")).y_steady();
     for (const double CA : {0.4, 0.52, 0.7})

@@ -10,6 +10,8 @@ namespace {
 
 using Index = std::size_t;
 
+constexpr int kEchoes = 6;  // of a jump: smoothed by the plant at each passage, to the method's order
+constexpr int kMostEchoes = 2000;
 constexpr int kMostSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
@@ -44,6 +46,14 @@ double size_of_effect(const NonlinearSystem& system, double d) {
     const double omega = time > 0 ? 1 / time : 1;
     const double effect = std::abs(d * resolvent_response(A, plant.B, plant.C, 0, n, {0, omega}));
     return std::isfinite(effect) ? effect : 0;
+}
+
+int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance) {
+    if (controller.Kd == 0 || controller.filter.type != FilterType::none) return kEchoes;
+    double q = 0;
+    for (Index i = 0; i < Index(system.order()); ++i) q += system.linearised().C[i] * system.linearised().B[i];
+    q = std::min(std::abs(controller.Kd * q), 0.999);
+    return q > 0 ? std::min(kMostEchoes, kEchoes + int(std::log(1e-3 * tolerance) / std::log(q))) : kEchoes;
 }
 
 NonlinearLoop::NonlinearLoop(const NonlinearSystem& system, const PidLaw& law, const StepInputs& inputs,

@@ -21,6 +21,10 @@ double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& c
 /// The size of y to which a load d drives the linearisation over the plant's own time.
 double size_of_effect(const NonlinearSystem& system, double d);
 
+/// How often a jump of the plant's input counts that comes back after a dead time. With a pure derivative it comes back
+/// as a jump, smaller each time; else smoother each time.
+int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance);
+
 /// States z: those of the plant (absolute), then those of the PidLaw. y, u, w = u + d are deviations.
 class NonlinearLoop {
 public:

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "engine/number_text.h"
+#include "engine/simulation/break_points.h"
+#include "engine/simulation/fault_ahead.h"
 #include "engine/simulation/nonlinear_loop.h"
 #include "engine/simulation/nonlinear_rest.h"
 #include "engine/simulation/ode_integrator.h"
@@ -20,14 +21,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kEscaped = 1e6;  // of the scale of y
 constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
-constexpr int kEchoes = 6;        // of a jump: smoothed by the plant at each passage, to the method's order
-constexpr int kMostEchoes = 2000;
-constexpr double kLongStep = 4;  // in dead times: shorter steps are not worth repeating
+constexpr double kLongStep = 4;   // in dead times: shorter steps are not worth repeating
 constexpr int kMostPasses = 12;
-constexpr double kAgreed = 0.1;     // of the tolerance: two passes of a long step agree
-constexpr double kPause = 50;       // dead times until long steps are tried again
-constexpr int kRestInterval = 32;   // steps between two looks for where the loop comes to rest
-constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
+constexpr double kAgreed = 0.1;      // of the tolerance: two passes of a long step agree
+constexpr double kPause = 50;        // dead times until long steps are tried again
+constexpr int kMostCrossings = 100;  // without a whole step between two
+constexpr double kStill = 100;       // y and u have not moved since this fraction of the time: they will not
+constexpr int kRestInterval = 32;    // steps between two looks for where the loop comes to rest
+constexpr double kNearRest = 0.05;   // of the largest deviation: the end is near enough to rest to name it
 
 /// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
 class Run {
@@ -43,15 +44,8 @@ public:
           L_(system.dead_time()),
           integrator_(equations(), options.tolerance),
           recorder_(response_, options, in.r),
-          z_(Index(loop_.order())) {
-        if (loop_.delayed() && loop_.law().pure_derivative()) {
-            double q = 0;
-            for (int i = 0; i < system.order(); ++i)
-                q += system.linearised().C[Index(i)] * system.linearised().B[Index(i)];
-            q = std::min(std::abs(controller.Kd * q), 0.999);
-            if (q > 0) echoes_ = std::min(kMostEchoes, kEchoes + int(std::log(1e-3 * options.tolerance) / std::log(q)));
-        }
-    }
+          z_(Index(loop_.order())),
+          breaks_(passages_that_count(system, controller, options.tolerance)) {}
 
     NonlinearResponse run() {
         if (begin()) {
@@ -101,24 +95,15 @@ private:
         largest_command_ = std::abs(out.command);
         update_sizes();
         if (!integrator_.start(0, z_)) return fail(OdeStep::left_domain);
-        add_break(L_, 0);
+        add_break(0);
         if (!options_.horizon) look_for_rest();
         return true;
-    }
-
-    void add_break(double t, int passages) {
-        if (!loop_.delayed() || passages > echoes_) return;
-        const auto near = breaks_.lower_bound(t - slack());
-        if (near != breaks_.end() && near->first <= t + slack())
-            near->second = std::min(near->second, passages);
-        else
-            breaks_.emplace(t, passages);
     }
 
     double next_stop() const {
         const double t = integrator_.t();
         double stop = options_.horizon.value_or(kInfinity);
-        if (!breaks_.empty() && breaks_.begin()->first < stop + slack()) stop = std::min(stop, breaks_.begin()->first);
+        if (const auto next = breaks_.next(); next && *next < stop + slack()) stop = std::min(stop, *next);
         if (loop_.delayed() && !long_step() && t + L_ < stop - slack()) stop = t + L_;
         return stop;
     }
@@ -138,15 +123,16 @@ private:
         if (!read_signals()) return fail(OdeStep::left_domain);
         if (loop_.delayed() && y_.h > L_ + slack() && !agree_with_itself()) return false;
         if (const auto crossing = find_crossing()) {
+            if (++crossings_in_a_row_ > kMostCrossings) return crowded();
             const OdeStep again = integrator_.shorten(*crossing);
             if (again != OdeStep::made || !read_signals()) return fail(again);
             keep_step();
-            cross();
-            return true;
+            return cross();
         }
+        crossings_in_a_row_ = 0;
         keep_step();
-        const bool at_break = !breaks_.empty() && breaks_.begin()->first <= integrator_.t() + slack();
-        return at_break ? pass_break() : true;
+        const auto passages = breaks_.pass(integrator_.t() + slack());
+        return passages ? pass_break(*passages) : true;
     }
 
     /// Repeats a step longer than the dead time until the input that it supposed is the one that it gives; cuts it to
@@ -203,6 +189,12 @@ private:
     void note(double t, double y, double u) {
         largest_y_ = std::max(largest_y_, std::abs(y));
         largest_u_ = std::max(largest_u_, std::abs(u));
+        if (std::abs(y - still_y_) > options_.settled * largest_y_ ||
+            std::abs(u - still_u_) > options_.settled * largest_u_) {
+            still_since_ = t;
+            still_y_ = y;
+            still_u_ = u;
+        }
         if (!rest_) return;
         const double dy = std::abs(y - rest_->y), du = std::abs(u - rest_->u);
         if (dy > options_.settled * largest_y_ || du > options_.settled * largest_u_) last_unsettled_ = t;
@@ -232,27 +224,31 @@ private:
         return s < 1 ? command_.t + s * command_.h : integrator_.t();
     }
 
-    void cross() {
+    bool cross() {
         response_.limited = true;
         if (region_ != Region::inside)
             region_ = Region::inside;
         else
             region_ = command_.at(1) > 0.5 * (loop_.limits().min + loop_.limits().max) ? Region::above : Region::below;
-        restart();
-        add_break(integrator_.t() + L_, 1);
-        if (!breaks_.empty() && breaks_.begin()->first <= integrator_.t() + slack()) pass_break();
+        if (!restart()) return false;
+        add_break(1);
+        const auto passages = breaks_.pass(integrator_.t() + slack());
+        return passages ? pass_break(*passages) : true;
     }
 
     /// What the plant sees jumps, and with a pure derivative the command too.
-    bool pass_break() {
-        const int passages = breaks_.begin()->second;
-        breaks_.erase(breaks_.begin());
+    bool pass_break(int passages) {
         step_end_ = kInfinity;
         const Region before = region_;
         if (loop_.law().pure_derivative()) region_ = loop_.region(integrator_.x(), w_then(integrator_.t()));
         response_.limited = response_.limited || region_ != Region::inside;
-        add_break(integrator_.t() + L_, region_ == before ? passages + 1 : 0);
+        add_break(region_ == before ? passages + 1 : 0);
         return restart();
+    }
+
+    /// What jumps now comes back.
+    void add_break(int passages) {
+        if (loop_.delayed()) breaks_.add(integrator_.t() + L_, passages, slack());
     }
 
     bool restart() {
@@ -295,6 +291,11 @@ private:
                               " the output has left every bound: it is more than a million times the step's size.";
             return true;
         }
+        if (!options_.horizon && t > kStill * (still_since_ + L_) && steps_ > kRestInterval) {
+            response_.ended = "At t = " + text(t) + " y has stayed at " + text(y_.at(1)) +
+                              " for 99 % of the time, and the control law would still move it.";
+            return true;
+        }
         if (steps_ >= options_.max_steps) {
             response_.ended = "At t = " + text(t) + " the run has taken the " + std::to_string(options_.max_steps) +
                               " steps that it may" + (options_.horizon ? "." : ", and the loop has not come to rest.");
@@ -322,6 +323,13 @@ private:
                                                   loop_.law().integral_at_rest(rest_->u));
     }
 
+    bool crowded() {
+        response_.ended = "At t = " + text(integrator_.t()) +
+                          " the command crosses the input's limit again and again without any time between: with this "
+                          "derivative action the loop has no solution there. Give the derivative a filter.";
+        return false;
+    }
+
     bool fail(OdeStep outcome) {
         const double t = integrator_.t();
         if (outcome == OdeStep::stalled) {
@@ -330,22 +338,11 @@ private:
             return false;
         }
         response_.escaped = true;
-        response_.ended = "At t = " + text(t) + " the states leave the model's domain. " + fault();
+        const double u = loop_.system().u_nominal() + (loop_.delayed() ? w_then(t) : u_.at(1) + in_.d);
+        response_.ended = "At t = " + text(t) + " the states leave the model's domain. " +
+                          fault_ahead(loop_.system(), loop_.plant_states(integrator_.x()),
+                                      loop_.plant_states(integrator_.dx()), u, t);
         return false;
-    }
-
-    /// Which operation fails just ahead.
-    std::string fault() const {
-        const auto x = loop_.plant_states(integrator_.x()), dx = loop_.plant_states(integrator_.dx());
-        std::vector<double> ahead(x.size());
-        const double u = loop_.system().u_nominal() + (loop_.delayed() ? w_then(integrator_.t()) : u_.at(1) + in_.d);
-        for (double length = 0;
-             length<1e3; length = length> 0 ? 4 * length : kEpsilon * std::max(integrator_.t(), 1e-9)) {
-            for (Index i = 0; i < x.size(); ++i) ahead[i] = x[i] + length * dx[i];
-            const std::string sentence = loop_.system().domain_fault(ahead, u);
-            if (!sentence.empty()) return sentence;
-        }
-        return "Their rates of change do not exist there.";
     }
 
     NonlinearResponse finish() {
@@ -378,9 +375,11 @@ private:
     NonlinearResponse response_;
     ResponseRecorder recorder_;
     std::vector<double> z_;
-    std::map<double, int> breaks_;
+    BreakPoints breaks_;
     double no_long_steps_before_ = 0;
-    int steps_ = 0, echoes_ = kEchoes;
+    int crossings_in_a_row_ = 0;
+    double still_since_ = 0, still_y_ = 0, still_u_ = 0;
+    int steps_ = 0;
     StepPolynomial y_, u_, command_;
     std::optional<NonlinearRest> rest_;
     bool settled_ = false;

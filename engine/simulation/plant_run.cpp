@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/number_text.h"
+#include "engine/simulation/fault_ahead.h"
 
 namespace tunewright {
 namespace {
@@ -65,15 +66,8 @@ bool PlantRun::read_step(OdeStep outcome) {
             why_ = at + "the steps needed are too short to go on.";
             return false;
         }
-        why_ = at + "the states leave the model's domain.";
-        const auto x = integrator_.x(), dx = integrator_.dx();
-        for (double ahead = kEpsilon * std::max(t(), 1e-9); ahead < 1e3; ahead *= 4) {
-            for (std::size_t i = 0; i < x.size(); ++i) x_[i] = x[i] + ahead * dx[i];
-            const std::string fault = system_.domain_fault(x_, system_.u_nominal() + w_);
-            if (fault.empty()) continue;
-            why_ += " " + fault;
-            break;
-        }
+        why_ = at + "the states leave the model's domain. " +
+               fault_ahead(system_, integrator_.x(), integrator_.dx(), system_.u_nominal() + w_, t());
         return false;
     }
     const double from = integrator_.t_before(), h = t() - from;

@@ -137,6 +137,108 @@ TEST(NonlinearResponse, TakesStepsFarBeyondATinyDeadTime) {
         }
 }
 
+TEST(NonlinearResponse, RunsUntilItIsAtRestAndClosesTheTail) {
+    const auto system = made_system(cstr("T"));
+    const ParallelPid pi{.Kp = 1.81, .Ki = 1.81 / 0.403};
+    const auto response = simulate_nonlinear(system, pi, {-10, 5}, {});
+    ASSERT_TRUE(response.loop.settles);
+    EXPECT_EQ(response.loop.y_final, -10);
+    // Rest: f = 0 at T - 10, of which the first equation gives CA and the second Tj.
+    const double T = system.y_steady() - 10, k = 4.71e8 * std::exp(-8000 / T), CA = 1 / (1 + k);
+    EXPECT_NEAR(response.loop.u_final, 2 * T - 400 + 200 * k * CA - 493.87 - 5, 1e-9);
+    ASSERT_TRUE(response.loop.error_integral_final);
+    EXPECT_NEAR(*response.loop.error_integral_final, response.loop.u_final / pi.Ki, 1e-7);
+    NonlinearOptions longer;
+    longer.horizon = 40;
+    const auto far = simulate_nonlinear(system, pi, {-10, 5}, longer);
+    EXPECT_NEAR(integral_of_absolute_error(response.loop.nodes, -10, response.loop.error_integral_final),
+                integral_of_absolute_error(far.loop.nodes, -10, std::nullopt), 1e-6);
+    const auto by_filter = [&](FilterType type) {
+        ParallelPid filtered = pi;
+        filtered.Kd = 0.1;
+        filtered.filter = {type, 0.05};
+        const auto r = simulate_nonlinear(system, filtered, {-10, 5}, {});
+        const auto to_40 = simulate_nonlinear(system, filtered, {-10, 5}, longer);
+        EXPECT_NEAR(*r.loop.error_integral_final, to_40.loop.nodes.back().error_integral, 1e-6);
+    };
+    by_filter(FilterType::measurement_first_order);
+    by_filter(FilterType::measurement_second_order);
+}
+
+TEST(NonlinearResponse, WithoutIntegralActionRestsWhereTheLawDoes) {
+    const auto response = simulate_nonlinear(made_system(cstr("T")), {.Kp = 5}, {10, 0}, {});
+    ASSERT_TRUE(response.loop.settles);
+    EXPECT_FALSE(response.loop.error_integral_final);
+    EXPECT_NEAR(response.loop.u_final, 5 * (10 - response.loop.y_final), 1e-9);
+    EXPECT_NEAR(response.loop.nodes.back().y, response.loop.y_final, 1e-5);
+}
+
+TEST(NonlinearResponse, RestsAtALimitThatTheSetPointIsBeyond) {
+    NonlinearOptions options;
+    options.actuator = OutputLimits{-20, 20};
+    const auto response = simulate_nonlinear(made_system(cstr("T")), {.Kp = 5, .Ki = 20}, {10, 0}, options);
+    ASSERT_TRUE(response.loop.settles);
+    EXPECT_TRUE(response.limited);
+    EXPECT_EQ(response.loop.u_final, 20);
+    EXPECT_FALSE(response.loop.error_integral_final);
+    EXPECT_NEAR(response.loop.nodes.back().y, response.loop.y_final, 1e-5);
+    EXPECT_LT(response.loop.y_final, 5);
+}
+
+TEST(NonlinearResponse, EndsEarlyWithAReason) {
+    // A tank with a constant outflow and an outlet: a load takes away more than comes in.
+    const auto tank = made_system(scalar_plant("u-0.5-sqrt(x)", 1, 1.5));
+    const auto empty = simulate_nonlinear(tank, {.Kp = 0.1, .Ki = 0.01}, {0, -1.4}, {});
+    EXPECT_TRUE(empty.escaped);
+    EXPECT_FALSE(empty.loop.settles);
+    EXPECT_EQ(empty.ended.find("At t = "), 0u) << empty.ended;
+    EXPECT_NE(empty.ended.find("sqrt of"), std::string::npos) << empty.ended;
+
+    const auto unstable = simulate_nonlinear(tank, {.Kp = -9, .Ki = -1}, {0.1, 0}, {});
+    EXPECT_TRUE(unstable.escaped);
+
+    NonlinearOptions few;
+    few.max_steps = 10;
+    few.horizon = 10;
+    few.samples = 101;
+    const auto cut = simulate_nonlinear(tank, {.Kp = 0.1, .Ki = 0.01}, {0.1, 0}, few);
+    EXPECT_NE(cut.ended.find("the 10 steps that it may"), std::string::npos) << cut.ended;
+    EXPECT_LT(cut.even.y.size(), 101u);
+    EXPECT_LT(cut.t_end, 10);
+
+    std::stop_source source;
+    source.request_stop();
+    NonlinearOptions stopped;
+    stopped.stop = source.get_token();
+    EXPECT_EQ(simulate_nonlinear(tank, {.Kp = 0.1}, {0.1, 0}, stopped).ended, "The simulation was stopped.");
+
+    // 1 + Kd C B < 0: at a limit the derivative's loop has several solutions.
+    NonlinearOptions limited;
+    limited.actuator = OutputLimits{-300, 300};
+    const auto crowded =
+        simulate_nonlinear(made_system(cstr("T")), {.Kp = -4.4, .Ki = -2, .Kd = -1.8}, {5, 0}, limited);
+    EXPECT_NE(crowded.ended.find("Give the derivative a filter"), std::string::npos) << crowded.ended;
+}
+
+TEST(NonlinearResponse, KeepsEvenSamplesWithoutNodes) {
+    const auto system = made_system(cstr("T"));
+    NonlinearOptions options;
+    options.horizon = 2;
+    options.samples = 51;
+    const auto both = simulate_nonlinear(system, {.Kp = 4.8, .Ki = 25}, {10, 0}, options);
+    options.nodes = false;
+    const auto alone = simulate_nonlinear(system, {.Kp = 4.8, .Ki = 25}, {10, 0}, options);
+    EXPECT_TRUE(alone.loop.nodes.empty());
+    EXPECT_EQ(alone.even.y, both.even.y);
+    EXPECT_EQ(alone.even.u, both.even.u);
+    EXPECT_EQ(both.even.u.front(), both.loop.nodes.front().u);
+    const auto of_nodes = sampled(both.loop.nodes, 2, 51);
+    for (std::size_t i = 0; i < of_nodes.size(); ++i) {
+        EXPECT_NEAR(both.even.y[i], of_nodes[i].first, 1e-5);
+        EXPECT_NEAR(both.even.u[i], of_nodes[i].second, 1e-4);
+    }
+}
+
 TEST(NonlinearResponse, OfTheStirredTankHasTheReferencesFigures) {
     const Json reference = Json::parse(std::ifstream(test_data("emulation/closed_loops.json")));
     int rows = 0;

@@ -65,7 +65,7 @@ void pid_loop_401_samples(benchmark::State& state) { loop(state, cstr("CA"), kPi
 BENCHMARK(pid_loop_401_samples)->Unit(benchmark::kMicrosecond);
 
 void pi_loop_dead_time(benchmark::State& state) {
-    const ParallelPid slow{.Kp = 2, .Ki = 4};
+    const ParallelPid slow{.Kp = 4, .Ki = 16};
     loop(state, cstr("T", 0.05), slow, 10, two_minutes(true, 0));
 }
 BENCHMARK(pi_loop_dead_time)->Unit(benchmark::kMicrosecond);

@@ -1,24 +1,29 @@
 #include "engine/plant/expression/program.h"
 
+#include <cmath>
+
 #include "engine/number_text.h"
 
 namespace tunewright {
 
-std::string Program::describe(int instruction, double a, double b, bool value_is_finite) const {
+std::string Program::describe(int instruction, double a, double b, double result) const {
     const Origin& origin = origins_[static_cast<std::size_t>(instruction)];
     const Operation operation = instructions_[static_cast<std::size_t>(instruction)].operation;
     const std::string name = spelling(origin.written);
+    const std::string failure = std::isnan(result)   ? " does not exist"
+                                : std::isinf(result) ? " is not finite"
+                                                     : " has no finite derivative";
     std::string what;
     if (origin.written == Operation::power) {
         what = operation == Operation::log                ? "a power of " + text(a) + " with an exponent that varies"
                : operation == Operation::power            ? text(a) + " ^ " + text(b)
                : operation == Operation::divide && b == 0 ? "a negative power of 0"
                                                           : "a power";
-        what += value_is_finite ? " has no finite derivative" : " is not finite";
+        what += failure;
     } else if (operation == Operation::divide && b == 0) {
         what = "division by zero";
     } else if (operand_count(operation) == 1) {
-        what = name + " of " + text(a) + (value_is_finite ? " has no finite derivative" : " is not finite");
+        what = name + " of " + text(a) + failure;
     } else {
         what = text(a) + " " + name + " " + text(b) + " is beyond the range of numbers";
     }

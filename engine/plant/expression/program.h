@@ -61,7 +61,7 @@ private:
 
     template <class T>
     void run(std::span<const T> variables, int length, T* registers) const;
-    std::string describe(int instruction, double a, double b, bool value_is_finite) const;
+    std::string describe(int instruction, double a, double b, double result) const;
 
     int variables_ = 0;
     std::vector<double> constants_;
@@ -122,7 +122,7 @@ std::string Program::fault(std::span<const T> variables, int count) const {
                 at = i.b;
             else
                 return describe(at - first, value_part(values[i.a]), value_part(values[i.b]),
-                                std::isfinite(value_part(values[static_cast<std::size_t>(at)])));
+                                value_part(values[static_cast<std::size_t>(at)]));
         }
         return (at < variables_ ? variable_names_[static_cast<std::size_t>(at)] : "a constant") + " is not finite";
     }

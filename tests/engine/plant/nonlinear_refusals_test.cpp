@@ -63,7 +63,7 @@ TEST(NonlinearRefusals, Texts) {
          "The output contains the input Tj: y = h(x) must follow from the states alone."},
         {[](NonlinearPlant& plant) { plant.output = "V"; }, "plant/output", "The output contains no state"},
         {[](NonlinearPlant& plant) { plant.output = "log(CA - 1)"; }, "plant/output",
-         "The output cannot be evaluated at the steady state: output, character 1: log of -0.4797 is not finite."},
+         "The output cannot be evaluated at the steady state: output, character 1: log of -0.4797 does not exist."},
     });
 }
 
@@ -140,7 +140,7 @@ TEST(NonlinearRefusals, OperatingPoints) {
          "character 11: division by zero."},
         {T("log(T - 500) + Tj"), "plant/states",
          "The equations cannot be evaluated at the operating point (CA = 0.52, T = 398.97, Tj = 493.87): equation T, "
-         "character 1: log of -101 is not finite."},
+         "character 1: log of -101 does not exist."},
         {T("exp(T^2) + Tj"), "plant/states", "The equations cannot be evaluated at the operating point"},
         {T("1 + T^2 + Tj^2"), "plant/states", "There is no steady state near these states for Tj = 493.87:"},
         {[](NonlinearPlant& p) { p.input.nominal = 5000; }, "plant/states",

@@ -157,7 +157,7 @@ TEST(NonlinearSystem, LeavingTheDomainIsSaidAndNamed) {
     EXPECT_TRUE(tank.rates(std::vector{0.2}, 0.3, dx));
     EXPECT_EQ(tank.domain_fault(std::vector{0.2}, 0.3), "");
     EXPECT_FALSE(tank.rates(std::vector{-0.2}, 0.3, dx));
-    EXPECT_EQ(tank.domain_fault(std::vector{-0.2}, 0.3), "Equation h, character 8: sqrt of -0.2 is not finite.");
+    EXPECT_EQ(tank.domain_fault(std::vector{-0.2}, 0.3), "Equation h, character 8: sqrt of -0.2 does not exist.");
     EXPECT_FALSE(tank.rates(std::vector{0.0}, 0.3, dx));
     EXPECT_EQ(tank.domain_fault(std::vector{0.0}, 0.3), "Equation h, character 16: division by zero.");
 }

@@ -17,6 +17,8 @@ namespace tunewright {
 class PlantRun {
 public:
     PlantRun(const NonlinearSystem& system, double tolerance);
+    PlantRun(const PlantRun&) = delete;  // its equations refer to it
+    PlantRun& operator=(const PlantRun&) = delete;
 
     /// u from now on, or from t in the last step: with a dead time only, which must not have brought it to the plant
     /// yet.
@@ -46,7 +48,7 @@ private:
 
     const NonlinearSystem& system_;
     double L_, u_ = 0, w_ = 0;
-    bool arrived_ = false, started_ = false;
+    bool arrived_ = false;
     OdeIntegrator integrator_;
     std::deque<Switch> pending_;
     std::vector<double> x_;

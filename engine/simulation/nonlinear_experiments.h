@@ -24,8 +24,8 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 
 /// Until periods and swings repeat to 1e-6, at least six: some thousand rows at equal distances and at every switch.
 /// Switches at the instant of crossing; amplitude and hysteresis as deviations (relay.h). Errors: unsupported where
-/// there is no oscillation (without dead time a hysteresis is needed) or the states leave the model's domain;
-/// cancelled.
+/// there is no oscillation (without dead time a hysteresis is needed; where y turns at it at once there is no Ku) or
+/// the states leave the model's domain; cancelled.
 struct NonlinearRelayTest {
     RelayRecord record;
     double Pu = 0,

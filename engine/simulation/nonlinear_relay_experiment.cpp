@@ -18,8 +18,9 @@ constexpr int kFewestCycles = 6, kMostCycles = 40, kSteadyCycles = 2;
 constexpr double kSteady = 1e-6;        // relative change of period and swing from one cycle to the next
 constexpr double kNearlySteady = 1e-2;  // after the most cycles
 constexpr int kRows = 1600;
-constexpr double kPatience = 100;  // of the plant's own time without a switch
-constexpr double kNoise = 1e-13;   // of the output's own size: crossings of the threshold below it are rounding
+constexpr double kBeyondHysteresis = 1.001;  // of the hysteresis: swings that say something about the plant
+constexpr double kPatience = 100;            // of the plant's own time without a switch
+constexpr double kNoise = 1e-13;  // of the output's own size: crossings of the threshold below it are rounding
 
 Error unsupported(std::string message) { return {ErrorKind::unsupported, "plant", std::move(message)}; }
 
@@ -60,12 +61,16 @@ public:
         return unsupported("The relay switches too fast for the steps allowed. Give a larger hysteresis.");
     }
 
-    NonlinearRelayTest result() const {
+    Expected<NonlinearRelayTest> result() const {
         NonlinearRelayTest test;
         const auto last = std::size_t(cycles() - 1);
         test.Pu = periods_[last];
         const double a = swings_[last], d = 0.5 * (levels_.u_plus - levels_.u_minus), h = levels_.hysteresis;
-        test.Ku = 4 * d / (std::numbers::pi * std::sqrt(std::max(a * a - h * h, 1e-12 * a * a)));
+        if (a < kBeyondHysteresis * h)
+            return unsupported("The output turns as soon as the relay switches, at y = " + text(h) +
+                               ": the hysteresis alone makes the period, and it tells no ultimate gain. Plants that "
+                               "answer at once, without dead time, have none.");
+        test.Ku = 4 * d / (std::numbers::pi * std::sqrt(a * a - h * h));
         test.reversed = direction_ < 0;
         record(test.record);
         return test;

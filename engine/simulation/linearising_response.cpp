@@ -77,7 +77,7 @@ public:
             OdeStep outcome = integrator_.step(options_.horizon);
             if (outcome != OdeStep::made) return ended(reason(outcome));
             if (const auto pole = loss_of_effect()) {
-                if ((outcome = integrator_.shorten(*pole)) == OdeStep::made) sample_step();
+                if (integrator_.shorten(*pole) == OdeStep::made) sample_step();
                 return ended("At t = " + text(now()) +
                              " the controller's law ceases to exist: the input has no effect on the output there.");
             }

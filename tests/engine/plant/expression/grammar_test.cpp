@@ -49,7 +49,8 @@ TEST(Grammar, OperatorsBindAsInMathematics) {
         {"x^0", 1},
         {" x\t+\n u ", 8},
     };
-    for (const auto& [text, expected] : cases) EXPECT_NEAR(value(text), expected, 1e-13 * (1 + std::abs(expected))) << text;
+    for (const auto& [text, expected] : cases)
+        EXPECT_NEAR(value(text), expected, 1e-13 * (1 + std::abs(expected))) << text;
 }
 
 TEST(Grammar, ErrorsNameThePlaceAndQuoteThePiece) {

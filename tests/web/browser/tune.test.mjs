@@ -239,9 +239,11 @@ test("an example is shown in the form and sent from there as the same plant and 
     (candidate) => candidate.request.plant && Array.isArray(candidate.request.tune ?? []),
   )) {
     await withPage(`#/examples/${example.id}`, {}, async (page) => {
-      await page.getByRole("button", { name: "Tune this model" }).waitFor();
+      const nonlinear = example.request.plant.type === "nonlinear";
+      const button = page.getByRole("button", { name: nonlinear ? "Tune these equations" : "Tune this model" });
+      await button.waitFor();
       await page.waitForLoadState("networkidle");
-      await page.getByRole("button", { name: "Tune this model" }).click();
+      await button.click();
       await designShown(page);
       const { request } = await jobOf(page);
       assert.deepEqual({ L: 0, ...request.plant }, { L: 0, ...example.request.plant }, example.id);

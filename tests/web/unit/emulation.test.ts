@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Emulation, Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
 import { drawnEntries } from "../../../web/src/charts/drawn.ts";
-import { emulationFrame } from "../../../web/src/charts/emulation.ts";
+import { costOf, emulationFrame } from "../../../web/src/charts/emulation.ts";
 import { hasLinear, responseFrame } from "../../../web/src/charts/responses.ts";
 import { frameToCsv, frameToSvg } from "../../../web/src/plot/export.ts";
 import { wholeView } from "../../../web/src/plot/layout.ts";
@@ -11,6 +11,7 @@ import {
   emulationFacts,
   flatnessWords,
   levelRows,
+  scenarioNotes,
   scenarioWords,
   targetWords,
 } from "../../../web/src/words/emulation.ts";
@@ -46,7 +47,7 @@ const emulation: Emulation = {
       y: [399, 402],
       u: [500, 520],
     },
-    { method: "cohen_coon", test: "step", controller: null, error: { detail: "There is no dead time." }, J: null },
+    { method: "cohen_coon", test: "step", controller: null, error: "There is no dead time.", J: null },
   ],
   scenarios: [
     {
@@ -102,7 +103,12 @@ test("the optimum's flatness names only what was sought", () => {
 
 test("facts say J with its parts, the target and the zero dynamics", () => {
   const facts = Object.fromEntries(emulationFacts(emulation, units));
-  assert.equal(facts["J"], "13.14: 0.300 of y, 12.8 of u");
+  assert.equal(facts["J"], "13.14 = 1 × 0.300 of y + 1 × 12.8 of u");
+  const least = { J: 49, J_y: null, J_u: 49, why_null: { J_y: "Remark 6 leaves the output out." } };
+  assert.deepEqual(emulationFacts(least, units), [
+    ["J", "49.00 = 1 × 49.0 of u"],
+    ["y in J", "Remark 6 leaves the output out."],
+  ]);
   assert.equal(facts["Target"], "0.25 y′ + y = set point");
   assert.equal(facts["Zero dynamics"], "stable; zeros −1.922");
   assert.equal(targetWords([1, 0.42, 0.04]), "0.04 y″ + 0.42 y′ + y = set point");
@@ -115,6 +121,26 @@ test("a scenario is named by all that makes it one", () => {
     scenarioWords({ ...emulation.scenarios![1]!, initial: { T: 380 }, parameters: { k0: 5e8 } }),
     "set point −10, T from 380, k0 500000000",
   );
+});
+
+test("a scenario says what limits or ends it, settings why their run ended", () => {
+  const scenario = emulation.scenarios![0]!;
+  assert.equal(scenarioNotes(scenario), "");
+  assert.match(
+    scenarioNotes({ ...scenario, limited: true, ended: "T is below 0." }),
+    /clips .* ends early: T is below 0\./,
+  );
+  const ended = { ...emulation, level1: [{ ...emulation.level1![0]!, J: null, ended: "h fell below 0." }] };
+  assert.equal(levelRows({ ...entry, emulation: ended })[0]!.why, "h fell below 0.");
+});
+
+test("the cost of a run is the criterion's over its samples", () => {
+  const scenario = { ...emulation.scenarios![0]!, t: [0, 1, 2], y_nl: [0, 1, 1], u_nl: [4, 4, 4] };
+  const run = { t: [0, 2], y: [0, 1], u: [4, 6] };
+  // Squares at 0, 1, 2: 0, 0.25, 0 of y and 0, 1, 4 of u.
+  const cost = costOf({ J: 1, weights: { wy: 2, wu: 10 } }, scenario, run)!;
+  assert.ok(Math.abs(cost - (2 * 0.25 + 10 * (0.5 * (0 + 1) + 0.5 * (1 + 4)))) < 1e-12);
+  assert.equal(costOf({ J: 1 }, scenario, { ...run, y: [0, null] }), null);
 });
 
 test("the chart has the PID, the nonlinear controller and chosen settings; classical ones in the first scenario only", () => {

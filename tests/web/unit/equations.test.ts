@@ -25,6 +25,7 @@ const texts = (): EquationTexts => writeEquations(reactor)!;
 
 test("a plant becomes texts and the texts the same plant", () => {
   assert.deepEqual(readEquations(texts()), { plant: reactor, errors: [] });
+  assert.equal(texts().parameters[0]!.value, "4.71e8");
   const small: Plant = {
     type: "nonlinear",
     states: { h: 1 },
@@ -105,4 +106,6 @@ test("the service's pointers lead to the row they are about", () => {
 test("a plant of equations is named by its states, input and output", () => {
   assert.equal(plantTitle("nonlinear"), "nonlinear equations");
   assert.equal(plantWords(reactor, { time: "min", u: "K", y: "K" }), "2 states, from Tj to T, L 0.1 min");
+  const units = { time: "min", u: "", y: "pH" };
+  assert.equal(plantWords({ ...reactor, output: "6 - log(T)", L: 0 }, units), "2 states, from Tj to y");
 });

@@ -3,15 +3,31 @@ import { call } from "./client.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
 import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
 
+/** What the service adds to a controller is not part of its settings. */
+const settingsOf = ({ action: _action, why_null: _why, ...settings }: Controller): Controller => settings;
+
+/** The figures and responses of one controller for this set-point step, to that horizon. */
+export async function stepOf(
+  plant: Plant,
+  controller: Controller,
+  setpoint_step: number,
+  horizon: number,
+): Promise<Entry> {
+  const evaluate = { setpoint_step, horizon, points: SLIDER_POINTS };
+  const request = { plant, controllers: [settingsOf(controller)], evaluate };
+  const answer = (await call("POST", "v1/evaluate", request)).data as { controllers: Entry[] };
+  return answer.controllers[0]!;
+}
+
 /** The servo/regulation trade-off of controllers, without traces; in their order. */
 export async function tradeoffsOf(plant: Plant, controllers: Controller[]): Promise<(Tradeoff | undefined)[]> {
-  // What the service adds to a controller is not part of its settings.
-  const given = controllers.map(({ action: _action, why_null: _why, ...settings }) => settings);
+  const given = controllers.map(settingsOf);
   const request = { plant, controllers: given, evaluate: { points: 0, tradeoff: true } };
   const answer = (await call("POST", "v1/evaluate", request)).data as { controllers: Entry[] };
   return answer.controllers.map((entry) => entry.tradeoff);
 }
 
+const SLIDER_POINTS = 200;
 const PROFILE_METHOD = "arrieta_ms";
 const LONGEST_WAIT_S = 20;
 

@@ -216,8 +216,8 @@ export interface EmulationScenario extends Followed {
   u_nl: (number | null)[];
   /** A limit of the input clipped the nonlinear controller's u. */
   limited?: boolean;
-  /** Why a run ended early. */
-  ended?: string | null;
+  /** Why the PID's run ended early. */
+  ended?: string;
 }
 
 /** Settings of the first level: a classical rule on a simulated test or on the linear model. */
@@ -227,7 +227,10 @@ export interface LevelOne extends Followed {
   title?: string;
   model?: Plant | null;
   controller?: Controller | null;
-  error?: Problem | string | null;
+  /** Why there are no settings. */
+  error?: string;
+  /** Why its run ended before the horizon. */
+  ended?: string;
   J?: number | null;
   why_null?: WhyNull;
 }
@@ -239,6 +242,7 @@ export type Spreads = Partial<Record<Tuned, number | null>>;
 export interface Emulation {
   formulation?: string;
   J: number | null;
+  /** Without their weights: J = wy J_y + wu J_u. */
   J_y?: number | null;
   J_u?: number | null;
   weights?: { wy: number; wu: number };

@@ -6,9 +6,17 @@ import { scenarioWords } from "../words/emulation.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { inputOf } from "../words/plant.ts";
+import { interpolate } from "./rimc.ts";
 
 /** Looks of the classical settings, in the order in which they were chosen. */
-export const LEVEL_ONE_LOOKS: Look[] = [4, 2];
+export const LEVEL_ONE_LOOKS: Look[] = [4, "data"];
+
+/** A run with settings of one's own: absolute values. */
+export interface OwnRun {
+  t: number[];
+  y: (number | null)[];
+  u: (number | null)[];
+}
 
 /** `chosen`: indices in level1. Null where there is nothing to draw. */
 export function emulationFrame(
@@ -17,6 +25,7 @@ export function emulationFrame(
   chosen: { index: number; name: string }[],
   plant: Plant | undefined,
   units: UnitNames,
+  own: OwnRun | null = null,
 ): Frame | null {
   const shown = emulation.scenarios?.[scenario] ?? onlyScenario(emulation);
   if (!shown || shown.t.length < 2) return null;
@@ -28,8 +37,10 @@ export function emulationFrame(
       ...(scenario === 0 ? chosen : []).flatMap(({ index, name }, position): Trace[] => {
         const item = emulation.level1?.[index];
         const values = item?.[signal];
-        return values ? [{ name, look: LEVEL_ONE_LOOKS[position] ?? 2, x: item?.t ?? shown.t, y: values }] : [];
+        const look = LEVEL_ONE_LOOKS[position] ?? "data";
+        return values ? [{ name, look, x: item?.t ?? shown.t, y: values }] : [];
       }),
+      ...(own ? [{ name: "by hand", look: 2 as const, x: own.t, y: own[signal] }] : []),
     ];
   };
   const [ys, us] = [traces("y"), traces("u")];
@@ -71,4 +82,21 @@ function limitsNear(plant: Plant | undefined, traces: Trace[]): Mark[] {
       ? [{ kind: "level", value, role: "limit" }]
       : [],
   );
+}
+
+/** The cost of a run beside the nonlinear controller's in one scenario, by the trapezoidal rule; null where samples are missing. */
+export function costOf(emulation: Emulation, scenario: EmulationScenario, run: OwnRun): number | null {
+  const { wy = 1, wu = 1 } = emulation.weights ?? {};
+  const squares = scenario.t.map((time, index) => {
+    const pair = (["y", "u"] as const).map((signal) => {
+      const wanted = signal === "y" ? scenario.y_nl[index] : scenario.u_nl[index];
+      const value = interpolate(run.t, run[signal], time);
+      return typeof wanted === "number" && value !== null ? (wanted - value) ** 2 : NaN;
+    });
+    return wy * pair[0]! + wu * pair[1]!;
+  });
+  const cost = squares.slice(1).reduce((sum, value, at) => {
+    return sum + ((value + squares[at]!) / 2) * (scenario.t[at + 1]! - scenario.t[at]!);
+  }, 0);
+  return Number.isFinite(cost) ? cost : null;
 }

@@ -146,7 +146,7 @@ function rowList<Texts extends { name: string }>(
       row.element.remove();
       rows = rows.filter((other) => other !== row);
       head.hidden = rows.length === 0;
-      (rows[index] ?? rows[index - 1])?.first.focus() ?? add.focus();
+      ((rows[index] ?? rows[index - 1])?.first ?? add).focus();
       onChange();
     });
     row.element.addEventListener("input", name);

@@ -124,7 +124,13 @@ const KNOWN = new Set(["type", "states", "parameters", "equations", "input", "ou
 const record = (value: unknown): Record<string, unknown> =>
   typeof value === "object" && value !== null ? (value as Record<string, unknown>) : {};
 const written = (value: unknown): string =>
-  typeof value === "number" ? String(value) : typeof value === "string" ? value : "";
+  typeof value === "number" ? shortest(value) : typeof value === "string" ? value : "";
+
+/** Every digit, but no rows of zeros: 4.71e8. */
+function shortest(value: number): string {
+  const size = Math.abs(value);
+  return size >= 1e6 || (size < 1e-3 && size > 0) ? value.toExponential().replace("e+", "e") : String(value);
+}
 
 /** The texts that show a plant; null where it is of another kind or has parts without a field. */
 export function writeEquations(plant: Plant): EquationTexts | null {

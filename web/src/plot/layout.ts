@@ -1,7 +1,8 @@
 // From a frame and a size to rectangles and scales. Pure: the page and the exports share it.
-import { extent, makeScale, usableRange } from "./axis.ts";
+import { extent, makeScale, ticks, usableRange } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import type { Frame, Pane } from "./frame.ts";
+import { tickText } from "./tick_text.ts";
 
 export interface PaneBox {
   pane: Pane;
@@ -28,16 +29,24 @@ export interface View {
 export const wholeView = (frame: Frame): View => ({ x: null, y: frame.panes.map(() => null) });
 
 const LEFT = 54;
+/** Tick texts longer than these need room on their left. */
+const USUAL_TICK_LENGTH = 4;
+const TICK_GLYPH_PX = 7;
+/** Between the ticks of a y axis. */
+export const TICK_PX = 38;
 const RIGHT = 14;
 const TOP = 8;
 const BOTTOM = 38;
 const GAP = 14;
 
 export function layoutFrame(frame: Frame, width: number, height: number, view: View): Layout {
-  const innerWidth = Math.max(40, width - LEFT - RIGHT);
   const innerHeight = Math.max(40, height - TOP - BOTTOM - GAP * (frame.panes.length - 1));
   const weights = frame.panes.map((pane) => pane.weight ?? 1);
   const total = weights.reduce((sum, weight) => sum + weight, 0);
+  const heights = weights.map((weight) => (innerHeight * weight) / total);
+  const yRanges = frame.panes.map((pane, index) => view.y[index] ?? pane.y.range ?? dataRange(pane));
+  const left = leftOf(frame, yRanges, heights);
+  const innerWidth = Math.max(40, width - left - RIGHT);
   const xRange =
     view.x ??
     frame.x.range ??
@@ -47,23 +56,31 @@ export function layoutFrame(frame: Frame, width: number, height: number, view: V
     );
   let top = TOP;
   const boxes = frame.panes.map((pane, index): PaneBox => {
-    const paneHeight = (innerHeight * weights[index]!) / total;
+    const paneHeight = heights[index]!;
     let x = usableRange(xRange[0], xRange[1], frame.x.kind);
-    let y = view.y[index] ?? pane.y.range ?? dataRange(pane);
+    let y = yRanges[index]!;
     if (frame.equal) [x, y] = equalRanges(x, y, innerWidth, paneHeight);
     const box: PaneBox = {
       pane,
-      left: LEFT,
+      left,
       top,
       width: innerWidth,
       height: paneHeight,
-      x: makeScale(frame.x.kind, x, [LEFT, LEFT + innerWidth]),
+      x: makeScale(frame.x.kind, x, [left, left + innerWidth]),
       y: makeScale(pane.y.kind, y, [top + paneHeight, top]),
     };
     top += paneHeight + GAP;
     return box;
   });
   return { width, height, boxes };
+}
+
+/** As much as the longest tick text takes, so that no axis name stands on it. */
+function leftOf(frame: Frame, ranges: Range[], heights: number[]): number {
+  const lengths = frame.panes.flatMap((pane, index) =>
+    ticks(pane.y.kind, ranges[index]!, heights[index]! / TICK_PX).map((value) => tickText(value).length),
+  );
+  return LEFT + TICK_GLYPH_PX * Math.max(0, Math.max(0, ...lengths) - USUAL_TICK_LENGTH);
 }
 
 function dataRange(pane: Pane): Range {

@@ -3,8 +3,10 @@
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import { ticks } from "./axis.ts";
+import { tickText } from "./tick_text.ts";
 import { columnExtremes, drawableRuns } from "./dense.ts";
 import type { Frame, Look, Mark, Trace } from "./frame.ts";
+import { TICK_PX } from "./layout.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 
 type Attributes = Record<string, string | number>;
@@ -28,22 +30,12 @@ const THIN: Attributes = { "stroke-width": 1.3, "stroke-dasharray": "1 3", "stro
 export const lineOf = (look: Look, thin = false): Attributes => (thin ? { ...LINES[look], ...THIN } : LINES[look]);
 
 const FONT = { "font-size": 12 };
-const MINUS = "−";
 const FAR = 20000;
 const SMALL_CIRCLE_PX = 36;
 /** About the width of a letter. */
 const GLYPH_PX = 6.4;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
-
-/** A tick's text: no dust, true minus, powers of ten where plain digits would be long. */
-export function tickText(value: number): string {
-  if (value === 0) return "0";
-  const size = Math.abs(value);
-  const text =
-    size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
-  return text.replaceAll("-", MINUS);
-}
 
 /** Everything but the cursor. `clip` makes ids of clip paths unique in the document. */
 export function drawLayout(frame: Frame, layout: Layout, clip: string): TreeNode[] {
@@ -70,7 +62,7 @@ function drawBox(frame: Frame, box: PaneBox, clip: string, last: boolean): TreeN
 function axisTicks(box: PaneBox): { x: number[]; y: number[] } {
   return {
     x: ticks(box.x.kind, box.x.range, box.width / 90),
-    y: ticks(box.y.kind, box.y.range, box.height / 38),
+    y: ticks(box.y.kind, box.y.range, box.height / TICK_PX),
   };
 }
 

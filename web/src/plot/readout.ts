@@ -6,7 +6,8 @@ import type { Range, Scale } from "./axis.ts";
 import { nearestIndex } from "./cursor.ts";
 import type { Frame, Trace } from "./frame.ts";
 import type { Layout, PaneBox } from "./layout.ts";
-import { lineOf, tickText } from "./marks.ts";
+import { lineOf } from "./marks.ts";
+import { tickText } from "./tick_text.ts";
 
 /** The cursor's range: what is in view for plain plots, the whole parameter for curves in a plane. */
 export function cursorRange(frame: Frame, layout: Layout): Range {

@@ -1,14 +1,26 @@
 // Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and how well it does.
-import type { Entry, Plant } from "../api/types.ts";
-import { emulationFrame, LEVEL_ONE_LOOKS } from "../charts/emulation.ts";
+import type { EmulationScenario, Entry, Plant, Tuned } from "../api/types.ts";
+import { costOf, emulationFrame, LEVEL_ONE_LOOKS } from "../charts/emulation.ts";
+import type { OwnRun } from "../charts/emulation.ts";
 import { h, uniqueId } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
 import { plotGrid } from "../plot/grid.ts";
-import { boundWords, emulationFacts, levelRows, scenarioWords, tunedParameters, unitOf } from "../words/emulation.ts";
+import {
+  boundWords,
+  emulationFacts,
+  levelRows,
+  scenarioNotes,
+  scenarioWords,
+  tunedParameters,
+  unitOf,
+} from "../words/emulation.ts";
 import type { LevelRow } from "../words/emulation.ts";
 import { DASH, formatNumber, formatSetting, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { handSettings } from "./hand_settings.ts";
+
+const formatBound = (value: number): string => formatSetting(Number(value.toPrecision(3)));
 
 export interface EmulationCard {
   element: HTMLElement;
@@ -21,26 +33,51 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
   let shown: { entry: Entry; plant: Plant | undefined; units: UnitNames } | null = null;
   /** Indices of the classical settings that are drawn, in the order in which they were chosen. */
   let chosen: number[] = [];
+  let own: OwnRun | null = null;
   const title = h("h2", { id: uniqueId("emulation") }, "Emulation of a nonlinear controller");
   const judgement = h("p", {});
   const table = h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Settings of both levels" });
   const facts = h("dl", {});
+  const note = h("p", { class: "hint", hidden: true });
   const charts = plotGrid(announce);
   const scenario = choiceField({ label: "Scenario", choices: [], pointer: () => null }, new FormErrors());
-  scenario.input.addEventListener("change", draw);
+  const hand = handSettings((run) => {
+    own = run;
+    sayCost();
+    draw();
+  });
+  scenario.input.addEventListener("change", () => hand.setScenario(scenarioShown()));
   const element = h(
     "section",
     { class: "card emulation", "aria-labelledby": title.id, hidden: true },
-    h("div", { class: "emulation-head" }, title, judgement, table, facts, scenario.element),
+    h("div", { class: "emulation-head" }, title, judgement, table, facts, scenario.element, note, hand.element),
     charts.element,
   );
+
+  const scenarioShown = (): EmulationScenario | undefined =>
+    shown?.entry.emulation?.scenarios?.[Number(scenario.input.value) || 0];
+
+  /** Beside the same sum over the emulating PID's own samples, so that both are as exact. */
+  function sayCost(): void {
+    const emulation = shown?.entry.emulation;
+    const at = scenarioShown();
+    if (!own || !emulation || !at?.y || !at.u) return hand.say("");
+    const [tried, best] = [costOf(emulation, at, own), costOf(emulation, at, { t: at.t, y: at.y, u: at.u })];
+    hand.say(tried === null ? "" : `J of this scenario ${formatNumber(tried)}; of the optimum ${formatNumber(best)}`);
+  }
 
   function draw(): void {
     const emulation = shown?.entry.emulation;
     if (!shown || !emulation) return;
+    const at = scenarioShown();
+    note.textContent = at ? scenarioNotes(at) : "";
+    note.hidden = note.textContent === "";
     const rows = levelRows(shown.entry);
     const names = chosen.map((index) => ({ index, name: rows[index]!.title }));
-    charts.show("run", emulationFrame(emulation, Number(scenario.input.value) || 0, names, shown.plant, shown.units));
+    charts.show(
+      "run",
+      emulationFrame(emulation, Number(scenario.input.value) || 0, names, shown.plant, shown.units, own),
+    );
   }
 
   function choose(index: number, draws: boolean): void {
@@ -48,7 +85,10 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
     for (const box of table.querySelectorAll<HTMLInputElement>("input"))
       box.disabled = !box.checked && chosen.length >= LEVEL_ONE_LOOKS.length;
     // Only the first scenario is run with them.
-    scenario.input.value = "0";
+    if (scenario.input.value !== "0" && draws) {
+      scenario.input.value = "0";
+      hand.setScenario(scenarioShown());
+    }
     draw();
   }
 
@@ -86,19 +126,26 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
   function settingsRow(row: LevelRow, entry: Entry): HTMLElement {
     const emulation = entry.emulation!;
     const own = row.level1 === null;
-    const name = h("span", {}, row.title, h("span", { class: "origin" }, row.why && !own ? row.why : row.origin));
+    const name = h("span", {}, row.title, row.origin ? h("span", { class: "origin" }, row.origin) : null);
+    const parameters = tunedParameters(emulation);
+    const refused = row.settings.Kp === undefined;
     return h(
       "tr",
       { class: own ? "own" : null },
       h("th", { scope: "row" }, own ? name : h("label", { class: "check" }, drawBox(row), name)),
-      tunedParameters(emulation).map((parameter) => {
-        const value = row.settings[parameter];
-        const bound = own ? boundWords(emulation, parameter) : "";
-        const text = typeof value === "number" ? formatSetting(value) : DASH;
-        return h("td", { class: bound ? "at-bound" : null }, text, bound ? h("span", {}, bound) : null);
-      }),
-      h("td", { title: row.why || null }, formatNumber(row.J)),
+      refused
+        ? h("td", { class: "refused", colspan: parameters.length + 1 }, row.why)
+        : [
+            parameters.map((parameter) => settingCell(row, parameter, own ? boundWords(emulation, parameter) : "")),
+            h("td", { title: row.why || null }, formatNumber(row.J)),
+          ],
     );
+  }
+
+  function settingCell(row: LevelRow, parameter: Tuned, bound: string): HTMLElement {
+    const value = row.settings[parameter];
+    const text = typeof value === "number" ? formatSetting(value) : DASH;
+    return h("td", { class: bound ? "at-bound" : null }, text, bound ? h("span", {}, bound) : null);
   }
 
   function drawBox(row: LevelRow): HTMLInputElement {
@@ -107,7 +154,7 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
       type: "checkbox",
       checked: chosen.includes(index),
       disabled: !row.drawable,
-      "aria-label": `Draw ${row.title} ${row.origin}`,
+      "aria-label": `Draw ${row.title} ${row.origin}`.trim(),
     });
     box.addEventListener("change", () => choose(index, box.checked));
     return box;
@@ -122,7 +169,7 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
       h("th", { scope: "row" }, "Bounds of the search"),
       tunedParameters(entry.emulation!).map((name) => {
         const range = bounds[name];
-        return h("td", {}, range ? `${formatSetting(range[0])} … ${formatSetting(range[1])}` : "");
+        return h("td", {}, range ? `${formatBound(range[0])} … ${formatBound(range[1])}` : "");
       }),
       h("td", {}),
     );
@@ -151,9 +198,14 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
         scenario.input.replaceChildren(
           ...scenarios.map((item, index) => h("option", { value: index }, scenarioWords(item))),
         );
+        hand.show(entry, plant, units);
+        hand.setScenario(scenarios[0]);
       }
       draw();
     },
-    dispose: charts.dispose,
+    dispose() {
+      hand.dispose();
+      charts.dispose();
+    },
   };
 }

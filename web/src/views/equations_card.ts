@@ -72,7 +72,7 @@ export function equationsCard(errors: FormErrors, active: () => boolean, events:
       h(
         "p",
         { class: "hint" },
-        "You know the balances, and they are not linear: every controller is tuned on their linearisation and tried on the equations themselves.",
+        "You know the balances, and they are not linear: every controller is tuned on their linearisation and tried on the equations themselves. The method emulation is tuned on the equations too.",
       ),
       choice.element,
     ),

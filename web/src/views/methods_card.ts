@@ -87,14 +87,20 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     found.textContent = `${others.filter((row) => !row.element.hidden).length} shown, ${chosen} chosen`;
   }
 
-  /** Position of a row among the chosen ones, which is its index in `tune`. */
-  const position = (row: Row): number => rows.filter((other) => other.chosen.checked).indexOf(row);
+  /** In the order of `tune`: as the loaded request had them, then as they stand here. */
+  function chosenRows(): Row[] {
+    const place = (row: Row): number => {
+      const at = wanted.findIndex((entry) => entry.method === row.method.id);
+      return at < 0 ? wanted.length : at;
+    };
+    return rows.filter((row) => row.chosen.checked).sort((a, b) => place(a) - place(b));
+  }
 
   function makeRow(method: Method): Row {
     const chosen = h("input", { type: "checkbox", id: `method-${method.id}` });
     const row: Row = { method, chosen, fields: [], rest: {}, element: h("div"), options: h("div") };
     const pointer = (path: string[]) => (): string | null =>
-      chosen.checked ? `/tune/${position(row)}/${path.join("/")}` : null;
+      chosen.checked ? `/tune/${chosenRows().indexOf(row)}/${path.join("/")}` : null;
     row.fields = fieldsOf(method.options)
       .filter((spec) => spec.path[0] !== "method")
       .map((spec) => ({ spec, field: optionField(spec, pointer(spec.path), errors) }));
@@ -172,6 +178,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
         row,
         wanted.find((entry) => entry.method === row.method.id),
       );
+    if (wanted.some((entry) => entry.method !== rows[0]?.method.id))
+      list.querySelector("details.rules")?.setAttribute("open", "");
     filter();
   }
 
@@ -208,20 +216,17 @@ export function methodsCard(errors: FormErrors): MethodsCard {
       // Without the service's list the default of the contract holds.
       if (rows.length === 0) return { tune: wanted, errors: [] };
       const faults: FieldError[] = [];
-      const tune = rows
-        .filter((row) => row.chosen.checked)
-        .map((row, index) => {
-          const entry: TuneEntry = { method: row.method.id, ...row.rest };
-          for (const { spec, field } of row.fields) {
-            const parsed = readField(spec, field.input.value);
-            if (parsed.ok) place(entry, spec.path, parsed.value);
-            else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
-          }
-          for (const drawn of DRAWN_OPTIONS)
-            if (entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn))
-              entry[drawn] = true;
-          return entry;
-        });
+      const tune = chosenRows().map((row, index) => {
+        const entry: TuneEntry = { method: row.method.id, ...row.rest };
+        for (const { spec, field } of row.fields) {
+          const parsed = readField(spec, field.input.value);
+          if (parsed.ok) place(entry, spec.path, parsed.value);
+          else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
+        }
+        for (const drawn of DRAWN_OPTIONS)
+          if (entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn)) entry[drawn] = true;
+        return entry;
+      });
       if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });
       return { tune, errors: faults };
     },
@@ -229,7 +234,6 @@ export function methodsCard(errors: FormErrors): MethodsCard {
       // A comparison of all methods is a button, not a choice of each.
       wanted = tune === undefined || asksForAll(tune) ? DEFAULT_TUNE : (tune as TuneEntry[]);
       show();
-      if (wanted.length > 1) list.querySelector("details.rules")?.setAttribute("open", "");
     },
   };
 }

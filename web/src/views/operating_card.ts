@@ -4,7 +4,7 @@ import { h, mathElement } from "../dom.ts";
 import { plantFormula } from "../form/formula.ts";
 import { rootsOf, rootWords, transferFunction } from "../words/linear_model.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
-import { inputOf } from "../words/plant.ts";
+import { inputOf, outputName } from "../words/plant.ts";
 
 /** So many digits show that a given state was only near the steady one. */
 const DIGITS = 6;
@@ -34,14 +34,17 @@ export function operatingCard(result: Result, request: TuningRequest | undefined
         Object.entries(point.states).map(([name, value]) =>
           row(name, value, typeof given[name] === "number" ? formatNumber(given[name], DIGITS) : ""),
         ),
-        row(withUnit(`u: ${input}`, units.u), point.u),
-        row(withUnit(`y: ${String(plant?.["output"] ?? "output")}`, units.y), point.y),
+        row(withUnit(named("u", input), units.u), point.u),
+        row(withUnit(named("y", outputName(plant)), units.y), point.y),
       ),
     ),
     ...linearModel(result.linear_model, units.time),
     equationsOf(plant),
   );
 }
+
+/** "u: Tj"; "u" alone where it has no other name. */
+const named = (symbol: string, name: string): string => (name === symbol ? symbol : `${symbol}: ${name}`);
 
 function linearModel(model: Plant | undefined, time: string): HTMLElement[] {
   const transfer = transferFunction(model);
@@ -78,6 +81,7 @@ function equationsOf(plant: Plant | undefined): HTMLElement | null {
   const parameters = Object.entries((plant?.["parameters"] ?? {}) as Record<string, number | string>);
   const lines = [
     ...equations.map(([name, text]) => `d${name}/dt = ${text}`),
+    `y = ${String(plant?.["output"] ?? "")}`,
     ...parameters.map(([name, value]) => `${name} = ${value}`),
   ];
   return h(

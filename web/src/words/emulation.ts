@@ -25,15 +25,16 @@ const ORIGINS: Record<string, string> = {
 };
 
 function levelOneRow(item: LevelOne, index: number): LevelRow {
-  const error = typeof item.error === "string" ? item.error : (item.error?.detail ?? item.error?.title ?? "");
   const { controller } = item;
+  const why = item.error || item.ended || item.why_null?.["J"] || "There is no J of these settings.";
   return {
     title: item.title ?? item.method.replaceAll("_", " "),
-    origin: ORIGINS[item.test ?? ""] ?? "",
+    // Titles that end in brackets say it themselves.
+    origin: item.title?.endsWith(")") ? "" : (ORIGINS[item.test ?? ""] ?? ""),
     level1: index,
     settings: controller ? { Kp: controller.Kp, Ti: controller.Ti, Td: controller.Td ?? 0 } : {},
     J: item.J ?? null,
-    why: error || (typeof item.J === "number" ? "" : (item.why_null?.["J"] ?? "There is no J of these settings.")),
+    why: typeof item.J === "number" ? "" : why,
     drawable: Boolean(item.y && item.u),
   };
 }
@@ -91,12 +92,13 @@ export function flatnessWords(emulation: Emulation): string {
 export function emulationFacts(emulation: Emulation, units: UnitNames): [string, string][] {
   const facts: [string, string][] = [];
   const { J, J_y, J_u, weights, horizon, relative_degree, zeros, target } = emulation;
+  const { wy = 1, wu = 1 } = weights ?? {};
   const parts = [
-    typeof J_y === "number" ? `${formatNumber(J_y)} of y` : "",
-    typeof J_u === "number" ? `${formatNumber(J_u)} of u` : "",
+    typeof J_y === "number" ? `${formatParameter(wy)} × ${formatNumber(J_y)} of y` : "",
+    typeof J_u === "number" ? `${formatParameter(wu)} × ${formatNumber(J_u)} of u` : "",
   ].filter(Boolean);
-  facts.push(["J", `${formatNumber(J, 4)}${parts.length > 0 ? `: ${parts.join(", ")}` : ""}`]);
-  if (weights) facts.push(["Weights", `wy ${formatParameter(weights.wy)}, wu ${formatParameter(weights.wu)}`]);
+  facts.push(["J", [formatNumber(J, 4), parts.join(" + ")].filter(Boolean).join(" = ")]);
+  if (typeof J_y !== "number" && emulation.why_null?.["J_y"]) facts.push(["y in J", emulation.why_null["J_y"]]);
   if (typeof horizon === "number") facts.push(["Horizon", `${formatParameter(horizon)} ${units.time}`]);
   const flat = flatnessWords(emulation);
   if (flat) facts.push(["Flatness", flat]);
@@ -135,6 +137,16 @@ export function scenarioWords(scenario: EmulationScenario): string {
     ...Object.entries(scenario.parameters ?? {}).map(([name, value]) => `${name} ${formatSetting(value)}`),
   ];
   return [`set point ${signed}`, ...others].join(", ");
+}
+
+/** What is special about a scenario's run, in sentences; "" for nothing. */
+export function scenarioNotes(scenario: EmulationScenario): string {
+  return [
+    scenario.limited ? "A limit of the input clips the nonlinear controller here." : "",
+    scenario.ended ? `The PID's run ends early: ${scenario.ended}` : "",
+  ]
+    .filter(Boolean)
+    .join(" ");
 }
 
 export const unitOf = (name: Tuned, units: UnitNames): string =>

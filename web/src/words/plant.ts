@@ -59,11 +59,17 @@ export function plantWords(plant: Plant, units: UnitNames): string {
   return parts.length > 0 ? parts.join(", ") : plantTitle(plant.type);
 }
 
+/** What is measured: the state, or "y" for an expression. */
+export const outputName = (plant: Plant | undefined): string => {
+  const output = plant?.["output"];
+  return typeof output === "string" && /^\w+$/.test(output) ? output : "y";
+};
+
 function equationWords(plant: Plant, units: UnitNames): string {
   const states = Object.keys((plant["states"] as object | undefined) ?? {}).length;
   const parts = [
     `${states} ${states === 1 ? "state" : "states"}`,
-    `from ${inputOf(plant)?.name ?? "u"} to ${String(plant["output"])}`,
+    `from ${inputOf(plant)?.name ?? "u"} to ${outputName(plant)}`,
   ];
   if (plant.L) parts.push(`L ${formatParameter(plant.L)} ${units.time}`);
   return parts.join(", ");

@@ -1,4 +1,5 @@
 #include "api/contract/methods.h"
+#include "api/contract/method_options.h"
 
 #include "api/describe/suggest.h"
 #include "api/service.h"

@@ -19,7 +19,4 @@ Codec<std::vector<MethodRequest>> tune_list();
 /// Options given, over the defaults of those that have one.
 void write_options(const std::string& method, const MethodOptions& options, Writer& out);
 
-/// The options of a method as a JSON Schema.
-Json options_schema(const std::vector<OptionDescription>& options);
-
 }  // namespace tunewright::api

@@ -1,6 +1,7 @@
 // What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +14,14 @@
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/tuning/arrieta_report.h"
+#include "engine/tuning/emulation_report.h"
 #include "engine/tuning/options.h"
 #include "engine/tuning/rimc_report.h"
 #include "engine/warning.h"
 
 namespace tunewright {
+
+class NonlinearSystem;
 
 /// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j];
 /// empty: no feasible Kp.
@@ -34,6 +38,7 @@ struct TunedController {
     std::optional<CostSurface> surface;
     std::optional<RimcReport> rimc;
     std::optional<ArrietaReport> arrieta;
+    std::optional<EmulationReport> emulation;
     bool partial = false;  ///< stopped early: the best feasible design so far
 };
 
@@ -76,6 +81,7 @@ struct TuningMethod {
     /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
     /// integral action, or the defaults.
     std::vector<MethodVariant> variants = {};
+    bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
     Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
     /// For a plant known by measured points of its frequency response; null: the method needs a model.
     Expected<TunedController> (*tune_on_points)(const MeasuredPlant&, const MethodOptions&,

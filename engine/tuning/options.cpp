@@ -54,9 +54,38 @@ std::optional<std::string> value_misfit(const OptionDescription& option, const O
             return option.name + " is " + shown(value) + "; it must be true or false.";
         case OptionType::choice:
             return option.name + " is " + shown(value) + "; it must be one of " + listed(option.choices) + ".";
-        case OptionType::object: return option.name + " must be an object.";
+        case OptionType::text:
+            if (word) return std::nullopt;
+            return option.name + " is " + shown(value) + "; it must be a text.";
+        case OptionType::number_or_range:
+        case OptionType::complex:
+            if (number) return number_misfit(option, *number);
+            return option.name + " is " + shown(value) + "; it must be a number or a pair of numbers.";
+        case OptionType::range: return option.name + " must be a pair of numbers.";
+        case OptionType::list: return option.name + " must be a list.";
+        case OptionType::object:
+        case OptionType::numbers_by_name: return option.name + " must be an object.";
     }
     return std::nullopt;
+}
+
+// What an option of several values is made of, for the part of the path behind its name.
+std::optional<std::string> part_misfit(const OptionDescription& option, const std::string& rest,
+                                       const OptionValue& value) {
+    const std::size_t slash = rest.find('/');
+    switch (option.type) {
+        case OptionType::object: return misfit(option.fields, rest, value);
+        case OptionType::list:
+            if (slash == std::string::npos) return value_misfit(option.fields.front(), value);
+            return part_misfit(option.fields.front(), rest.substr(slash + 1), value);
+        case OptionType::range:
+        case OptionType::number_or_range:
+        case OptionType::complex:
+        case OptionType::numbers_by_name:
+            if (const auto* number = std::get_if<double>(&value)) return number_misfit(option, *number);
+            return option.name + " is " + shown(value) + "; it must be a number.";
+        default: return option.name + " has no parts.";
+    }
 }
 
 }  // namespace
@@ -72,13 +101,35 @@ std::optional<std::string> misfit(const std::vector<OptionDescription>& options,
         return name + " is none of " + listed(names) + ".";
     }
     if (slash == std::string::npos) return value_misfit(*option, value);
-    return misfit(option->fields, path.substr(slash + 1), value);
+    return part_misfit(*option, path.substr(slash + 1), value);
 }
 
 std::optional<double> MethodOptions::number(const std::string& path) const { return find<double>(values_, path); }
 std::optional<bool> MethodOptions::boolean(const std::string& path) const { return find<bool>(values_, path); }
 std::optional<std::string> MethodOptions::text(const std::string& path) const {
     return find<std::string>(values_, path);
+}
+
+std::optional<NumberRange> MethodOptions::range(const std::string& path) const {
+    const auto low = number(path + "/0"), high = number(path + "/1");
+    if (!low || !high) return std::nullopt;
+    return NumberRange{*low, *high};
+}
+
+std::size_t MethodOptions::size(const std::string& path) const {
+    std::size_t elements = 0;
+    for (const std::string& index : names(path)) elements = std::max(elements, std::size_t{std::stoul(index)} + 1);
+    return elements;
+}
+
+std::vector<std::string> MethodOptions::names(const std::string& path) const {
+    const std::string prefix = path + "/";
+    std::vector<std::string> below;
+    for (auto at = values_.lower_bound(prefix); at != values_.end() && at->first.starts_with(prefix); ++at) {
+        const std::string name = at->first.substr(prefix.size(), at->first.find('/', prefix.size()) - prefix.size());
+        if (below.empty() || below.back() != name) below.push_back(name);
+    }
+    return below;
 }
 
 }  // namespace tunewright

@@ -16,7 +16,13 @@ enum class OptionType {
     boolean,
     choice,
     object,
-    number_or_word,  ///< a number within the limits, or one of `choices`
+    number_or_word,   ///< a number within the limits, or one of `choices`
+    text,             ///< any short text; whoever takes it knows what suits
+    range,            ///< [low, high], both within the limits, low < high
+    number_or_range,  ///< either
+    complex,          ///< a number, or [re, im]
+    list,             ///< elements as `fields.front()` describes them
+    numbers_by_name,  ///< an object of numbers under names that the request chooses
 };
 
 struct OptionDescription {
@@ -27,14 +33,20 @@ struct OptionDescription {
     std::optional<std::variant<bool, double, std::string>> default_value = {};
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};  ///< of a number
     std::vector<std::string> choices = {};                                     ///< words of a choice
-    std::vector<OptionDescription> fields = {};                                ///< of an object
+    std::vector<OptionDescription> fields = {};                                ///< of an object; of a list: one
     int at_most_fields = 0;  ///< of an object: 0, any number may be given
+    bool required = false;   ///< of an object's field
+    int most = 100;          ///< of a list: elements, of numbers_by_name: names; at least one
 };
 
 using OptionValue = std::variant<bool, double, std::string>;
 
-/// Values by path: "Ms", "filter/Tf", "reduction/method". Only what the user gave; already checked against the
-/// description.
+struct NumberRange {
+    double low = 0, high = 0;
+};
+
+/// Values by path: "Ms", "filter/Tf", "bounds/Kp/0" (low) and "bounds/Kp/1" (high), "scenarios/1/initial/T". Only what
+/// the user gave; already checked against the description.
 class MethodOptions {
 public:
     void set(const std::string& path, OptionValue value) { values_[path] = std::move(value); }
@@ -42,6 +54,11 @@ public:
     std::optional<double> number(const std::string& path) const;
     std::optional<bool> boolean(const std::string& path) const;
     std::optional<std::string> text(const std::string& path) const;
+    std::optional<NumberRange> range(const std::string& path) const;
+    /// Elements of the list at `path`; 0 where it was not given.
+    std::size_t size(const std::string& path) const;
+    /// What was given right below `path`, in the order of names: fields, or the names of numbers_by_name.
+    std::vector<std::string> names(const std::string& path) const;
     const std::map<std::string, OptionValue>& values() const { return values_; }
 
 private:

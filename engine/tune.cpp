@@ -257,6 +257,7 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     }
     entry.reduced_model = tuned->reduced_model;
     entry.surface = tuned->surface;
+    entry.emulation = std::move(tuned->emulation);
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, answered(*tuned), tuned->warnings);
@@ -357,11 +358,13 @@ bool Run::wants_optima() const {
 }
 
 Expected<TuningResult> Run::result() {
-    const auto planned = plan_rows(request_.tune);
+    auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
     if (!measured_)
         if (const auto error = state_problem()) return *error;
+    if (!problem_ || !problem_->nonlinear)
+        std::erase_if(*planned, [](const PlannedRow& row) { return row.of_all && row.method->all_if_nonlinear; });
 
     const double start = result_.model ? kIdentifyShare : 0;
     const double tuned = wants_optima() ? start + (1 - start) * kRowsShare : 1;

@@ -38,6 +38,7 @@ struct TuningEntry {
     std::optional<RimcEntry> rimc;
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<TradeoffEntry> tradeoff;
+    std::optional<EmulationReport> emulation;
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 };

@@ -2,6 +2,7 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/data_quality.h"
+#include "api/contract/emulation.h"
 #include "api/contract/evaluation.h"
 #include "api/contract/limit_cycle.h"
 #include "api/contract/methods.h"
@@ -121,6 +122,8 @@ const Description<TuningEntry>& entry_contract() {
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");
         d.field("tradeoff", &TuningEntry::tradeoff, maybe(answer(tradeoff_contract())),
                 "Servo against regulation: of the methods arrieta_*, and of any controller with evaluate.tradeoff.");
+        d.field("emulation", &TuningEntry::emulation, maybe(answer(emulation_contract())),
+                "Of the method emulation: both levels, and the nonlinear controller's own run.");
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },

@@ -25,7 +25,7 @@ struct LevelOneRow {
     std::string test;    ///< step, relay or linear: what its model comes from
     std::string title;
     std::optional<Plant> model;  ///< that its rule worked on
-    std::optional<Pid> controller;
+    std::optional<Controller> controller;
     std::string error;            ///< in place of the controller
     std::optional<double> J;      ///< as the second level counts it; empty where the run ended early
     std::string ended;            ///< why it did

@@ -1,7 +1,7 @@
 // The OpenAPI document, the methods and the examples that are served.
 #include <set>
 
-#include "api/contract/methods.h"
+#include "api/contract/method_options.h"
 #include "support.h"
 
 namespace tunewright::api {

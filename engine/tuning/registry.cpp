@@ -5,6 +5,7 @@
 #include "engine/tuning/arrieta.h"
 #include "engine/tuning/chien_hrones_reswick.h"
 #include "engine/tuning/cohen_coon.h"
+#include "engine/tuning/emulation.h"
 #include "engine/tuning/gain_phase_margin.h"
 #include "engine/tuning/haalman.h"
 #include "engine/tuning/imc.h"
@@ -37,6 +38,7 @@ const std::vector<TuningMethod>& method_registry() {
         npid_ise_method(),
         npid_iae_method(),
         npid_itae_method(),
+        emulation_method(),
         amigo_method(),
         simc_method(),
         lambda_method(),

@@ -1,0 +1,204 @@
+#include "engine/tuning/emulation/level_one.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/identify.h"
+#include "engine/number_text.h"
+#include "engine/simulation/nonlinear_experiments.h"
+#include "engine/tuning/emulation/target.h"
+
+namespace tunewright::emulation {
+namespace {
+
+constexpr double kHysteresis = 0.1;  // of what the relay moves y by in the long run, where there is no dead time
+
+class FirstLevel {
+public:
+    FirstLevel(const Problem& problem, const RunControl& control)
+        : problem_(problem), control_{control.stop, nullptr, nullptr} {}
+
+    std::vector<LevelOneRow> rows() {
+        for (const std::string& method : problem_.level_one.methods) {
+            if (control_.stop.stop_requested()) break;
+            if (method == "imc") {
+                by_step_test();
+                by_linear_model(method, imc_options("maclaurin"));
+            } else if (method == "ziegler_nichols_ultimate") {
+                by_oscillation();
+            } else {
+                by_linear_model(method, {});
+            }
+        }
+        return std::move(rows_);
+    }
+
+private:
+    LevelOneRow& add(const std::string& method, const std::string& test, const std::string& how) {
+        LevelOneRow row;
+        row.method = method;
+        row.test = test;
+        row.title = find_method(method)->title + " (" + (problem_.with_derivative ? "PID, " : "PI, ") + how + ")";
+        rows_.push_back(std::move(row));
+        return rows_.back();
+    }
+
+    MethodOptions imc_options(const std::string& expansion) const {
+        MethodOptions options;
+        options.set("lambda", problem_.level_one.lambda);
+        options.set("filter_order", 1.0);
+        options.set("expansion", problem_.with_derivative ? expansion : std::string("maclaurin"));
+        return options;
+    }
+
+    /// The method's settings on this plant. Of a PID as PI the derivative is left out: the first two terms of its
+    /// series.
+    void settle(LevelOneRow& row, const Plant& plant, const LinearPlant& linear, MethodOptions options) const {
+        const TuningMethod& method = *find_method(row.method);
+        const std::string wanted = problem_.with_derivative ? "PID" : "PI";
+        const auto choice = std::ranges::find(method.options, "controller", &OptionDescription::name);
+        if (choice != method.options.end()) {
+            if (const auto fault = misfit(method.options, "controller", wanted)) {
+                row.error = *fault;
+                return;
+            }
+            options.set("controller", wanted);
+        }
+        const auto tuned = method.tune({plant, linear, std::nullopt, std::nullopt}, options, control_);
+        if (!tuned) {
+            row.error = tuned.error().message;
+            return;
+        }
+        if (tuned->reduced_model) row.model = tuned->reduced_model;
+        Pid pid = tuned->controller;
+        if (tuned->nonlinear_integral || (!problem_.with_derivative && pid.Td > 0 && row.method != "imc")) {
+            row.error = method.id + " has no linear " + wanted + " controller.";
+            return;
+        }
+        if (!problem_.with_derivative) pid = {.Kp = pid.Kp, .Ti = pid.Ti};
+        row.controller = controller_at(problem_, {pid.Kp, pid.Ti, pid.Td, problem_.Tf});
+    }
+
+    void by_linear_model(const std::string& method, const MethodOptions& options) {
+        LevelOneRow& row = add(method, "linear", "linearised model");
+        settle(row, problem_.system->linearised(), *problem_.linear, options);
+    }
+
+    void by_step_test() {
+        LevelOneRow& row = add("imc", "step", "step test");
+        const auto test = simulate_step_test(*problem_.system, problem_.level_one.test_step, control_);
+        if (!test) {
+            row.error = test.error().message;
+            return;
+        }
+        Record record;
+        record.t = test->t;
+        record.u = test->u;
+        record.y = test->y;
+        record.kind = RecordKind::step;
+        record.u0 = record.y0 = 0;
+        const auto model = identify(
+            record, {.model = ModelChoice::fopdt, .method = IdentifyMethod::output_error, .shift = {}}, control_);
+        if (!model) {
+            row.error = model.error().message;
+            return;
+        }
+        row.model = model->plant;
+        const auto linear = LinearPlant::make(model->plant);
+        if (!linear) {
+            row.error = linear.error().message;
+            return;
+        }
+        settle(row, model->plant, *linear, imc_options("pade"));
+    }
+
+    /// The relay test; where the plant does not oscillate under it, the linearisation's ultimate point.
+    void by_oscillation() {
+        LevelOneRow& row = add("ziegler_nichols_ultimate", "relay", "relay test");
+        const double amplitude = problem_.level_one.relay_amplitude;
+        const double swing = amplitude * gain_size(*problem_.linear, plant_time(*problem_.linear));
+        const double hysteresis =
+            problem_.level_one.relay_hysteresis.value_or(problem_.system->dead_time() > 0 ? 0 : kHysteresis * swing);
+        const auto test = simulate_relay_test(*problem_.system, amplitude, hysteresis, control_);
+        if (!test) {
+            row.error = test.error().message;
+            by_linear_model("ziegler_nichols_ultimate", {});
+            return;
+        }
+        MethodOptions options;
+        options.set("Ku", test->reversed ? -test->Ku : test->Ku);
+        options.set("Pu", test->Pu);
+        settle(row, problem_.system->linearised(), *problem_.linear, options);
+    }
+
+    const Problem& problem_;
+    RunControl control_;
+    std::vector<LevelOneRow> rows_;
+};
+
+// The magnitudes of one parameter over the rows.
+std::vector<double> magnitudes(const std::vector<Pid>& settings, double Pid::*member) {
+    std::vector<double> values;
+    for (const Pid& pid : settings)
+        if (const double value = std::abs(pid.*member); value > 0 && std::isfinite(value)) values.push_back(value);
+    return values;
+}
+
+NumberRange widened(const std::vector<double>& values, NumberRange alpha) {
+    const auto [least, most] = std::ranges::minmax(values);
+    return {alpha.low * least, alpha.high * most};
+}
+
+Error nothing_to_start_from(const std::vector<LevelOneRow>& rows) {
+    std::string reasons;
+    for (const LevelOneRow& row : rows)
+        reasons += " " + row.title + ": " + (row.error.empty() ? "no integral action." : row.error);
+    return {ErrorKind::no_feasible_controller, "bounds_from",
+            "The first level has no settings that bounds could follow from; give bounds of Kp, Ti and Td." + reasons};
+}
+
+}  // namespace
+
+Expected<std::vector<LevelOneRow>> level_one(const Problem& problem, const RunControl& control) {
+    auto rows = FirstLevel(problem, control).rows();
+    if (control.stop.stop_requested())
+        return Error{ErrorKind::cancelled, "", "The job was cancelled before a design was found."};
+    return rows;
+}
+
+Expected<Bounds> search_bounds(const Problem& problem, const std::vector<LevelOneRow>& rows) {
+    std::map<std::string, NumberRange> ranges = problem.bounds;
+    double sign = 0;  // that of the first row: an unstable plant's gain does not tell
+    std::vector<Pid> settings;
+    for (const LevelOneRow& row : rows) {
+        const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
+        if (pid == nullptr) continue;
+        if (sign == 0) sign = pid->Kp < 0 ? -1 : 1;
+        if (sign * pid->Kp > 0) settings.push_back(*pid);
+    }
+    const bool complete =
+        ranges.contains("Kp") && ranges.contains("Ti") && (!problem.with_derivative || ranges.contains("Td"));
+    if (!complete && settings.empty()) return nothing_to_start_from(rows);
+    const NumberRange alpha = problem.level_one.alpha;
+    if (!ranges.contains("Kp")) {
+        const NumberRange size = widened(magnitudes(settings, &Pid::Kp), alpha);
+        ranges["Kp"] = sign > 0 ? size : NumberRange{-size.high, -size.low};
+    }
+    if (!ranges.contains("Ti")) {
+        const auto times = magnitudes(settings, &Pid::Ti);
+        if (times.empty()) return nothing_to_start_from(rows);
+        ranges["Ti"] = widened(times, alpha);
+    }
+    if (problem.with_derivative && !ranges.contains("Td")) {
+        const auto times = magnitudes(settings, &Pid::Td);
+        ranges["Td"] = times.empty() ? NumberRange{0, ranges["Ti"].high / 4} : widened(times, alpha);
+    }
+    Bounds bounds;
+    for (const std::string& name : unknowns(problem)) {
+        bounds.low.push_back(ranges[name].low);
+        bounds.high.push_back(ranges[name].high);
+    }
+    return bounds;
+}
+
+}  // namespace tunewright::emulation

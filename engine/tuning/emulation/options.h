@@ -1,0 +1,12 @@
+// Options of the method emulation.
+#pragma once
+
+#include <vector>
+
+#include "engine/tuning/options.h"
+
+namespace tunewright::emulation {
+
+std::vector<OptionDescription> described_options();
+
+}  // namespace tunewright::emulation

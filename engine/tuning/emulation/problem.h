@@ -1,0 +1,65 @@
+// The emulation problem: which runs of which plants a PID is to resemble, counted how, within which bounds.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/plant/lie_derivatives.h"
+#include "engine/simulation/linearising_response.h"
+#include "engine/tuning/method.h"
+
+namespace tunewright::emulation {
+
+/// One run: a set-point step on the plant at rest, or from other states, or of a plant with other parameters (which
+/// starts at its own steady state; the nonlinear controller knows it).
+struct Scenario {
+    double setpoint_step = 0;
+    std::map<std::string, double> initial, parameters;
+    std::shared_ptr<const NonlinearSystem> system;
+    std::vector<double> x0;  ///< absolute states at t = 0; empty: the steady state
+};
+
+/// Where the first level's rules and tests come from.
+struct LevelOneOptions {
+    std::vector<std::string> methods;  ///< ids of the registry
+    NumberRange alpha;                 ///< of Eq. 3, on magnitudes
+    double lambda = 0;                 ///< of imc
+    double test_step = 0;              ///< of u
+    double relay_amplitude = 0;        ///< of u
+    std::optional<double> relay_hysteresis;
+};
+
+struct Problem {
+    std::shared_ptr<const NonlinearSystem> system;
+    const LinearPlant* linear = nullptr;  ///< its linearisation
+    int relative_degree = 1;
+    ZeroDynamics zero_dynamics;
+    TargetResponse target;
+    std::vector<Scenario> scenarios;
+    bool with_derivative = true;    ///< PID, else PI
+    bool error_derivative = false;  ///< c = 1: the set-point step is differentiated
+    bool remark6 = false;
+    double horizon = 0;
+    double wy = 0, wu = 1;
+    double Tf = 0;                              ///< of a PID; the middle of its range where it is free
+    std::map<std::string, NumberRange> bounds;  ///< as given: of Kp, Ti, Td, and of Tf where it is free
+    LevelOneOptions level_one;
+    std::vector<Warning> warnings;
+
+    bool free_Tf() const { return bounds.contains("Tf"); }
+};
+
+/// Intervals of every run's samples, even for Simpson's rule.
+constexpr int kIntervals = 800;
+
+/// From the options; what they leave out comes from the linearisation (docs/methods.md). Errors: invalid_argument with
+/// the option as `where`; those of the relative degree with `where` = "plant/...".
+Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions& options);
+
+/// Magnitude of the linearisation's static gain; of an integrating plant the gain at frequency 1/time.
+double gain_size(const LinearPlant& plant, double time);
+
+}  // namespace tunewright::emulation

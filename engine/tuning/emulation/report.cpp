@@ -1,0 +1,187 @@
+#include "engine/tuning/emulation/report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/emulation/flatness.h"
+#include "engine/tuning/emulation/search.h"
+
+namespace tunewright::emulation {
+namespace {
+
+constexpr double kOnBound = 1e-6;    // of the range
+constexpr double kLeftOfU = 0.1;     // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
+constexpr double kLeftOfY = 0.05;    // of int y_nl^2, likewise
+constexpr double kLeastSize = 1e-3;  // of an unknown near 0, relative to its range
+constexpr int kTold = 2;             // every second sample is told
+
+std::vector<double> told(const std::vector<double>& samples, double rest) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < samples.size(); i += kTold) values.push_back(rest + samples[i]);
+    return values;
+}
+
+std::vector<double> told_times(std::size_t samples, double horizon) {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < samples; i += kTold) times.push_back(horizon * static_cast<double>(i) / kIntervals);
+    return times;
+}
+
+double share_left(const std::vector<double>& wanted, const std::vector<double>& done, double size,
+                  const std::vector<double>& weights) {
+    double left = 0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const double difference = wanted[i] - (i < done.size() ? done[i] : 0);
+        left += weights[i] * difference * difference;
+    }
+    return size > 0 ? left / size : 0;
+}
+
+std::string percent(double share) { return text(100 * share) + " %"; }
+
+void judge_fit(EmulationFit& fit) {
+    fit.adequate = fit.u_left <= kLeftOfU && fit.y_left <= kLeftOfY;
+    const std::string figures = "of int (u_nl - u_rest)^2 it leaves " + percent(fit.u_left) +
+                                ", of int (y_nl - y_rest)^2 " + percent(fit.y_left);
+    fit.sentence = fit.adequate ? "The PID follows the nonlinear controller: " + figures + "."
+                                : "No PID within the bounds can follow this nonlinear controller: " + figures +
+                                      " (up to " + percent(kLeftOfU) + " and " + percent(kLeftOfY) +
+                                      " count as following). Ask for a slower target, smaller steps or wider bounds, "
+                                      "or implement the nonlinear controller itself.";
+}
+
+void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pid& pid) {
+    const Problem& problem = criterion.problem();
+    const std::vector<double> weights = simpson_weights(problem.horizon);
+    for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {
+        const Scenario& asked = problem.scenarios[i];
+        const Trajectory& wanted = criterion.trajectories()[i];
+        const PidRun done = criterion.run(i, pid, kFineTolerance);
+        const double share = 1 / static_cast<double>(problem.scenarios.size());
+        report.fit.u_left += share * share_left(wanted.u_nl, done.u, wanted.u_size, weights);
+        report.fit.y_left += share * share_left(wanted.y_nl, done.y, wanted.y_size, weights);
+        EmulatedScenario told_of;
+        told_of.setpoint_step = asked.setpoint_step;
+        told_of.initial = asked.initial;
+        told_of.parameters = asked.parameters;
+        told_of.y_rest = asked.system->y_steady();
+        told_of.u_rest = asked.system->u_nominal();
+        told_of.t = told_times(wanted.y_nl.size(), problem.horizon);
+        told_of.y_nl = told(wanted.y_nl, told_of.y_rest);
+        told_of.u_nl = told(wanted.u_nl, told_of.u_rest);
+        told_of.y = told(done.y, told_of.y_rest);
+        told_of.u = told(done.u, told_of.u_rest);
+        told_of.limited = wanted.limited;
+        told_of.ended = done.ended;
+        report.scenarios.push_back(std::move(told_of));
+    }
+    judge_fit(report.fit);
+}
+
+void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6) {
+    const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
+    if (pid == nullptr) return;
+    const Problem& problem = criterion.problem();
+    const Judgement judgement = judge(criterion, remark6, point_of(problem, *pid));
+    row.J = judgement.J;
+    row.ended = judgement.ended;
+    const PidRun run = criterion.run(0, *pid, kFineTolerance);
+    if (row.ended.empty()) row.ended = run.ended;
+    row.t = told_times(run.y.size(), problem.horizon);
+    row.y = told(run.y, problem.scenarios.front().system->y_steady());
+    row.u = told(run.u, problem.scenarios.front().system->u_nominal());
+}
+
+void add_bounds(EmulationReport& report, const Problem& problem, const Design& design) {
+    const auto names = unknowns(problem);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const double low = design.bounds.low[i], high = design.bounds.high[i], value = design.point[i];
+        report.bounds[names[i]] = {low, high};
+        const double near = kOnBound * (high - low);
+        if (value - low > near && high - value > near) continue;
+        report.active_bounds.push_back({names[i], high - value <= near, high - value <= near ? high : low});
+    }
+}
+
+void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6, const Design& design) {
+    const Problem& problem = criterion.problem();
+    Point sizes = design.point;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+        sizes[i] = std::max(std::abs(sizes[i]), kLeastSize * (design.bounds.high[i] - design.bounds.low[i]));
+    const auto J = [&](const Point& point) {
+        return problem.remark6 ? remark6.J(point)
+                               : criterion.penalised(criterion.cost(controller_at(problem, point), kFineTolerance));
+    };
+    const auto flat = flatness(J, design.point, sizes);
+    if (!flat) return;
+    const auto names = unknowns(problem);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        report.flatness[names[i]] = flat->reoptimised[i];
+        report.flatness_alone[names[i]] = flat->alone[i];
+    }
+}
+
+Warning at_bound(const ActiveBound& bound) {
+    return {"at-bound", bound.parameter + " lies on its " + (bound.high ? "upper" : "lower") + " bound " +
+                            text(bound.value) +
+                            ": J would fall beyond it. Widen bounds, or alpha, if such values are "
+                            "acceptable."};
+}
+
+}  // namespace
+
+Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point& point) {
+    if (criterion.problem().remark6) return {remark6.J(point), {}};
+    const Cost cost = criterion.cost(controller_at(criterion.problem(), point), kFineTolerance);
+    if (!cost.ended.empty() || !std::isfinite(cost.J)) return {std::nullopt, cost.ended};
+    return {cost.J, {}};
+}
+
+EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
+                          std::vector<LevelOneRow> level_one) {
+    const Problem& problem = criterion.problem();
+    EmulationReport report;
+    report.formulation = problem.remark6 ? "remark6" : "full";
+    report.J = design.J;
+    report.J_y = design.J_y;
+    report.J_u = design.J_u;
+    report.wy = problem.wy;
+    report.wu = problem.wu;
+    report.horizon = problem.horizon;
+    report.relative_degree = problem.relative_degree;
+    report.zero_dynamics_stable = problem.zero_dynamics.stable;
+    report.zeros = problem.zero_dynamics.zeros;
+    report.beta = problem.target.beta;
+    add_bounds(report, problem, design);
+    add_scenarios(report, criterion, controller_at(problem, design.point));
+    report.level1 = std::move(level_one);
+    if (design.stopped) return report;
+    for (LevelOneRow& row : report.level1) add_runs(row, criterion, remark6);
+    add_flatness(report, criterion, remark6, design);
+    return report;
+}
+
+std::vector<Warning> remarks(const EmulationReport& report) {
+    std::vector<Warning> warnings;
+    if (!report.fit.adequate) warnings.push_back({"cannot-emulate", report.fit.sentence});
+    if (!report.zero_dynamics_stable)
+        warnings.push_back({"unstable-zero-dynamics",
+                            "The plant's zero dynamics are unstable at the operating point: under the nonlinear "
+                            "controller y follows its target while the states behind it run away. Its run to the "
+                            "horizon is emulated all the same; a robust design is safer."});
+    for (std::size_t i = 0; i < report.scenarios.size(); ++i) {
+        const EmulatedScenario& scenario = report.scenarios[i];
+        const std::string which = report.scenarios.size() > 1 ? " of scenario " + std::to_string(i + 1) : "";
+        if (scenario.limited)
+            warnings.push_back({"nonlinear-controller-limited",
+                                "A limit of the input clips the nonlinear controller's run" + which +
+                                    ": y does not follow the target there, and the PID emulates the clipped run."});
+        if (!scenario.ended.empty())
+            warnings.push_back({"left-domain", "The PID's run" + which + " ends early: " + scenario.ended});
+    }
+    for (const ActiveBound& bound : report.active_bounds) warnings.push_back(at_bound(bound));
+    return warnings;
+}
+
+}  // namespace tunewright::emulation

@@ -1,0 +1,32 @@
+// What is told of the emulating controller and of the runs that it was chosen from.
+#pragma once
+
+#include "engine/tuning/emulation/criterion.h"
+#include "engine/tuning/emulation/remark6.h"
+
+namespace tunewright::emulation {
+
+/// The answer of the second level.
+struct Design {
+    Point point;
+    Bounds bounds;
+    double J = 0, J_u = 0;
+    std::optional<double> J_y;
+    bool stopped = false;  ///< the best so far: no time is spent on flatness and the first level's runs
+};
+
+/// J as the second level counts it: by simulation, or by Remark 6. Empty with the reason where a run ended early.
+struct Judgement {
+    std::optional<double> J;
+    std::string ended;
+};
+Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point& point);
+
+EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
+                          std::vector<LevelOneRow> level_one);
+
+/// Bounds that hold the optimum, unstable zero dynamics, limits in the nonlinear controller's way, a run that ended,
+/// and Remark 7's judgement.
+std::vector<Warning> remarks(const EmulationReport& report);
+
+}  // namespace tunewright::emulation

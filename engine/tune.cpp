@@ -258,6 +258,7 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     entry.reduced_model = tuned->reduced_model;
     entry.surface = tuned->surface;
     entry.emulation = std::move(tuned->emulation);
+    if (entry.emulation && request_.evaluate.points == 0) entry.emulation->drop_traces();
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, answered(*tuned), tuned->warnings);

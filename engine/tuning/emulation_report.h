@@ -66,6 +66,11 @@ struct EmulationReport {
     EmulationFit fit;
     std::vector<LevelOneRow> level1;
     std::vector<EmulatedScenario> scenarios;
+
+    void drop_traces() {
+        for (LevelOneRow& row : level1) row.t = row.y = row.u = {};
+        for (EmulatedScenario& run : scenarios) run.t = run.y_nl = run.u_nl = run.y = run.u = {};
+    }
 };
 
 }  // namespace tunewright

@@ -1,7 +1,6 @@
 // What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,8 +47,6 @@ inline Controller answered(const TunedController& tuned) {
     if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
     return pid;
 }
-
-class NonlinearSystem;
 
 /// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
 /// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits

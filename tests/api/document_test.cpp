@@ -2,6 +2,7 @@
 #include <set>
 
 #include "api/contract/method_options.h"
+#include "api/contract/methods.h"
 #include "support.h"
 
 namespace tunewright::api {

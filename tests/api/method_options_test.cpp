@@ -57,6 +57,8 @@ Json written(const MethodOptions& options) {
     return object;
 }
 
+nlohmann::json unordered(const Json& value) { return nlohmann::json::parse(value.dump()); }
+
 TEST(MethodOptions, EveryShapeIsWrittenBackAsItWasGiven) {
     const char* text =
         R"({"bounds": {"Kp": [-2.0, -1.0]}, "Tf": [0.05, 0.2], "poles": [-1.0, [-2.0, 3.0], [-2.0, -3.0]],
@@ -64,7 +66,7 @@ TEST(MethodOptions, EveryShapeIsWrittenBackAsItWasGiven) {
             "methods": ["imc", "simc"]})";
     const Outcome outcome = read(text);
     EXPECT_THAT(outcome.faults, testing::IsEmpty());
-    EXPECT_EQ(written(outcome.options), Json::parse(text));
+    EXPECT_EQ(unordered(written(outcome.options)), unordered(Json::parse(text)));
 }
 
 TEST(MethodOptions, ListsOfMoreThanTenKeepTheirOrder) {

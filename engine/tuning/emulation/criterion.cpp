@@ -21,7 +21,7 @@ Criterion::Criterion(const Problem& problem, const std::vector<Trajectory>& traj
                     static_cast<double>(trajectories.size());
 }
 
-PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance) const {
+PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop) const {
     const Scenario& asked = problem_.scenarios[scenario];
     NonlinearOptions options;
     options.tolerance = tolerance;
@@ -30,18 +30,20 @@ PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance) co
     options.initial = asked.x0;
     options.samples = kIntervals + 1;
     options.nodes = false;
+    options.stop = stop;
     auto response = simulate_nonlinear(*asked.system, to_parallel(pid), {.r = asked.setpoint_step}, options);
     return {std::move(response.even.y), std::move(response.even.u), std::min(1.0, response.t_end / problem_.horizon),
             std::move(response.ended)};
 }
 
-Cost Criterion::weigh(const Pid& pid, double tolerance, std::vector<double>* residuals) const {
+Cost Criterion::weigh(const Pid& pid, double tolerance, const std::stop_token& stop,
+                      std::vector<double>* residuals) const {
     Cost cost;
     if (residuals != nullptr) residuals->clear();
     const double share = 1 / static_cast<double>(trajectories_.size());
     for (std::size_t i = 0; i < trajectories_.size(); ++i) {
         const Trajectory& asked = trajectories_[i];
-        const PidRun done = run(i, pid, tolerance);
+        const PidRun done = run(i, pid, tolerance, stop);
         for (std::size_t k = 0; k < std::min(done.y.size(), weights_.size()); ++k) {
             const double dy = asked.y_nl[k] - done.y[k], du = asked.u_nl[k] - done.u[k], w = share * weights_[k];
             cost.J_y += w * dy * dy;

@@ -24,11 +24,14 @@ class Criterion {
 public:
     Criterion(const Problem& problem, const std::vector<Trajectory>& trajectories);
 
-    PidRun run(std::size_t scenario, const Pid& pid, double tolerance) const;
-    Cost cost(const Pid& pid, double tolerance) const { return weigh(pid, tolerance, nullptr); }
+    /// `stop` ends the run early.
+    PidRun run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop = {}) const;
+    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop = {}) const {
+        return weigh(pid, tolerance, stop, nullptr);
+    }
     /// The same, and residuals whose squares add up to J.
-    Cost cost(const Pid& pid, double tolerance, std::vector<double>& residuals) const {
-        return weigh(pid, tolerance, &residuals);
+    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>& residuals) const {
+        return weigh(pid, tolerance, stop, &residuals);
     }
     /// J, or where a run ended early more than that: the earlier, the more. Finite.
     double penalised(const Cost& cost) const;
@@ -37,7 +40,7 @@ public:
     const std::vector<Trajectory>& trajectories() const { return trajectories_; }
 
 private:
-    Cost weigh(const Pid& pid, double tolerance, std::vector<double>* residuals) const;
+    Cost weigh(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>* residuals) const;
 
     const Problem& problem_;
     const std::vector<Trajectory>& trajectories_;

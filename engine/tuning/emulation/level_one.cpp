@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "engine/identification/identify.h"
 #include "engine/number_text.h"
 #include "engine/simulation/nonlinear_experiments.h"
+#include "engine/tuning/emulation/step_model.h"
 #include "engine/tuning/emulation/target.h"
 
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kHysteresis = 0.1;  // of what the relay moves y by in the long run, where there is no dead time
+constexpr double kMostHysteresis = 3;  // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
+constexpr double kHysteresis = 0.1;    // of what the relay moves y by in the long run, where there is no dead time
 
 class FirstLevel {
 public:
@@ -91,25 +93,18 @@ private:
             row.error = test.error().message;
             return;
         }
-        Record record;
-        record.t = test->t;
-        record.u = test->u;
-        record.y = test->y;
-        record.kind = RecordKind::step;
-        record.u0 = record.y0 = 0;
-        const auto model = identify(
-            record, {.model = ModelChoice::fopdt, .method = IdentifyMethod::output_error, .shift = {}}, control_);
+        const auto model = first_order_model(*test);
         if (!model) {
             row.error = model.error().message;
             return;
         }
-        row.model = model->plant;
-        const auto linear = LinearPlant::make(model->plant);
+        row.model = *model;
+        const auto linear = LinearPlant::make(*model);
         if (!linear) {
             row.error = linear.error().message;
             return;
         }
-        settle(row, model->plant, *linear, imc_options("pade"));
+        settle(row, *model, *linear, imc_options("pade"));
     }
 
     /// The relay test; where the plant does not oscillate under it, the linearisation's ultimate point.
@@ -122,6 +117,14 @@ private:
         const auto test = simulate_relay_test(*problem_.system, amplitude, hysteresis, control_);
         if (!test) {
             row.error = test.error().message;
+            by_linear_model("ziegler_nichols_ultimate", {});
+            return;
+        }
+        // Of its own the plant swings beyond the hysteresis; where it does not, the hysteresis sets the period.
+        const double hysteresis_share = std::numbers::pi * test->Ku * hysteresis / (4 * amplitude);
+        if (hysteresis_share > kMostHysteresis) {
+            row.error =
+                "The plant has no oscillation of its own under a relay: y turns as soon as the relay has switched.";
             by_linear_model("ziegler_nichols_ultimate", {});
             return;
         }

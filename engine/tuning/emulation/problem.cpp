@@ -151,7 +151,7 @@ double gain_size(const LinearPlant& plant, double time) {
 Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions& options) {
     Problem problem;
     problem.linear = &plant.linear;
-    problem.system = plant.nonlinear;
+    problem.system = {std::shared_ptr<const void>(), plant.nonlinear};  // lives as long as `plant`
     if (!problem.system) {
         auto equations = as_equations(plant.linear);
         if (!equations) return equations.error();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/identification/global_minimum.h"
+#include "engine/tuning/emulation/best_so_far.h"
 #include "engine/tuning/emulation/box_step.h"
 
 namespace tunewright::emulation {
@@ -24,6 +25,7 @@ constexpr double kConfident = 10;      // damping up to which a small expected f
 constexpr double kLongestStep = 0.5;   // relative to the unknown
 constexpr double kLeastSize = 1e-3;    // of an unknown near 0, relative to its range
 constexpr double kSubplexStep = 0.02;  // in a unit box
+constexpr double kNotLookedAt = 700;   // ln J of a point where the search is stopped
 constexpr int kSubplexEvaluations = 150;
 constexpr double kSubplexTolerance = 1e-9;
 constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
@@ -81,8 +83,13 @@ public:
 
 private:
     bool stopped() const { return control_.stop.stop_requested(); }
+    // With the best design so far, if there is one.
     void report(double fraction, const char* message) const {
-        if (control_.progress) control_.progress({fraction, "tune", message, std::nullopt});
+        if (!control_.progress) return;
+        std::optional<BestSoFar> best;
+        if (!best_.point.empty())
+            best = best_so_far(*criterion_.problem().linear, controller_at(criterion_.problem(), best_.point));
+        control_.progress({fraction, "tune", message, best});
     }
     Point point_at(const std::vector<double>& q) const {
         Point point(q.size());
@@ -95,13 +102,14 @@ private:
         return q;
     }
     double judged(const Point& point, double tolerance) const {
-        return criterion_.penalised(criterion_.cost(controller_at(criterion_.problem(), point), tolerance));
+        return criterion_.penalised(
+            criterion_.cost(controller_at(criterion_.problem(), point), tolerance, control_.stop));
     }
 
     std::vector<LocalMinimum> look_around() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
-            return stop ? HUGE_VAL : std::log(judged(point_at(q), kCoarseTolerance) + 1e-300);
+            return stop ? kNotLookedAt : std::log(judged(point_at(q), kCoarseTolerance) + 1e-300);
         };
         const std::size_t n = scales_.size();
         report(0.1, "Looking for the emulating controller within the bounds.");
@@ -139,7 +147,8 @@ private:
             Point moved = point;
             moved[i] += kDifference * slope.size[i];
             if (stopped()) return std::nullopt;
-            const Cost cost = criterion_.cost(controller_at(criterion_.problem(), moved), kSearchTolerance, columns[i]);
+            const Cost cost = criterion_.cost(controller_at(criterion_.problem(), moved), kSearchTolerance,
+                                              control_.stop, columns[i]);
             if (!cost.ended.empty() || columns[i].size() != residuals.size()) return std::nullopt;
             for (std::size_t k = 0; k < residuals.size(); ++k)
                 columns[i][k] = (columns[i][k] - residuals[k]) / kDifference;
@@ -185,7 +194,8 @@ private:
     // Whether it ends where no step promises anything.
     bool polish(Point point) {
         std::vector<double> residuals, tried;
-        Cost cost = criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, residuals);
+        Cost cost =
+            criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop, residuals);
         keep(point, cost);
         if (!cost.ended.empty()) return false;
         double damping = kFirstDamping;
@@ -197,7 +207,8 @@ private:
                 const Point next = stepped(point, *slope, damping);
                 const double fall = expected_fall(point, next, *slope, cost.J);
                 if (fall < kFlat) return damping < kConfident;
-                Cost there = criterion_.cost(controller_at(criterion_.problem(), next), kSearchTolerance, tried);
+                Cost there =
+                    criterion_.cost(controller_at(criterion_.problem(), next), kSearchTolerance, control_.stop, tried);
                 if (there.ended.empty() && there.J < cost.J) {
                     point = next;
                     cost = there;
@@ -224,11 +235,12 @@ private:
     void subplex() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
-            if (stop) return HUGE_VAL;
+            if (stop) return kNotLookedAt;
             double outside = 0;
             for (const double x : q) outside += std::max(0.0, -x) + std::max(0.0, x - 1);
             const Point point = point_at(q);
-            const Cost cost = criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance);
+            const Cost cost =
+                criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop);
             if (outside == 0) keep(point, cost);
             return std::log(criterion_.penalised(cost) + 1e-300) + outside;
         };

@@ -38,6 +38,7 @@ const std::vector<TuningMethod>& method_registry() {
         npid_ise_method(),
         npid_iae_method(),
         npid_itae_method(),
+        emulation_method(),
         amigo_method(),
         simc_method(),
         lambda_method(),

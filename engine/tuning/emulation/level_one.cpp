@@ -12,8 +12,10 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kMostHysteresis = 3;  // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
-constexpr double kHysteresis = 0.1;    // of what the relay moves y by in the long run, where there is no dead time
+constexpr double kMostHysteresis = 3;     // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
+constexpr double kSlowIntegral = 4;       // Ti over the target's time, where the nonlinear controller gives Kp
+constexpr double kLeastAlphaOfTi = 1e-3;  // Ti = 0 is no controller
+constexpr double kHysteresis = 0.1;       // of what the relay moves y by in the long run, where there is no dead time
 
 class FirstLevel {
 public:
@@ -32,6 +34,8 @@ public:
                 by_linear_model(method, {});
             }
         }
+        if (std::ranges::none_of(rows_, [](const LevelOneRow& row) { return row.controller.has_value(); }))
+            by_linearising_law();
         return std::move(rows_);
     }
 
@@ -134,6 +138,18 @@ private:
         settle(row, problem_.system->linearised(), *problem_.linear, options);
     }
 
+    /// Where no rule serves, as on many unstable plants: what the nonlinear controller itself makes of y and y', with
+    /// an integral that is slow beside it.
+    void by_linearising_law() {
+        LieDerivatives at;
+        const int r = problem_.relative_degree;
+        if (!lie_derivatives(*problem_.system, r, problem_.system->x_steady(), at) || at.of_g == 0) return;
+        LevelOneRow& row = add("emulation", "linear", "the nonlinear controller's own gains");
+        const auto& beta = problem_.target.beta;
+        row.controller = controller_at(problem_, {1 / (beta[static_cast<std::size_t>(r)] * at.of_g),
+                                                  kSlowIntegral * beta[1], r > 1 ? beta[1] : 0, problem_.Tf});
+    }
+
     const Problem& problem_;
     RunControl control_;
     std::vector<LevelOneRow> rows_;
@@ -190,7 +206,7 @@ Expected<Bounds> search_bounds(const Problem& problem, const std::vector<LevelOn
     if (!ranges.contains("Ti")) {
         const auto times = magnitudes(settings, &Pid::Ti);
         if (times.empty()) return nothing_to_start_from(rows);
-        ranges["Ti"] = widened(times, alpha);
+        ranges["Ti"] = widened(times, {std::max(alpha.low, kLeastAlphaOfTi), alpha.high});
     }
     if (problem.with_derivative && !ranges.contains("Td")) {
         const auto times = magnitudes(settings, &Pid::Td);

@@ -85,8 +85,8 @@ OptionDescription bounds_option() {
 OptionDescription bounds_from_option() {
     OptionDescription alpha = of_type(OptionType::range, "alpha",
                                       "Factors of the smallest and of the largest of their values, Kp by size (Eq. 3): "
-                                      "below 1 and above 1. Default: [0.2, 5].");
-    alpha.exclusive_minimum = 0;
+                                      "at least 0 and below 1, and above 1. Default: [0.2, 5].");
+    alpha.minimum = 0;
     OptionDescription hysteresis =
         at_least_zero(of_type(OptionType::number, "relay_hysteresis",
                               "Hysteresis of the simulated relay test. Default: 0 with a dead time, else a tenth of "

@@ -123,6 +123,8 @@ void add_flatness(EmulationReport& report, const Criterion& criterion, const Rem
 }
 
 Warning at_bound(const ActiveBound& bound) {
+    if (bound.parameter == "Td" && bound.value == 0)
+        return {"at-bound", "Td lies on its lower bound 0: a derivative part does not help here, a PI does as well."};
     return {"at-bound", bound.parameter + " lies on its " + (bound.high ? "upper" : "lower") + " bound " +
                             text(bound.value) +
                             ": J would fall beyond it. Widen bounds, or alpha, if such values are "

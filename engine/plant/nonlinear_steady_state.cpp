@@ -12,6 +12,7 @@ namespace tunewright {
 namespace {
 
 constexpr int kMostIterations = 100, kMostHalvings = 40;
+constexpr double kRounding = 1e-16;  // of the largest state: what a state at 0 may be off by
 constexpr double kSingularCutoff = 1e-11, kLongestStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 
 std::string precise(double x) {
@@ -27,7 +28,10 @@ struct Point {
 class SteadyStateSearch {
 public:
     SteadyStateSearch(const NonlinearSystem& system, std::span<const double> start)
-        : system_(system), n_(start.size()), u_(system.u_nominal()), start_(start.begin(), start.end()) {}
+        : system_(system), n_(start.size()), u_(system.u_nominal()), start_(start.begin(), start.end()) {
+        for (double& x : start_)
+            if (std::abs(x) <= kRounding * largest(start)) x = 0;
+    }
 
     Expected<std::vector<double>> run() {
         Point now{start_, std::vector<double>(n_)};
@@ -47,7 +51,7 @@ public:
     }
 
 private:
-    static double largest(const std::vector<double>& values) {
+    static double largest(std::span<const double> values) {
         double result = 0;
         for (const double value : values) result = std::max(result, std::abs(value));
         return result;

@@ -1,5 +1,6 @@
 #include "engine/tuning/emulation.h"
 
+#include "engine/number_text.h"
 #include "engine/tuning/emulation/level_one.h"
 #include "engine/tuning/emulation/options.h"
 #include "engine/tuning/emulation/report.h"
@@ -10,6 +11,9 @@ namespace tunewright {
 namespace {
 
 using namespace emulation;
+
+constexpr int kSmallerSteps = 6;
+constexpr double kSmaller = 3;
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
 
@@ -43,11 +47,26 @@ Expected<Design> full(const Criterion& criterion, const Remark6& remark6, const 
     return Design{optimum->point, bounds, cost.J, cost.J_u, cost.J_y, optimum->stopped};
 }
 
+// A default step that the nonlinear controller cannot make was too large a guess.
+Expected<std::vector<Trajectory>> trajectories_of(Problem& problem, const RunControl& control) {
+    auto trajectories = nonlinear_trajectories(problem, control);
+    for (int i = 0; i < kSmallerSteps && problem.default_scenario; ++i) {
+        if (trajectories || trajectories.error().kind != ErrorKind::unsupported) break;
+        problem.scenarios.front().setpoint_step /= kSmaller;
+        trajectories = nonlinear_trajectories(problem, control);
+    }
+    if (problem.default_scenario && trajectories)
+        problem.warnings.push_back({"default-scenario", "No scenarios are given: one set-point step of " +
+                                                            text(problem.scenarios.front().setpoint_step) +
+                                                            " is taken. Give the steps that the loop really sees."});
+    return trajectories;
+}
+
 Expected<TunedController> tune(const TuningProblem& plant, const MethodOptions& options, const RunControl& control) {
     auto stated = state_problem(plant, options);
     if (!stated) return stated.error();
-    const Problem& problem = *stated;
-    const auto trajectories = nonlinear_trajectories(problem, control);
+    Problem& problem = *stated;
+    const auto trajectories = trajectories_of(problem, control);
     if (!trajectories) return trajectories.error();
     auto rows = level_one(problem, control);
     if (!rows) return rows.error();

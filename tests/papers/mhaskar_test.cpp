@@ -71,7 +71,9 @@ TEST(Mhaskar, OptimaOfTheSecondLevelAreTheRecomputedOnes) {
         EXPECT_LE(report.J, row["J"].get<double>() * (1 + 3e-5));
         EXPECT_NEAR(report.J / row["J"].get<double>(), 1, row["tol_rel_J"].get<double>());
         EXPECT_NEAR(report.J_u / row["int_du2"].get<double>(), 1, 2e-3);
-        if (!row["int_dy2"].is_null()) EXPECT_NEAR(*report.J_y / row["int_dy2"].get<double>(), 1, 0.02);
+        if (!row["int_dy2"].is_null()) {
+            EXPECT_NEAR(*report.J_y / row["int_dy2"].get<double>(), 1, 0.02);
+        }
         std::size_t active = 0;
         for (const bool held : row["bound_active"]) active += held;
         EXPECT_EQ(report.active_bounds.size(), active);
@@ -157,10 +159,11 @@ TEST(Mhaskar, TableIIsProposedGainIsReachedItsIntegralTimeIsAMisprint) {
         set_range(as_printed, "bounds/Ti", 2.0999, 2.1001);
         const auto there = emulated(reactor(true).problem, as_printed);
         ASSERT_TRUE(there) << there.error().message;
-        if (r == 10)
+        if (r == 10) {
             EXPECT_NEAR(there->emulation->J_u /
                             reference()["table2_J_full_r10_tf2"]["printed 5.38/2.1"]["int_du2"].get<double>(),
                         1, 1e-3);
+        }
         EXPECT_FALSE(there->emulation->fit.adequate);
     }
 }

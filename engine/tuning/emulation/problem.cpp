@@ -83,10 +83,7 @@ Expected<std::vector<Scenario>> chosen_scenarios(Problem& problem, double modest
     Scenario step;
     step.system = problem.system;
     step.setpoint_step = modest * gain;
-    problem.warnings.push_back({"default-scenario", "No scenarios are given: one set-point step of " +
-                                                        text(step.setpoint_step) +
-                                                        " is taken, which moves the input by about " + text(modest) +
-                                                        ". Give the steps that the loop really sees."});
+    problem.default_scenario = true;
     return std::vector<Scenario>{step};
 }
 

@@ -39,6 +39,7 @@ struct Problem {
     ZeroDynamics zero_dynamics;
     TargetResponse target;
     std::vector<Scenario> scenarios;
+    bool default_scenario = false;  ///< none was given
     bool with_derivative = true;    ///< PID, else PI
     bool error_derivative = false;  ///< c = 1: the set-point step is differentiated
     bool remark6 = false;

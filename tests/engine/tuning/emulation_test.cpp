@@ -316,13 +316,27 @@ TEST(Emulation, TakesPolesForHigherRelativeDegrees) {
 }
 
 TEST(Emulation, DefaultsServeEveryPlant) {
-    for (const NonlinearPlant& plant : {cstr("T"), cstr("CA"), spherical_tank(0.25, 0.2), pendulum(), conical_tank()}) {
+    for (const NonlinearPlant& plant : {cstr("T"), cstr("CA"), spherical_tank(0.25, 0.2), conical_tank()}) {
         SCOPED_TRACE(plant.output);
         const auto answer = emulated(emulation_plant(plant).problem, {});
         ASSERT_TRUE(answer) << answer.error().message;
         EXPECT_TRUE(has_warning(*answer, "default-scenario"));
         EXPECT_EQ(answer->emulation->formulation, "full");
         EXPECT_TRUE(answer->emulation->fit.adequate) << answer->emulation->fit.sentence;
+    }
+}
+
+TEST(Emulation, DefaultsServeAnUnstableOperatingPointAndAVerySteepPlant) {
+    const NonlinearPlant washout = bioreactor(0.9951, 1.5122), neutral = ph_vessel(1e-6, (0.01 - 1e-6) / (0.01 + 1e-6));
+    for (const NonlinearPlant& plant : {washout, neutral}) {
+        SCOPED_TRACE(plant.output);
+        const EmulationPlant given = emulation_plant(plant);
+        MethodOptions options;
+        options.set("controller", std::string("PI"));
+        const auto answer = emulated(given.problem, options);
+        ASSERT_TRUE(answer) << answer.error().message;
+        EXPECT_TRUE(answer->emulation->scenarios.front().ended.empty());
+        EXPECT_LT(answer->emulation->fit.u_left, 0.5);
     }
 }
 
@@ -403,9 +417,10 @@ TEST(Emulation, APlantThatUDoesNotEnterAffinelyIsRefused) {
 }
 
 TEST(Emulation, AStepThatTheNonlinearControllerCannotMakeIsToldWithItsReason) {
-    MethodOptions options = cone_step();
-    options.set("scenarios/0/setpoint_step", -1.2);
-    const auto answer = emulated(emulation_plant(conical_tank()).problem, options);
+    const EmulationPlant vessel = emulation_plant(ph_vessel(1e-6, (0.01 - 1e-6) / (0.01 + 1e-6)));
+    MethodOptions options;
+    options.set("scenarios/0/setpoint_step", 5.0);
+    const auto answer = emulated(vessel.problem, options);
     ASSERT_FALSE(answer);
     EXPECT_EQ(answer.error().where, "scenarios/0");
     EXPECT_THAT(answer.error().message, HasSubstr("The nonlinear controller itself cannot make this step"));

@@ -63,7 +63,7 @@ BENCHMARK(full_PI)->Unit(benchmark::kMillisecond);
 void remark6_PI(benchmark::State& state) { whole_method(state, "T", of_T("remark6"), 5.395597579096719); }
 BENCHMARK(remark6_PI)->Unit(benchmark::kMillisecond);
 
-void full_PID_of_three_scenarios(benchmark::State& state) { whole_method(state, "CA", of_CA(), -1010); }
+void full_PID_of_three_scenarios(benchmark::State& state) { whole_method(state, "CA", of_CA(), -1044.503862); }
 BENCHMARK(full_PID_of_three_scenarios)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -77,13 +77,13 @@ Expected<TunedController> tune(const TuningProblem& plant, const MethodOptions& 
     const auto design =
         problem.remark6 ? approximate(remark6, *bounds, problem.wu) : full(criterion, remark6, *bounds, *rows, control);
     if (!design) return design.error();
-    EmulationReport report = report_of(criterion, remark6, *design, std::move(*rows));
+    EmulationReport report = report_of(criterion, remark6, *design, std::move(*rows), control.stop);
     std::vector<Warning> warnings = remarks(report);
     warnings.insert(warnings.end(), problem.warnings.begin(), problem.warnings.end());
     auto answer = rule_answer(controller_at(problem, design->point), std::move(warnings));
     if (!answer) return answer;
     answer->emulation = std::move(report);
-    answer->partial = design->stopped;
+    answer->partial = control.stop.stop_requested();
     return answer;
 }
 

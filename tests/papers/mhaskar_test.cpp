@@ -187,6 +187,23 @@ TEST(Mhaskar, OptimaOfRemark6OverManyStepsAndHorizons) {
     }
 }
 
+// Remark 1. Reference: an own RK4 and Nelder and Mead's simplex, 3200 steps.
+TEST(Mhaskar, ThreeStepsAreAveraged) {
+    MethodOptions options = loop_options(false, 0.05, 2);
+    options.set("scenarios/1/setpoint_step", 0.1);
+    options.set("scenarios/2/setpoint_step", -0.05);
+    options.set("weights/wy", 1e8);
+    set_range(options, "bounds/Kp", -2000, -500);
+    set_range(options, "bounds/Ti", 0.1, 2);
+    set_range(options, "bounds/Td", 0.02, 0.15);
+    const auto answer = emulated(reactor(false).problem, options);
+    ASSERT_TRUE(answer) << answer.error().message;
+    EXPECT_NEAR(answer->controller.Kp / -1044.50371, 1, 1e-4);
+    EXPECT_NEAR(answer->controller.Ti / 1.20320721, 1, 1e-4);
+    EXPECT_NEAR(answer->controller.Td / 0.0982479678, 1, 1e-4);
+    EXPECT_NEAR(answer->emulation->J / 86.09413919, 1, 1e-6);
+}
+
 const LevelOneRow* row_of(const EmulationReport& report, const std::string& method, const std::string& test) {
     for (const LevelOneRow& row : report.level1)
         if (row.method == method && row.test == test) return &row;

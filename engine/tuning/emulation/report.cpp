@@ -79,9 +79,9 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pi
     judge_fit(report.fit);
 }
 
-void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6) {
+void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6, const std::stop_token& stop) {
     const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
-    if (pid == nullptr) return;
+    if (pid == nullptr || stop.stop_requested()) return;
     const Problem& problem = criterion.problem();
     const Judgement judgement = judge(criterion, remark6, point_of(problem, *pid));
     row.J = judgement.J;
@@ -104,17 +104,19 @@ void add_bounds(EmulationReport& report, const Problem& problem, const Design& d
     }
 }
 
-void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6, const Design& design) {
+void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6, const Design& design,
+                  const std::stop_token& stop) {
     const Problem& problem = criterion.problem();
     Point sizes = design.point;
     for (std::size_t i = 0; i < sizes.size(); ++i)
         sizes[i] = std::max(std::abs(sizes[i]), kLeastSize * (design.bounds.high[i] - design.bounds.low[i]));
     const auto J = [&](const Point& point) {
+        if (stop.stop_requested()) return 0.0;
         return problem.remark6 ? remark6.J(point)
                                : criterion.penalised(criterion.cost(controller_at(problem, point), kFineTolerance));
     };
     const auto flat = flatness(J, design.point, sizes);
-    if (!flat) return;
+    if (!flat || stop.stop_requested()) return;
     const auto names = unknowns(problem);
     for (std::size_t i = 0; i < names.size(); ++i) {
         report.flatness[names[i]] = flat->reoptimised[i];
@@ -141,7 +143,7 @@ Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point&
 }
 
 EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
-                          std::vector<LevelOneRow> level_one) {
+                          std::vector<LevelOneRow> level_one, const std::stop_token& stop) {
     const Problem& problem = criterion.problem();
     EmulationReport report;
     report.formulation = problem.remark6 ? "remark6" : "full";
@@ -158,9 +160,8 @@ EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, co
     add_bounds(report, problem, design);
     add_scenarios(report, criterion, controller_at(problem, design.point));
     report.level1 = std::move(level_one);
-    if (design.stopped) return report;
-    for (LevelOneRow& row : report.level1) add_runs(row, criterion, remark6);
-    add_flatness(report, criterion, remark6, design);
+    for (LevelOneRow& row : report.level1) add_runs(row, criterion, remark6, stop);
+    if (!stop.stop_requested()) add_flatness(report, criterion, remark6, design, stop);
     return report;
 }
 

@@ -12,7 +12,7 @@ struct Design {
     Bounds bounds;
     double J = 0, J_u = 0;
     std::optional<double> J_y;
-    bool stopped = false;  ///< the best so far: no time is spent on flatness and the first level's runs
+    bool stopped = false;  ///< the best so far
 };
 
 /// J as the second level counts it: by simulation, or by Remark 6. Empty with the reason where a run ended early.
@@ -22,8 +22,9 @@ struct Judgement {
 };
 Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point& point);
 
+/// Stopped, it leaves out what is not there yet of flatness and of the first level's runs.
 EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
-                          std::vector<LevelOneRow> level_one);
+                          std::vector<LevelOneRow> level_one, const std::stop_token& stop);
 
 /// Bounds that hold the optimum, unstable zero dynamics, limits in the nonlinear controller's way, a run that ended,
 /// and Remark 7's judgement.

@@ -417,10 +417,11 @@ TEST(Emulation, APlantThatUDoesNotEnterAffinelyIsRefused) {
 }
 
 TEST(Emulation, AStepThatTheNonlinearControllerCannotMakeIsToldWithItsReason) {
-    const EmulationPlant vessel = emulation_plant(ph_vessel(1e-6, (0.01 - 1e-6) / (0.01 + 1e-6)));
+    const EmulationPlant reactor = emulation_plant(cstr("CA"));
     MethodOptions options;
-    options.set("scenarios/0/setpoint_step", 5.0);
-    const auto answer = emulated(vessel.problem, options);
+    options.set("target/tau_cl", 0.2);
+    options.set("scenarios/0/setpoint_step", 0.45);
+    const auto answer = emulated(reactor.problem, options);
     ASSERT_FALSE(answer);
     EXPECT_EQ(answer.error().where, "scenarios/0");
     EXPECT_THAT(answer.error().message, HasSubstr("The nonlinear controller itself cannot make this step"));

@@ -8,16 +8,15 @@ namespace {
 
 using testing::HasSubstr;
 
-const Json kTank = Json::parse(R"({"type": "nonlinear", "states": {"h": 1}, "parameters": {"c": 0.5, "k": 0.4},
-    "equations": {"h": "(q - c*sqrt(h))/(3.14159265*k^2*h^2)"
-}
-, "input" : {"name" : "q", "nominal" : 0.5}, "output" : "h"
-})");
+const Json kTank = Json::parse(R"json({"type": "nonlinear", "states": {"h": 1}, "parameters": {"c": 0.5, "k": 0.4},
+    "equations": {"h": "(q - c*sqrt(h))/(3.14159265*k^2*h^2)"}, "input": {"name": "q", "nominal": 0.5},
+    "output": "h"})json");
 
 const Json kMethod = Json::parse(R"({"method": "emulation", "controller": "PI", "target": {"gamma": 1.5},
     "scenarios": [{"setpoint_step": 0.3}, {"setpoint_step": 0, "initial": {"h": 0.8}},
                   {"setpoint_step": 0.2, "parameters": {"c": 0.55}}],
-    "horizon": 8, "weights": {"wy": 4}, "bounds": {"Kp": [0.05, 5]}, "bounds_from": {"methods": ["imc"], "alpha": [0.3, 4]}})");
+    "horizon": 8, "weights": {"wy": 4}, "bounds": {"Kp": [0.05, 5]},
+    "bounds_from": {"methods": ["imc"], "alpha": [0.3, 4]}})");
 
 Json request(const Json& tune, const Json& plant, int points = 0) {
     return {{"plant", plant}, {"tune", tune}, {"evaluate", {{"points", points}}}};

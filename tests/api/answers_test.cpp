@@ -165,8 +165,9 @@ TEST(Answers, ThePublishedExampleHasItsPublishedSettings) {
 }
 
 TEST(Answers, EveryOtherExampleSucceedsAndFitsTheDocument) {
-    for (const char* id : {"paper-oscillatory", "integrating-level", "inverse-response", "unstable-first-order",
-                           "two-tanks-state-space", "oscillatory-mass"}) {
+    for (const char* id :
+         {"paper-oscillatory", "integrating-level", "inverse-response", "unstable-first-order", "two-tanks-state-space",
+          "oscillatory-mass", "cstr-temperature", "cstr-concentration", "spherical-tank", "bioreactor", "ph-vessel"}) {
         SCOPED_TRACE(id);
         const Json result = run(example(id).dump());
         if (result.is_null()) continue;

@@ -15,7 +15,7 @@ constexpr int kMostSteps = 20000;
 }  // namespace
 
 Criterion::Criterion(const Problem& problem, const std::vector<Trajectory>& trajectories)
-    : problem_(problem), trajectories_(trajectories), weights_(simpson_weights(problem.horizon)) {
+    : problem_(problem), trajectories_(trajectories), weights_(simpson_weights(problem)) {
     for (const Trajectory& trajectory : trajectories)
         at_rest_ += (problem.wy * trajectory.y_size + problem.wu * trajectory.u_size) /
                     static_cast<double>(trajectories.size());
@@ -28,7 +28,7 @@ PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance, co
     options.horizon = problem_.horizon;
     options.max_steps = kMostSteps;
     options.initial = asked.x0;
-    options.samples = kIntervals + 1;
+    options.samples = problem_.intervals + 1;
     options.nodes = false;
     options.stop = stop;
     auto response = simulate_nonlinear(*asked.system, to_parallel(pid), {.r = asked.setpoint_step}, options);

@@ -15,6 +15,8 @@ constexpr double kShareOfInput = 0.05;  // of the nominal input, or of its range
 constexpr double kTargetTimes = 8;      // the default horizon, in the target's slowest time
 constexpr double kFilterShare = 0.1;    // the default Tf over the target's time
 constexpr NumberRange kAlpha{0.2, 5};   // the default of Eq. 3
+constexpr int kFewestIntervals = 800, kMostIntervals = 6400;
+constexpr double kIntervalShare = 0.04;  // of the fastest time constant
 
 Error wrong(const std::string& where, const std::string& sentence) {
     return {ErrorKind::invalid_argument, where, sentence};
@@ -137,6 +139,16 @@ std::optional<Error> choose_weights(Problem& problem, double gain, const MethodO
     return std::nullopt;
 }
 
+// As many as resolve the derivative filter and the target: Simpson's rule then leaves some 1e-6 of J.
+int chosen_intervals(const Problem& problem) {
+    double fastest = problem.target.beta.back() / problem.target.beta[problem.target.beta.size() - 2];
+    if (problem.with_derivative)
+        fastest = std::min(fastest, problem.free_Tf() ? problem.bounds.at("Tf").low : problem.Tf);
+    int intervals = kFewestIntervals;
+    while (intervals < kMostIntervals && problem.horizon / intervals > kIntervalShare * fastest) intervals *= 2;
+    return intervals;
+}
+
 }  // namespace
 
 double gain_size(const LinearPlant& plant, double time) {
@@ -173,6 +185,7 @@ Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions&
         options.number("horizon").value_or(kTargetTimes * slowest_time(problem.target) + problem.system->dead_time());
     if (const auto error = choose_weights(problem, gain, options)) return *error;
     choose_bounds(problem, options);
+    problem.intervals = chosen_intervals(problem);
     auto level_one = chosen_level_one(problem, modest, options);
     if (!level_one) return level_one.error();
     problem.level_one = std::move(*level_one);

@@ -44,6 +44,7 @@ struct Problem {
     bool error_derivative = false;  ///< c = 1: the set-point step is differentiated
     bool remark6 = false;
     double horizon = 0;
+    int intervals = 0;  ///< of every run's samples from 0 to the horizon, even for Simpson's rule
     double wy = 0, wu = 1;
     double Tf = 0;                              ///< of a PID; the middle of its range where it is free
     std::map<std::string, NumberRange> bounds;  ///< as given: of Kp, Ti, Td, and of Tf where it is free
@@ -52,9 +53,6 @@ struct Problem {
 
     bool free_Tf() const { return bounds.contains("Tf"); }
 };
-
-/// Intervals of every run's samples, even for Simpson's rule.
-constexpr int kIntervals = 800;
 
 /// From the options; what they leave out comes from the linearisation (docs/methods.md). Errors: invalid_argument with
 /// the option as `where`; those of the relative degree with `where` = "plant/...".

@@ -42,7 +42,7 @@ std::vector<robust::LinearConstraint> half_planes(double sign, const Bounds& bou
 
 Remark6::Remark6(const Problem& problem, const std::vector<Trajectory>& trajectories)
     : problem_(problem), trajectories_(trajectories) {
-    const std::vector<double> simpson = simpson_weights(problem.horizon);
+    const std::vector<double> simpson = simpson_weights(problem);
     for (std::size_t s = 0; s < trajectories.size(); ++s) {
         const NonlinearSystem& system = *problem.scenarios[s].system;
         const double low = system.u_min() - system.u_nominal(), high = system.u_max() - system.u_nominal();
@@ -59,7 +59,7 @@ Remark6::Remark6(const Problem& problem, const std::vector<Trajectory>& trajecto
 
 Remark6::Signals Remark6::signals(double Tf) const {
     Signals all;
-    const double h = problem_.horizon / kIntervals;
+    const double h = problem_.horizon / problem_.intervals;
     for (std::size_t s = 0; s < trajectories_.size(); ++s) {
         const double r = problem_.scenarios[s].setpoint_step;
         std::vector<double> error(trajectories_[s].y_nl);

@@ -14,17 +14,21 @@ constexpr double kOnBound = 1e-6;    // of the range
 constexpr double kLeftOfU = 0.1;     // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
 constexpr double kLeftOfY = 0.05;    // of int y_nl^2, likewise
 constexpr double kLeastSize = 1e-3;  // of an unknown near 0, relative to its range
-constexpr int kTold = 2;             // every second sample is told
+constexpr int kTold = 400;           // intervals of what is told
 
-std::vector<double> told(const std::vector<double>& samples, double rest) {
+// Every so many samples are told.
+std::size_t stride(const Problem& problem) { return static_cast<std::size_t>(problem.intervals / kTold); }
+
+std::vector<double> told(const std::vector<double>& samples, double rest, std::size_t stride) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < samples.size(); i += kTold) values.push_back(rest + samples[i]);
+    for (std::size_t i = 0; i < samples.size(); i += stride) values.push_back(rest + samples[i]);
     return values;
 }
 
-std::vector<double> told_times(std::size_t samples, double horizon) {
+std::vector<double> told_times(std::size_t samples, const Problem& problem) {
     std::vector<double> times;
-    for (std::size_t i = 0; i < samples; i += kTold) times.push_back(horizon * static_cast<double>(i) / kIntervals);
+    for (std::size_t i = 0; i < samples; i += stride(problem))
+        times.push_back(problem.horizon * static_cast<double>(i) / problem.intervals);
     return times;
 }
 
@@ -53,7 +57,8 @@ void judge_fit(EmulationFit& fit) {
 
 void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pid& pid) {
     const Problem& problem = criterion.problem();
-    const std::vector<double> weights = simpson_weights(problem.horizon);
+    const std::vector<double> weights = simpson_weights(problem);
+    const std::size_t every = stride(problem);
     for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {
         const Scenario& asked = problem.scenarios[i];
         const Trajectory& wanted = criterion.trajectories()[i];
@@ -67,11 +72,11 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pi
         told_of.parameters = asked.parameters;
         told_of.y_rest = asked.system->y_steady();
         told_of.u_rest = asked.system->u_nominal();
-        told_of.t = told_times(wanted.y_nl.size(), problem.horizon);
-        told_of.y_nl = told(wanted.y_nl, told_of.y_rest);
-        told_of.u_nl = told(wanted.u_nl, told_of.u_rest);
-        told_of.y = told(done.y, told_of.y_rest);
-        told_of.u = told(done.u, told_of.u_rest);
+        told_of.t = told_times(wanted.y_nl.size(), problem);
+        told_of.y_nl = told(wanted.y_nl, told_of.y_rest, every);
+        told_of.u_nl = told(wanted.u_nl, told_of.u_rest, every);
+        told_of.y = told(done.y, told_of.y_rest, every);
+        told_of.u = told(done.u, told_of.u_rest, every);
         told_of.limited = wanted.limited;
         told_of.ended = done.ended;
         report.scenarios.push_back(std::move(told_of));
@@ -88,9 +93,10 @@ void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remar
     row.ended = judgement.ended;
     const PidRun run = criterion.run(0, *pid, kFineTolerance);
     if (row.ended.empty()) row.ended = run.ended;
-    row.t = told_times(run.y.size(), problem.horizon);
-    row.y = told(run.y, problem.scenarios.front().system->y_steady());
-    row.u = told(run.u, problem.scenarios.front().system->u_nominal());
+    const std::size_t every = stride(problem);
+    row.t = told_times(run.y.size(), problem);
+    row.y = told(run.y, problem.scenarios.front().system->y_steady(), every);
+    row.u = told(run.u, problem.scenarios.front().system->u_nominal(), every);
 }
 
 void add_bounds(EmulationReport& report, const Problem& problem, const Design& design) {

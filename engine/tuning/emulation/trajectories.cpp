@@ -19,22 +19,23 @@ Error cannot_run(std::size_t scenario, const std::string& reason) {
 
 }  // namespace
 
-std::vector<double> simpson_weights(double horizon) {
-    const double third = horizon / kIntervals / 3;
-    std::vector<double> weights(kIntervals + 1, 2 * third);
-    for (std::size_t i = 1; i < kIntervals; i += 2) weights[i] = 4 * third;
+std::vector<double> simpson_weights(const Problem& problem) {
+    const double third = problem.horizon / problem.intervals / 3;
+    const auto intervals = static_cast<std::size_t>(problem.intervals);
+    std::vector<double> weights(intervals + 1, 2 * third);
+    for (std::size_t i = 1; i < intervals; i += 2) weights[i] = 4 * third;
     weights.front() = weights.back() = third;
     return weights;
 }
 
 Expected<std::vector<Trajectory>> nonlinear_trajectories(const Problem& problem, const RunControl& control) {
-    const std::vector<double> weights = simpson_weights(problem.horizon);
+    const std::vector<double> weights = simpson_weights(problem);
     std::vector<Trajectory> trajectories;
     for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {
         const Scenario& scenario = problem.scenarios[i];
         const auto run = simulate_linearising(
             *scenario.system, problem.target, scenario.setpoint_step,
-            {.horizon = problem.horizon, .samples = kIntervals + 1, .initial = scenario.x0}, control);
+            {.horizon = problem.horizon, .samples = problem.intervals + 1, .initial = scenario.x0}, control);
         if (control.stop.stop_requested())
             return Error{ErrorKind::cancelled, "", "The job was cancelled before a design was found."};
         if (!run.ended.empty()) return cannot_run(i, run.ended);

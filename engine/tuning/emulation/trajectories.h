@@ -5,7 +5,7 @@
 
 namespace tunewright::emulation {
 
-/// kIntervals + 1 values from 0 to the horizon; deviations from the scenario's own steady state.
+/// problem.intervals + 1 values from 0 to the horizon; deviations from the scenario's own steady state.
 struct Trajectory {
     std::vector<double> y_nl, u_nl;
     double y_size = 0, u_size = 0;  ///< int y_nl^2 dt, int u_nl^2 dt
@@ -16,6 +16,6 @@ struct Trajectory {
 Expected<std::vector<Trajectory>> nonlinear_trajectories(const Problem& problem, const RunControl& control);
 
 /// int of the samples from 0 to the horizon by Simpson's rule: the sum of samples times these weights.
-std::vector<double> simpson_weights(double horizon);
+std::vector<double> simpson_weights(const Problem& problem);
 
 }  // namespace tunewright::emulation

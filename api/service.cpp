@@ -145,16 +145,18 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     EvaluateAnswer answer;
     std::optional<Tradeoffs> tradeoffs;
     std::optional<RobustOptima> optima;
+    std::optional<NonlinearSystem> system;
     if (const auto* equations = std::get_if<NonlinearPlant>(&*request.plant)) {
-        const auto system = NonlinearSystem::make(*equations);
-        if (!system) return refusal(to_problem(system.error()));
+        auto made = NonlinearSystem::make(*equations);
+        if (!made) return refusal(to_problem(made.error()));
+        system = std::move(*made);
         answer.operating_point = operating_point(*system);
     }
-    auto nominal = nominal_plant(*request.plant);
-    if (answer.operating_point) nominal = Plant(answer.operating_point->linear_model);
-    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal, request.evaluate);
+    const auto nominal = system ? Plant(system->linearised()) : nominal_plant(*request.plant);
+    const EvaluateOptions on_nominal = system ? on_linearisation(*system, request.evaluate) : request.evaluate;
+    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal, on_nominal);
     if (request.evaluate.optimum_at_Ms.value_or(false) && nominal)
-        optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, request.evaluate);
+        optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, on_nominal);
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
         if (control.stop.stop_requested())
             return refusal(to_problem({ErrorKind::timeout,
@@ -162,7 +164,8 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
                                        "The time allowed was over after " + std::to_string(i) +
                                            " controllers; send fewer, or fewer points."}));
         const double start = now(control);
-        auto evaluation = evaluate(*request.plant, request.controllers[i], request.evaluate);
+        auto evaluation = system ? evaluate(*system, request.controllers[i], request.evaluate)
+                                 : evaluate(*request.plant, request.controllers[i], request.evaluate);
         if (!evaluation) return refusal(at_controller(evaluation.error(), i));
         TuningEntry& entry = answer.controllers.emplace_back();
         if (tradeoffs) entry.tradeoff = tradeoffs->of(request.controllers[i], std::nullopt);

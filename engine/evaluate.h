@@ -148,4 +148,7 @@ Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& cont
 Expected<Evaluation> evaluate(const NonlinearSystem& plant, const Controller& controller,
                               const EvaluateOptions& options);
 
+/// The same options for the plant's linearisation, on which the limits of its input are the actuator's.
+EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions options);
+
 }  // namespace tunewright

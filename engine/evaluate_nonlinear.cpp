@@ -28,13 +28,6 @@ struct Runs {
     static bool incomplete(const NonlinearResponse& run) { return run.escaped || !run.ended.empty(); }
 };
 
-/// None where both are infinite.
-std::optional<ActuatorLimits> limits_of(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
-    const OutputLimits limits = input_limits(system, actuator);
-    if (std::isinf(limits.min) && std::isinf(limits.max)) return std::nullopt;
-    return ActuatorLimits{limits.min, limits.max};
-}
-
 std::optional<OutputLimits> actuator_of(const EvaluateOptions& o) {
     return o.actuator ? std::optional(OutputLimits{o.actuator->min, o.actuator->max}) : std::nullopt;
 }
@@ -125,6 +118,14 @@ void add_performance(Evaluation& evaluation, const Runs& runs, const EvaluateOpt
 
 }  // namespace
 
+EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions options) {
+    const OutputLimits limits = input_limits(plant, actuator_of(options));
+    options.actuator.reset();
+    if (std::isfinite(limits.min) || std::isfinite(limits.max))
+        options.actuator = ActuatorLimits{limits.min, limits.max};
+    return options;
+}
+
 Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& controller,
                               const EvaluateOptions& options) {
     if (auto error = refuse_evaluation(controller, options)) return *error;
@@ -141,8 +142,7 @@ Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& c
     if (!horizon && !stable) horizon = kUnstableHorizon * own_time(*plant);
     const Runs runs = simulate(system, resolved(controller, options), options, horizon);
 
-    EvaluateOptions of_linear = options;
-    of_linear.actuator = limits_of(system, actuator_of(options));
+    EvaluateOptions of_linear = on_linearisation(system, options);
     if (!horizon && runs.complete()) {
         horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
         of_linear.trace_horizon = horizon;

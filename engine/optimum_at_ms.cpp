@@ -43,7 +43,8 @@ OptimumAtMs RobustOptima::beside(const Evaluation& evaluation, const RunControl&
     const auto optimum = load_IAE_at(*Ms, control);
     if (!optimum) return none(optimum.error().message);
     OptimumAtMs answer{*optimum, {}, {}};
-    if (const auto& IAE = evaluation.performance.load.IAE; IAE && *answer.IAE > 0)
+    const Performance& performance = evaluation.linear ? evaluation.linear->performance : evaluation.performance;
+    if (const auto& IAE = performance.load.IAE; IAE && *answer.IAE > 0)
         answer.excess_percent = 100 * (*IAE / *answer.IAE - 1);
     else
         answer.why_null["excess_percent"] = "The controller's load IAE is not finite.";

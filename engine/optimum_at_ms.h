@@ -12,7 +12,8 @@
 namespace tunewright {
 
 /// `IAE`: of the robust PID whose limits on Ms and Mt are both the controller's Ms. `excess_percent`: 100 (IAE of the
-/// controller over it - 1); may be below 0, where the controller's own filter or Mt lets it.
+/// controller over it - 1); may be below 0, where the controller's own filter or Mt lets it. Of a nonlinear plant both
+/// are the linearisation's, to which Ms belongs.
 struct OptimumAtMs {
     std::optional<double> IAE, excess_percent;
     WhyNull why_null;

@@ -340,7 +340,7 @@ bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double 
 
 // The column "how far from the optimum at the same Ms".
 void Run::compare_with_optima(double from) {
-    RobustOptima optima(*problem_, request_.evaluate);
+    RobustOptima optima(*problem_, nonlinear_ ? on_linearisation(*nonlinear_, request_.evaluate) : request_.evaluate);
     const double share_of_one = (1 - from) / static_cast<double>(result_.controllers.size());
     for (TuningEntry& entry : result_.controllers) {
         if (stopped()) {

@@ -55,6 +55,7 @@ public:
                                                      "required",
                                                      "additionalProperties",
                                                      "maxProperties",
+                                                     "minProperties",
                                                      "propertyNames",
                                                      "title",
                                                      "description",
@@ -164,6 +165,8 @@ private:
         }
         if (schema.contains("maxProperties") && value.size() > schema["maxProperties"].get<std::size_t>())
             fault(at, "has too many members");
+        if (schema.contains("minProperties") && value.size() < schema["minProperties"].get<std::size_t>())
+            fault(at, "has too few members");
         for (const auto& [name, member] : value.items()) {
             if (schema.contains("properties") && schema["properties"].contains(name)) {
                 check(member, schema["properties"][name], at + "/" + name);

@@ -11,8 +11,9 @@ namespace tunewright {
 namespace {
 
 constexpr int kMostSteps = 200000;
-constexpr double kSide = 1e-10;   // of the input's scale: how far beyond a limit the law is before that counts
-constexpr double kEscaped = 1e6;  // of the input's scale
+constexpr double kSide = 1e-10;      // of the input's scale: how far beyond a limit the law is before that counts
+constexpr double kEscaped = 1e6;     // of the input's scale
+constexpr double kStrongest = 1e12;  // of the input's effect at the start
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
 class LinearisingLaw {
@@ -67,6 +68,7 @@ public:
         response_.limited = limit_ != Limit::none;
         measure_input(u);
         sign_of_effect_ = law_.input_effect() < 0 ? -1 : 1;
+        first_effect_ = std::abs(law_.input_effect());
         if (!integrator_.start(0, x)) return ended(reason(OdeStep::left_domain));
         sample_step();
         for (int steps = 0; integrator_.t() < options_.horizon; ++steps) {
@@ -85,6 +87,7 @@ public:
             if (crossing && (outcome = integrator_.shorten(*crossing)) != OdeStep::made) return ended(reason(outcome));
             sample_step();
             if (crossing && !change_side()) return ended(reason(OdeStep::left_domain));
+            if (too_strong()) return ended(reason(OdeStep::left_domain));
             if (escaped())
                 return ended("At t = " + text(now()) +
                              " the input has left every bound: the plant's zero dynamics are unstable.");
@@ -113,6 +116,12 @@ private:
 
     bool escaped() {
         return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kEscaped * scale_u_;
+    }
+
+    // L_g L_f^(r-1) h has grown so much that the u which y needs cannot be told from its rounding.
+    bool too_strong() {
+        law_(integrator_.x());
+        return std::abs(law_.input_effect()) > kStrongest * first_effect_;
     }
 
     std::optional<double> end_of_side() {
@@ -208,7 +217,7 @@ private:
     LinearisingLaw law_;
     OdeIntegrator integrator_;
     Limit limit_ = Limit::none;
-    double scale_u_ = 0, sign_of_effect_ = 1;
+    double scale_u_ = 0, sign_of_effect_ = 1, first_effect_ = 0;
     std::vector<double> inside_;
     LinearisingResponse response_;
 };

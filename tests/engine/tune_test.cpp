@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "tests/engine/plant/nonlinear_plants.h"
+
 namespace tunewright {
 namespace {
 
@@ -32,6 +34,24 @@ std::vector<std::string> methods_of(const TuningResult& result) {
     std::vector<std::string> ids;
     for (const auto& entry : result.controllers) ids.push_back(entry.method);
     return ids;
+}
+
+TEST(Tune, JudgesANonlinearPlantByItselfAndComparesOnItsLinearisation) {
+    TuningRequest request;
+    request.plant = cstr("CA");
+    request.tune = {method("robust")};
+    request.evaluate.points = 0;
+    request.evaluate.setpoint_step = 0.14;
+    request.evaluate.optimum_at_Ms = true;
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result && result->operating_point);
+    EXPECT_NEAR(result->operating_point->states[0].value, 0.520329995811, 1e-9);
+    const TuningEntry& robust = result->controllers.front();
+    ASSERT_TRUE(robust.evaluation && robust.evaluation->linear && robust.optimum_at_Ms);
+    EXPECT_NEAR(*robust.optimum_at_Ms->excess_percent, 0, 0.1);  // it is the optimum
+    const double own = *robust.evaluation->performance.setpoint.IAE;
+    const double linear = *robust.evaluation->linear->performance.setpoint.IAE;
+    EXPECT_GT(std::abs(own / linear - 1), 0.02);
 }
 
 TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {

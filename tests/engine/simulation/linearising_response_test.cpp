@@ -214,6 +214,20 @@ TEST(LinearisingResponse, EndsAreSaid) {
     EXPECT_THAT(ended(inverse, 1), testing::HasSubstr("the input has left every bound: the plant's zero dynamics"));
 }
 
+// The tank's area vanishes at its tip, and with it all that tells one u from another.
+TEST(LinearisingResponse, EndsWhereAConicalTankIsAskedToBeLessThanEmpty) {
+    const auto system = made_system({.states = {{"h", 1}},
+                                     .parameters = {{"k", 0.6}, {"c", 0.2}},
+                                     .equations = {{"h", "(q - k*sqrt(h))/(c*h^2)"}},
+                                     .input = {.name = "q", .nominal = 0.6},
+                                     .output = "h"});
+    const auto response = simulate_linearising(system, first_order_target(1), -1.2, {.horizon = 8, .samples = 801}, {});
+    EXPECT_THAT(response.ended, testing::HasSubstr("the states leave the model's domain. Equation h"));
+    EXPECT_NEAR(response.t_end, std::log(6), 1e-3);  // 1.2 e^-t = 0.2
+    for (std::size_t i = 0; i < response.even.y.size(); ++i)
+        ASSERT_NEAR(response.even.y[i], -1.2 * (1 - std::exp(-0.01 * static_cast<double>(i))), 1e-7) << i;
+}
+
 TEST(LinearisingResponse, StopsWhenAsked) {
     std::stop_source source;
     source.request_stop();

@@ -6,29 +6,15 @@
 #include "engine/evaluate.h"
 #include "engine/simulation/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear_response.h"
+#include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {
 namespace {
 
-/// The endothermic CSTR of Mhaskar, El-Farra & Christofides (2004), Eq. 4; minutes.
-NonlinearSystem cstr(const char* output, double L = 0) {
-    return *NonlinearSystem::make(
-        {.states = {{"CA", 0.52}, {"T", 398.97}},
-         .parameters = {{"V", 100.0},
-                        {"F", 100.0},
-                        {"ER", 8000.0},
-                        {"CA0", 1.0},
-                        {"TA0", 400.0},
-                        {"DH", 2e5},
-                        {"k0", 4.71e8},
-                        {"cp", 1.0},
-                        {"rho", 1000.0},
-                        {"UA", 1e5}},
-         .equations = {{"CA", "F/V*(CA0-CA)-k0*exp(-ER/T)*CA"},
-                       {"T", "F/V*(TA0-T)-DH/(rho*cp)*k0*exp(-ER/T)*CA+UA/(rho*cp*V)*(Tj-T)"}},
-         .input = {.name = "Tj", .nominal = 493.87},
-         .output = output,
-         .L = L});
+NonlinearSystem reactor(const char* output, double L = 0) {
+    NonlinearPlant plant = cstr(output);
+    plant.L = L;
+    return NonlinearSystem::make(plant).value();
 }
 
 const ParallelPid kPi{.Kp = 4.789863759190389, .Ki = 4.789863759190389 / 0.1944095039389805};
@@ -52,33 +38,33 @@ void loop(benchmark::State& state, const NonlinearSystem& system, const Parallel
     }
 }
 
-void pi_loop_nodes(benchmark::State& state) { loop(state, cstr("T"), kPi, 10, two_minutes(true, 0)); }
+void pi_loop_nodes(benchmark::State& state) { loop(state, reactor("T"), kPi, 10, two_minutes(true, 0)); }
 BENCHMARK(pi_loop_nodes)->Unit(benchmark::kMicrosecond);
 
-void pi_loop_401_samples(benchmark::State& state) { loop(state, cstr("T"), kPi, 10, two_minutes(false, 401)); }
+void pi_loop_401_samples(benchmark::State& state) { loop(state, reactor("T"), kPi, 10, two_minutes(false, 401)); }
 BENCHMARK(pi_loop_401_samples)->Unit(benchmark::kMicrosecond);
 
-void pid_loop_nodes(benchmark::State& state) { loop(state, cstr("CA"), kPid, 0.05, two_minutes(true, 0)); }
+void pid_loop_nodes(benchmark::State& state) { loop(state, reactor("CA"), kPid, 0.05, two_minutes(true, 0)); }
 BENCHMARK(pid_loop_nodes)->Unit(benchmark::kMicrosecond);
 
-void pid_loop_401_samples(benchmark::State& state) { loop(state, cstr("CA"), kPid, 0.05, two_minutes(false, 401)); }
+void pid_loop_401_samples(benchmark::State& state) { loop(state, reactor("CA"), kPid, 0.05, two_minutes(false, 401)); }
 BENCHMARK(pid_loop_401_samples)->Unit(benchmark::kMicrosecond);
 
 void pi_loop_dead_time(benchmark::State& state) {
     const ParallelPid slow{.Kp = 4, .Ki = 16};
-    loop(state, cstr("T", 0.05), slow, 10, two_minutes(true, 0));
+    loop(state, reactor("T", 0.05), slow, 10, two_minutes(true, 0));
 }
 BENCHMARK(pi_loop_dead_time)->Unit(benchmark::kMicrosecond);
 
 void pi_loop_limited(benchmark::State& state) {
     NonlinearOptions options = two_minutes(true, 0);
     options.actuator = OutputLimits{-50, 50};
-    loop(state, cstr("T"), kPi, 10, options);
+    loop(state, reactor("T"), kPi, 10, options);
 }
 BENCHMARK(pi_loop_limited)->Unit(benchmark::kMicrosecond);
 
 void evaluation(benchmark::State& state) {
-    const auto system = cstr("T");
+    const auto system = reactor("T");
     EvaluateOptions options;
     options.setpoint_step = 10;
     for (auto _ : state) {
@@ -90,7 +76,7 @@ void evaluation(benchmark::State& state) {
 BENCHMARK(evaluation)->Unit(benchmark::kMicrosecond);
 
 void step_test(benchmark::State& state) {
-    const auto system = cstr("CA");
+    const auto system = reactor("CA");
     for (auto _ : state) {
         const auto test = simulate_step_test(system, 10, {});
         if (!test || !test->settled) state.SkipWithError("not settled");
@@ -100,7 +86,7 @@ void step_test(benchmark::State& state) {
 BENCHMARK(step_test)->Unit(benchmark::kMicrosecond);
 
 void relay_test(benchmark::State& state) {
-    const auto system = cstr("T", 0.05);
+    const auto system = reactor("T", 0.05);
     for (auto _ : state) {
         const auto test = simulate_relay_test(system, 5, 0, {});
         if (!test) state.SkipWithError("no oscillation");

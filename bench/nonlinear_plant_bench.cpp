@@ -9,43 +9,27 @@
 #include "engine/plant/lie_derivatives.h"
 #include "engine/plant/nonlinear_system.h"
 #include "engine/simulation/linearising_response.h"
+#include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {
 namespace {
 
-constexpr const char* kEnergyBalance = "F/V*(TA0-T)-DH/(rho*cp)*k0*exp(-ER/T)*CA+UA/(rho*cp*V)*(Tj-T)";
-
-NonlinearPlant reactor(const std::string& output) {
-    return {.states = {{"CA", 0.52}, {"T", 398.97}},
-            .parameters = {{"V", 100.0},
-                           {"F", 100.0},
-                           {"ER", 8000.0},
-                           {"CA0", 1.0},
-                           {"TA0", 400.0},
-                           {"DH", 2e5},
-                           {"k0", 4.71e8},
-                           {"cp", 1.0},
-                           {"rho", 1000.0},
-                           {"UA", 1e5}},
-            .equations = {{"CA", "F/V*(CA0-CA)-k0*exp(-ER/T)*CA"}, {"T", kEnergyBalance}},
-            .input = {.name = "Tj", .nominal = 493.87},
-            .output = output};
-}
-
 NonlinearSystem made(const std::string& output) {
-    auto system = NonlinearSystem::make(reactor(output));
+    auto system = NonlinearSystem::make(cstr(output));
     if (!system || std::abs(system->x_steady()[1] - 398.96799958114184) > 1e-9)
         throw std::runtime_error("the reactor's steady state is wrong");
     return *system;
 }
 
 void parse_energy_balance(benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(parse_expression(kEnergyBalance));
+    const std::string energy_balance = cstr("T").equations[1].text;
+    for (auto _ : state) benchmark::DoNotOptimize(parse_expression(energy_balance));
 }
 BENCHMARK(parse_energy_balance);
 
 void make_reactor(benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(NonlinearSystem::make(reactor("T")));
+    const NonlinearPlant plant = cstr("T");
+    for (auto _ : state) benchmark::DoNotOptimize(NonlinearSystem::make(plant));
 }
 BENCHMARK(make_reactor);
 

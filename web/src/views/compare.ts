@@ -1,12 +1,9 @@
 // Compare: every method on this plant as a league table, and the chosen rows together in every plot.
-import { cancelJob } from "../api/jobs.ts";
 import { isFinal } from "../api/types.ts";
-import type { Job, Result, TuningRequest } from "../api/types.ts";
+import type { Job, Result } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
-import { nyquistFrame } from "../charts/nyquist.ts";
-import { BESIDE_LINEAR, hasLinear, responseFrame } from "../charts/responses.ts";
-import { sensitivityFrame } from "../charts/sensitivities.ts";
+import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
 import { h } from "../dom.ts";
 import { asksForAll } from "../form/retune.ts";
 import { csvText, download } from "../plot/export.ts";
@@ -16,8 +13,10 @@ import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { leagueColumns, leagueRows, leagueTable as tableOf, orderOf, RANK_MS, sortText } from "../words/league.ts";
 import type { LeagueColumn } from "../words/league.ts";
-import { commonLimits } from "../words/limits.ts";
 import { unitNames } from "../words/numbers.ts";
+import { showEntryPlots } from "./entry_plots.ts";
+import { jobActions } from "./job_actions.ts";
+import type { JobEvents } from "./job_actions.ts";
 import { leagueControls } from "./league_controls.ts";
 import { leagueTable } from "./league_table.ts";
 import { progressCard } from "./progress_card.ts";
@@ -26,20 +25,13 @@ import { titleCard } from "./title_card.ts";
 import { tradeoffCard } from "./tradeoff_card.ts";
 import { showFailure } from "./verdict_card.ts";
 
-export interface CompareEvents {
-  onJob(job: Job): void;
-  /** Runs every method on this request's plant or record. */
-  onCompareAll(request: TuningRequest): Promise<void>;
-}
-
-export function compareView(store: Store, announce: (sentence: string) => void, events: CompareEvents): View {
+export function compareView(store: Store, announce: (sentence: string) => void, events: JobEvents): View {
   let shown: Result | null = null;
   let drawnBefore: number[] | null = null;
   let columns: LeagueColumn[] = [];
   const designLink = h("a", { href: "#/" }, "Settings and verdict");
-  const all = h("button", { type: "button", onclick: () => void compareAll() }, "Compare all methods");
+  const { all, trouble, complain, cancel } = jobActions(store, events);
   const title = titleCard("Compare", designLink);
-  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const failure = h("section", { class: "verdict", "aria-label": "Verdict" });
   const progress = progressCard(announce, () => void cancel());
   const heading = h("h2", { id: "league-title" });
@@ -76,24 +68,6 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     league,
     overlay,
   );
-
-  function complain(error: unknown): void {
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
-  }
-
-  async function cancel(): Promise<void> {
-    const job = store.get().job;
-    if (job) await cancelJob(job.id).then(events.onJob, complain);
-  }
-
-  async function compareAll(): Promise<void> {
-    const request = store.get().job?.request;
-    if (!request) return;
-    all.disabled = true;
-    await events.onCompareAll(request).catch(complain);
-    all.disabled = false;
-  }
 
   function sortBy(column: string): void {
     const order = orderOf(store.get().sort);
@@ -147,13 +121,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
 
   function showPlots(job: Job, drawn: Drawn[]): void {
     const request = job.request;
-    const responses = drawn.some((item) => item.entry.responses);
-    const frequency = drawn.some((item) => item.entry.frequency);
-    const limits = commonLimits(drawn.map((item) => item.entry));
-    plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request) : null);
-    plots.show("load", responses ? responseFrame("load", drawn, request) : null);
-    plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
-    plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
+    showEntryPlots(plots, drawn, request);
     linearNote.hidden = !hasLinear(drawn);
     const plant = job.result?.model?.plant ?? job.result?.linear_model ?? request?.plant;
     tradeoff.show(drawn, plant, unitNames(request?.units).time);

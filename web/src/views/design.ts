@@ -1,13 +1,10 @@
 // Design: the verdict, the settings to enter, the figures and the plots of a job; its progress while it runs.
-import { cancelJob } from "../api/jobs.ts";
 import { isFinal } from "../api/types.ts";
 import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
-import { nyquistFrame } from "../charts/nyquist.ts";
 import { recordFrame } from "../charts/record.ts";
-import { BESIDE_LINEAR, hasLinear, responseFrame } from "../charts/responses.ts";
-import { sensitivityFrame } from "../charts/sensitivities.ts";
+import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
 import { h } from "../dom.ts";
 import { withLambda } from "../form/retune.ts";
 import { plotGrid } from "../plot/grid.ts";
@@ -15,11 +12,13 @@ import { swatch } from "../plot/swatch.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
-import { commonLimits } from "../words/limits.ts";
 import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { emulationCard } from "./emulation_card.ts";
+import { showEntryPlots } from "./entry_plots.ts";
 import { figuresTable } from "./figures_table.ts";
+import { jobActions } from "./job_actions.ts";
+import type { JobEvents } from "./job_actions.ts";
 import { createLegend } from "./legend.ts";
 import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
@@ -45,19 +44,15 @@ function listedEntries(count: number, drawn: Drawn[], selected: number): number[
   return every.filter((index) => index === selected || drawn.some((item) => item.index === index));
 }
 
-export interface DesignEvents {
-  onJob(job: Job): void;
-  /** Runs every method on this request's plant or record. */
-  onCompareAll(request: TuningRequest): Promise<void>;
+export interface DesignEvents extends JobEvents {
   /** Tunes again and shows the answer in this one's place; throws where the entry of that index gets none. */
   onRetune(request: TuningRequest, index: number): Promise<void>;
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
   const league = h("a", { href: "#/" }, "League table");
-  const all = h("button", { type: "button", class: "quiet", onclick: () => void compareAll() }, "Compare all methods");
+  const { all, trouble, cancel } = jobActions(store, events, "quiet");
   const title = titleCard("Design", league, all);
-  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const progress = progressCard(announce, () => void cancel());
   const settings = settingsCard(announce);
@@ -91,16 +86,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     body,
   );
 
-  function complain(error: unknown): void {
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
-  }
-
-  async function cancel(): Promise<void> {
-    const job = store.get().job;
-    if (job) await cancelJob(job.id).then(events.onJob, complain);
-  }
-
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
     const firstAnswer = result.controllers.findIndex((candidate) => !candidate.error);
@@ -113,14 +98,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     if (!request || !result) return;
     const index = selectedEntry(result, workspace);
     await events.onRetune(withLambda(request, result, index, lambda), index);
-  }
-
-  async function compareAll(): Promise<void> {
-    const request = store.get().job?.request;
-    if (!request) return;
-    all.disabled = true;
-    await events.onCompareAll(request).catch(complain);
-    all.disabled = false;
   }
 
   function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames): void {
@@ -146,14 +123,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
 
   function showPlots(job: Job, result: Result, drawn: Drawn[], selected: number): void {
     const request = job.request;
-    const responses = drawn.some((item) => item.entry.responses);
-    const frequency = drawn.some((item) => item.entry.frequency);
-    const limits = commonLimits(drawn.map((item) => item.entry));
     linearNote.hidden = !hasLinear(drawn);
-    plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
-    plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
-    plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
-    plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
+    showEntryPlots(plots, drawn, request, selected);
     plots.show("record", result.model ? recordFrame(result.model, request) : null);
   }
 

@@ -11,6 +11,7 @@
 #include "engine/nonlinear_figures.h"
 #include "engine/number_text.h"
 #include "engine/performance_figures.h"
+#include "engine/plant/linearised_plant.h"
 #include "engine/simulation/nonlinear_loop.h"
 #include "engine/simulation/nonlinear_response.h"
 
@@ -129,7 +130,7 @@ EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions o
 Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& controller,
                               const EvaluateOptions& options) {
     if (auto error = refuse_evaluation(controller, options)) return *error;
-    const auto plant = LinearPlant::make(system.linearised());
+    const auto plant = linearised_plant(system);
     if (!plant) return plant.error();
     const auto loop = Loop::make(*plant, gains(controller));
     if (!loop) {

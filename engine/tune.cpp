@@ -7,6 +7,7 @@
 #include "engine/league.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear_plant.h"
+#include "engine/plant/linearised_plant.h"
 
 namespace tunewright {
 namespace {
@@ -223,7 +224,7 @@ void Run::add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& r
 
 std::optional<Error> Run::state_problem() {
     const Plant& nominal = family_.nominal();
-    auto linear = LinearPlant::make(nominal);
+    auto linear = nonlinear_ ? linearised_plant(*nonlinear_) : LinearPlant::make(nominal);
     if (!linear) return placed(linear.error(), "");
     problem_ = TuningProblem{nominal, std::move(*linear), dead_time_std_, held_};
     if (nonlinear_) problem_->nonlinear = &*nonlinear_;

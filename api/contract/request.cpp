@@ -5,7 +5,7 @@
 #include "api/contract/plant.h"
 #include "engine/loop/loop.h"
 #include "engine/plant/linear_plant.h"
-#include "engine/plant/nonlinear_system.h"
+#include "engine/plant/linearised_plant.h"
 
 namespace tunewright::api {
 namespace {
@@ -101,11 +101,11 @@ std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
     if (std::holds_alternative<FrequencyResponse>(model)) return plants;
     if (const auto* equations = std::get_if<NonlinearPlant>(&model)) {
         const auto system = NonlinearSystem::make(*equations);
-        if (!system) {
-            reader.fault_below(system.error().where, 1, system.error().message);
-        } else if (auto linear = check_linear(system->linearised(), reader)) {
+        auto linear = system ? linearised_plant(*system) : system.error();
+        if (linear)
             plants.push_back(std::move(*linear));
-        }
+        else
+            reader.fault_below(linear.error().where, 1, linear.error().message);
         return plants;
     }
     const auto& members = std::get<PlantSet>(model).plants;

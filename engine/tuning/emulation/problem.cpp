@@ -11,10 +11,11 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kShareOfInput = 0.05;  // of the nominal input, or of its range: the default step
-constexpr double kTargetTimes = 8;      // the default horizon, in the target's slowest time
-constexpr double kFilterShare = 0.1;    // the default Tf over the target's time
-constexpr NumberRange kAlpha{0.2, 5};   // the default of Eq. 3
+constexpr double kShareOfInput = 0.05;    // of the nominal input, or of its range: the default step
+constexpr double kTargetTimes = 8;        // the default horizon, in the target's slowest time
+constexpr double kMostTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
+constexpr double kFilterShare = 0.1;      // the default Tf over the target's time
+constexpr NumberRange kAlpha{0.2, 5};     // the default of Eq. 3
 constexpr int kFewestIntervals = 800, kMostIntervals = 6400;
 constexpr double kIntervalShare = 0.04;  // of the fastest time constant
 
@@ -128,6 +129,16 @@ void choose_bounds(Problem& problem, const MethodOptions& options) {
                                    : options.number("Tf").value_or(kFilterShare * target_time(problem.target));
 }
 
+std::optional<Error> choose_horizon(Problem& problem, const MethodOptions& options) {
+    const double slowest = slowest_time(problem.target), L = problem.system->dead_time();
+    problem.horizon = options.number("horizon").value_or(kTargetTimes * slowest + L);
+    const double longest = kMostTargetTimes * slowest + L;
+    if (problem.horizon <= longest) return std::nullopt;
+    return wrong("horizon", "horizon is " + text(problem.horizon) + ", so long that the response, over after some " +
+                                text(kTargetTimes * slowest) + ", would fall between two samples; it may be " +
+                                text(longest) + " at most.");
+}
+
 std::optional<Error> choose_weights(Problem& problem, double gain, const MethodOptions& options) {
     const auto wy = options.number("weights/wy"), wu = options.number("weights/wu");
     problem.wu = wu.value_or(1);
@@ -181,8 +192,7 @@ Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions&
     auto scenarios = chosen_scenarios(problem, modest, gain, options);
     if (!scenarios) return scenarios.error();
     problem.scenarios = std::move(*scenarios);
-    problem.horizon =
-        options.number("horizon").value_or(kTargetTimes * slowest_time(problem.target) + problem.system->dead_time());
+    if (const auto error = choose_horizon(problem, options)) return *error;
     if (const auto error = choose_weights(problem, gain, options)) return *error;
     choose_bounds(problem, options);
     problem.intervals = chosen_intervals(problem);

@@ -393,6 +393,10 @@ TEST(Emulation, WrongOptionsAreToldAtTheirPlace) {
         {"alpha", {{"bounds_from/alpha/0", 2.0}, {"bounds_from/alpha/1", 3.0}}, "bounds_from/alpha", "below 1"},
         {"method", {{"bounds_from/methods/0", std::string("emulation")}}, "bounds_from/methods/0", "emulation"},
         {"test", {{"bounds_from/test_step", 0.0}}, "bounds_from/test_step", "shows nothing"},
+        {"horizon",
+         {{"target/tau_cl", 0.2}, {"target/xi", 1.0}, {"horizon", 130.0}},
+         "horizon",
+         "would fall between two samples; it may be 128 at most"},
     };
     for (const Refusal& refusal : refusals) {
         SCOPED_TRACE(refusal.why);

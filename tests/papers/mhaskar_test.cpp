@@ -210,6 +210,20 @@ const LevelOneRow* row_of(const EmulationReport& report, const std::string& meth
     return nullptr;
 }
 
+// Printed: -1342.7, 0.95, 0.0524, the step of its test not told.
+TEST(Mhaskar, ImcOnTheDefaultStepTestIsTableIIIsFirstRow) {
+    MethodOptions options = loop_options(false, 0.05, 2);
+    options.set("formulation", std::string("remark6"));
+    const auto answer = emulated(reactor(false).problem, options);
+    ASSERT_TRUE(answer) << answer.error().message;
+    const LevelOneRow* step = row_of(*answer->emulation, "imc", "step");
+    ASSERT_TRUE(step && step->controller) << (step ? step->error : "no row");
+    const auto imc_I = settings(std::get<Pid>(*step->controller));
+    EXPECT_NEAR(imc_I[0] / -1342.7, 1, 0.01);
+    EXPECT_NEAR(imc_I[1] / 0.95, 1, 0.01);
+    EXPECT_NEAR(imc_I[2] / 0.0524, 1, 0.02);
+}
+
 TEST(Mhaskar, TheFirstLevelsImcRowsAreTableIIIs) {
     MethodOptions options = loop_options(false, 0.05, 2);
     options.set("bounds_from/methods/0", std::string("imc"));

@@ -101,10 +101,10 @@ OptionDescription bounds_from_option() {
               of_type(OptionType::text, "method", "Id of a method."), 20),
          alpha, positive("lambda", "Of imc. Default: the target's time constant.", "time"),
          of_type(OptionType::number, "test_step",
-                 "Step of the input in that test, not 0. Default: that of the default "
-                 "scenario.",
+                 "Step of the input in that test, not 0. Default: 2 % of the input's range, or of its "
+                 "nominal value.",
                  "u"),
-         positive("relay_amplitude", "Of the relay test. Default: that step's size.", "u"), hysteresis});
+         positive("relay_amplitude", "Of the relay test. Default: 5 % of them.", "u"), hysteresis});
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ constexpr double kTargetTimes = 8;        // the default horizon, in the target'
 constexpr double kMostTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
 constexpr double kFilterShare = 0.1;      // the default Tf over the target's time
 constexpr NumberRange kAlpha{0.2, 5};     // the default of Eq. 3
+constexpr double kShareOfTest = 0.4;      // of that step: a simulated test has no noise to stand out of
 constexpr int kFewestIntervals = 800, kMostIntervals = 6400;
 constexpr double kIntervalShare = 0.04;  // of the fastest time constant
 
@@ -108,7 +109,7 @@ Expected<LevelOneOptions> chosen_level_one(const Problem& problem, double modest
     level.lambda = options.number("bounds_from/lambda")
                        .value_or(problem.relative_degree == 2 ? std::sqrt(problem.target.beta[2])
                                                               : target_time(problem.target) / problem.relative_degree);
-    level.test_step = options.number("bounds_from/test_step").value_or(modest);
+    level.test_step = options.number("bounds_from/test_step").value_or(kShareOfTest * modest);
     if (level.test_step == 0)
         return wrong("bounds_from/test_step", "test_step is 0; a test without a step shows nothing.");
     level.relay_amplitude = options.number("bounds_from/relay_amplitude").value_or(modest);

@@ -67,9 +67,13 @@ struct EmulationReport {
     std::vector<LevelOneRow> level1;
     std::vector<EmulatedScenario> scenarios;
 
+    /// All but what was emulated in the first scenario.
     void drop_traces() {
         for (LevelOneRow& row : level1) row.t = row.y = row.u = {};
-        for (EmulatedScenario& run : scenarios) run.t = run.y_nl = run.u_nl = run.y = run.u = {};
+        for (EmulatedScenario& run : scenarios) {
+            run.y = run.u = {};
+            if (&run != &scenarios.front()) run.t = run.y_nl = run.u_nl = {};
+        }
     }
 };
 

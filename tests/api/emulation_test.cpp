@@ -64,10 +64,13 @@ TEST(EmulationContract, AnEntryCarriesBothLevelsAndFitsTheDocument) {
     EXPECT_EQ(entry["options"]["formulation"], "full");
 }
 
-TEST(EmulationContract, WithoutPointsThereAreNoTraces) {
+TEST(EmulationContract, WithoutPointsOnlyWhatIsEmulatedHasTraces) {
     const Json emulation = tuned(request(Json::array({kMethod}), kTank))["controllers"][0]["emulation"];
-    EXPECT_FALSE(emulation.contains("t"));
+    EXPECT_EQ(emulation["t"].size(), 401u);
+    EXPECT_EQ(emulation["y_nl"].size(), 401u);
+    EXPECT_EQ(emulation["u_nl"].size(), 401u);
     EXPECT_FALSE(emulation["scenarios"][0].contains("y"));
+    EXPECT_FALSE(emulation["scenarios"][1].contains("y_nl"));
     EXPECT_FALSE(emulation["level1"][0].contains("u"));
     EXPECT_GT(emulation["J"].get<double>(), 0);
 }

@@ -6,14 +6,6 @@
 namespace tunewright::api {
 namespace {
 
-Codec<std::string> words() {
-    return {{},
-            [](const std::string& value, Writer& out) { out.text(value); },
-            [](SchemaBook&) {
-                return Json{{"type", "string"}};
-            }};
-}
-
 // Left out where there is nothing to say.
 Codec<std::string> words_if_any() {
     return unless<std::string>(words(), [](const std::string& value) { return value.empty(); });

@@ -15,14 +15,6 @@
 namespace tunewright::api {
 namespace {
 
-Codec<std::string> words() {
-    return {{},
-            [](const std::string& value, Writer& out) { out.text(value); },
-            [](SchemaBook&) {
-                return Json{{"type", "string"}};
-            }};
-}
-
 // Reads a member of the entry's evaluation; left out where there is none.
 template <class M>
 void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluation::*member, const Codec<M>& codec,

@@ -128,6 +128,14 @@ Codec<std::string> text(std::size_t longest) {
             }};
 }
 
+Codec<std::string> words() {
+    return {{},
+            [](const std::string& value, Writer& out) { out.text(value); },
+            [](SchemaBook&) {
+                return Json{{"type", "string"}};
+            }};
+}
+
 Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null) {
     return {[rule](const Json& value, double& target, Reader& reader) {
                 if (value.is_null()) {

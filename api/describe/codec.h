@@ -51,6 +51,9 @@ Codec<int> integer(int minimum, int maximum);
 Codec<bool> boolean();
 Codec<std::string> text(std::size_t longest);
 
+/// Only in answers: a text of any length.
+Codec<std::string> words();
+
 /// A number or null for "infinite", as with Ti.
 Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null);
 

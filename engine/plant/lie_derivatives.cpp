@@ -132,8 +132,7 @@ Expected<int> relative_degree(const NonlinearSystem& system) {
 ZeroDynamics zero_dynamics(const NonlinearSystem& system) {
     const StateSpace& linear = system.linearised();
     const auto n = static_cast<std::size_t>(system.order());
-    std::vector<double> A;
-    for (const auto& row : linear.A) A.insert(A.end(), row.begin(), row.end());
+    const std::vector<double> A = row_by_row(linear.A);
     ZeroDynamics result;
     result.zeros = transmission_zeros(A, linear.B, linear.C, 0, static_cast<int>(n)).value_or(result.zeros);
     double scale = 0;

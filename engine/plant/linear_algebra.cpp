@@ -88,6 +88,12 @@ void polish(std::span<const double> coefficients, std::vector<Complex>& roots) {
 
 }  // namespace
 
+std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows) {
+    std::vector<double> matrix;
+    for (const auto& row : rows) matrix.insert(matrix.end(), row.begin(), row.end());
+    return matrix;
+}
+
 std::vector<Complex> eigenvalues(std::span<const double> matrix, int n) {
     if (n == 0) return {};
     Matrix A = as_matrix(matrix, n);

@@ -9,6 +9,9 @@
 
 namespace tunewright {
 
+/// The rows of a matrix one after another.
+std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);
+
 /// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
 std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
 

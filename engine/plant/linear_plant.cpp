@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/plant/factor.h"
+#include "engine/plant/linear_algebra.h"
 #include "engine/plant/realisation.h"
 
 namespace tunewright {
@@ -11,7 +12,7 @@ namespace {
 Realisation as_given(const StateSpace& plant) {
     Realisation realisation;
     realisation.n = static_cast<int>(plant.A.size());
-    for (const auto& row : plant.A) realisation.A.insert(realisation.A.end(), row.begin(), row.end());
+    realisation.A = row_by_row(plant.A);
     realisation.B = plant.B;
     realisation.C = plant.C;
     realisation.D = plant.D;

@@ -10,9 +10,11 @@ std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x
                         double t) {
     constexpr double kFirst = std::numeric_limits<double>::epsilon(), kFar = 1e3, kGrowth = 4;
     std::vector<double> ahead(x.size());
-    for (double length = 0; length<kFar; length = length> 0 ? kGrowth * length : kFirst * std::max(t, 1e-9)) {
+    double length = 0;
+    while (length < kFar) {
         for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + length * dx[i];
         if (std::string sentence = system.domain_fault(ahead, u); !sentence.empty()) return sentence;
+        length = std::max(kGrowth * length, kFirst * std::max(t, 1e-9));
     }
     return "Their rates of change do not exist there.";
 }

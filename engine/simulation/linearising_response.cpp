@@ -97,10 +97,6 @@ public:
     }
 
 private:
-    double clipped(double u) const {
-        return u > system_.u_max() ? system_.u_max() : u < system_.u_min() ? system_.u_min() : u;
-    }
-
     // What the present side applies, whether or not the law has left it: smooth over a step.
     double input(std::span<const double> x) {
         if (limit_ == Limit::high) return system_.u_max();
@@ -174,7 +170,7 @@ private:
         }
         for (double t; u.size() < samples && (t = sample_time(u.size(), options_)) <= now();) {
             integrator_.at(t, inside_);
-            u.push_back(clipped(law_(inside_)) - system_.u_nominal());
+            u.push_back(std::clamp(law_(inside_), system_.u_min(), system_.u_max()) - system_.u_nominal());
         }
     }
 

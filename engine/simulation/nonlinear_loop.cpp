@@ -5,6 +5,7 @@
 
 #include "engine/plant/linear_algebra.h"
 #include "engine/plant/linear_plant.h"
+
 namespace tunewright {
 namespace {
 
@@ -38,8 +39,7 @@ double size_of_effect(const NonlinearSystem& system, double d) {
     if (d == 0) return 0;
     const StateSpace& plant = system.linearised();
     const int n = system.order();
-    std::vector<double> A;
-    for (const auto& row : plant.A) A.insert(A.end(), row.begin(), row.end());
+    const std::vector<double> A = row_by_row(plant.A);
     double time = plant.L;
     for (const auto pole : eigenvalues(A, n))
         if (std::abs(pole) > 0) time += 1 / std::abs(pole);

@@ -30,9 +30,7 @@ struct Modes {
 };
 
 Modes modes_of(const NonlinearSystem& system) {
-    std::vector<double> A;
-    for (const auto& row : system.linearised().A) A.insert(A.end(), row.begin(), row.end());
-    const auto poles = eigenvalues(A, system.order());
+    const auto poles = eigenvalues(row_by_row(system.linearised().A), system.order());
     double fastest = 0;
     for (const auto pole : poles) fastest = std::max(fastest, std::abs(pole));
     Modes modes{system.dead_time(), 0, 0, true};

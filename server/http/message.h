@@ -3,11 +3,15 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tunewright::server::http {
+
+class BodySource;
+class BodyStream;
 
 /// Compares header names without regard to case.
 struct CaseInsensitive {
@@ -22,7 +26,11 @@ struct Request {
     std::multimap<std::string, std::string> query;
     std::multimap<std::string, std::string, CaseInsensitive> headers;
     std::string body;
+    std::shared_ptr<BodySource> source;  ///< of a call that reads its body as it arrives; `body` is then empty
     std::string remote_addr;
+    std::string client;      ///< whom it counts for where clients share something: the key's name, else the address
+    std::string owner;       ///< the name of the API key; "" where none is asked for
+    std::string request_id;  ///< names this request in answers and logs
 
     /// The first header of that name; "" if there is none.
     std::string_view header(std::string_view name) const;
@@ -37,8 +45,9 @@ struct Response {
     int status = 200;
     std::vector<std::pair<std::string, std::string>> headers;  ///< values must be free of control characters
     std::string body;
-    bool close = false;         ///< close the connection after this answer
-    bool body_omitted = false;  ///< answer to HEAD: the length is told, the body is not sent
+    std::shared_ptr<BodyStream> stream;  ///< instead of `body`: sent as it is written
+    bool close = false;                  ///< close the connection after this answer
+    bool body_omitted = false;           ///< answer to HEAD: the length is told, the body is not sent
 
     Response& set(std::string name, std::string value);
 };

@@ -84,8 +84,19 @@ void Router::deferred(const std::string& method, const std::string& pattern, Asy
     add(method, pattern, Lane::pooled, std::move(handler));
 }
 
-void Router::add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler) {
-    routes_.push_back({method, pattern, split_pattern(pattern), lane, std::move(handler)});
+void Router::streamed(const std::string& method, const std::string& pattern, AsyncHandler handler) {
+    add(method, pattern, Lane::pooled, std::move(handler)).streamed = true;
+}
+
+bool Router::streams(const Request& head) const {
+    return std::ranges::any_of(routes_, [&](const Route& route) {
+        return route.streamed && serves(route.method, head.method) && matches(route.parts, head.segments);
+    });
+}
+
+Router::Route& Router::add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler) {
+    routes_.push_back({method, pattern, split_pattern(pattern), lane, false, std::move(handler)});
+    return routes_.back();
 }
 
 void Router::handle(Request request, Reply reply) const {

@@ -53,6 +53,12 @@ public:
     /// The handler runs on the pool and replies whenever it can, from any thread.
     void deferred(const std::string& method, const std::string& pattern, AsyncHandler handler);
 
+    /// The same for a call whose body is read as it arrives (Request::source): the handler runs as soon as the head is
+    /// there.
+    void streamed(const std::string& method, const std::string& pattern, AsyncHandler handler);
+    /// True where the head belongs to a route of streamed(): what the server asks before it gathers a body.
+    bool streams(const Request& head) const;
+
     /// Asked on GET and HEAD where no pattern matches: files.
     void otherwise(std::function<std::optional<Response>(const Request&)> fallback) { fallback_ = std::move(fallback); }
     /// Told once for each answer, on the thread that gave it.
@@ -68,10 +74,11 @@ private:
         std::string pattern;
         std::vector<std::string> parts;
         Lane lane = Lane::quick;
+        bool streamed = false;
         AsyncHandler handler;
     };
 
-    void add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler);
+    Route& add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler);
     Reply observed(const Request& request, const std::string& route, Reply reply) const;
     Response unrouted(const Request& request, const std::vector<std::string>& allowed) const;
 

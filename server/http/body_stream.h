@@ -1,0 +1,46 @@
+// The body of an answer that is made while it is sent: server-sent events, results of a batch. The producer writes from
+// any thread; the event loop owns the socket and sends chunks as the client takes them. An open stream costs a buffer,
+// never a thread.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace tunewright::server::http {
+
+class BodyStream {
+public:
+    /// The producer should write no more than this ahead of the client.
+    static constexpr std::size_t kRoom = 256 * 1024;
+
+    /// Takes the next piece; false where the client has gone and nothing is sent any more.
+    bool write(std::string piece);
+    /// No more comes. What was written before is still sent.
+    void end();
+    /// Bytes written that the client has not taken yet.
+    std::size_t waiting() const;
+    bool gone() const;
+
+    /// `more` runs on the event loop, soon, whenever less than kRoom is waiting: once at the start and then each time
+    /// that what was written has been taken. Quick: whatever takes longer goes elsewhere and writes from there.
+    void on_room(std::function<void()> more);
+    /// `left` runs once, on the event loop, when the client goes before the end. Set before the answer is given.
+    void on_gone(std::function<void()> left);
+
+private:
+    friend class Connection;
+    friend class Server;
+    mutable std::mutex mutex_;
+    std::string written_;      ///< not yet taken by the loop
+    std::size_t sending_ = 0;  ///< taken by the loop, not yet by the client
+    bool ended_ = false;
+    bool gone_ = false;
+    std::function<void()> more_;
+    std::function<void()> left_;
+    std::function<void()> wake_;  ///< tells the loop that there is something to send
+};
+
+}  // namespace tunewright::server::http

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,9 +29,9 @@ struct Request {
     std::string body;
     std::shared_ptr<BodySource> source;  ///< of a call that reads its body as it arrives; `body` is then empty
     std::string remote_addr;
-    std::string client;      ///< whom it counts for where clients share something: the key's name, else the address
-    std::string owner;       ///< the name of the API key; "" where none is asked for
-    std::string request_id;  ///< names this request in answers and logs
+    std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
+    std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all
+    std::string request_id;            ///< names this request in answers and logs
 
     /// The first header of that name; "" if there is none.
     std::string_view header(std::string_view name) const;

@@ -26,9 +26,13 @@ struct JobObserver {
 };
 
 struct JobSettings {
-    std::size_t workers = 1;
-    std::size_t queue_limit = 10'000;
-    int most_attempts = 10;  ///< a job that was interrupted that often is given up
+    std::string name;                     ///< of this process, for leases
+    std::size_t workers = 1;              ///< 0: this process takes requests and computes nothing
+    std::size_t queue_limit = 10'000;     ///< single jobs that may wait, all processes together
+    std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
+    int most_attempts = 10;               ///< a job that was interrupted that often is given up
+    std::chrono::milliseconds lease{10'000};
+    std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: kept for ever
     std::string version;
     /// Computes a job: api::run_job, or a test's own.
     std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
@@ -49,6 +53,15 @@ struct Submission {
     StoreFault fault;  ///< of store_failed
 };
 
+/// A request that is to become a job.
+struct Order {
+    api::PreparedJob job;
+    std::string idempotency_key;
+    std::string owner;  ///< as in NewJob
+    std::string flow;
+    std::chrono::duration<double> wait{0};
+};
+
 class JobService {
 public:
     /// Both must outlive the service.
@@ -62,9 +75,8 @@ public:
     Recovery start();
 
     /// `done` runs once, when the job is durable or refused. Where `wait` > 0 and the job is created, `ended` runs
-    /// after it, once: when the job has ended, or when `wait` is over.
-    void submit(api::PreparedJob job, std::string idempotency_key, std::chrono::duration<double> wait,
-                std::function<void(Submission)> done, std::function<void()> ended);
+    /// after it, once: when the job has ended (wherever it ran), or when `wait` is over.
+    void submit(Order order, std::function<void(Submission)> done, std::function<void()> ended);
 
     std::optional<JobView> find(const std::string& id);
     JobPage list(const JobQuery& query) { return store_.list(query); }
@@ -74,6 +86,16 @@ public:
 
     /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
     void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
+
+    // ---- for batches (batches.h), which put their entries into the store themselves
+    /// True where so many more entries may wait.
+    bool room_for_entries(std::size_t count);
+    /// Entries have been queued: workers look, here and (by the store's notice) elsewhere.
+    void work_arrived();
+    /// Running jobs of these ids, as far as they run here, stop as cancelled.
+    void stop_running(const std::vector<std::string>& ids);
+    /// Jobs have ended without a worker (a batch was cancelled): who waits for one of them looks again.
+    void look_again();
 
     /// Takes no more work; running jobs get `grace` to end, then they are stopped and go back to the queue.
     /// Whoever waits is told. True where every worker has stopped within two seconds more.

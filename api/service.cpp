@@ -73,16 +73,26 @@ Json question_json(const CsvQuestion& question) {
     return record;
 }
 
+Problem too_patient(double timeout_s, const JobLimits& limits) {
+    Reader reader;
+    reader.fault_at("timeout_s", "timeout_s is " + shown(timeout_s) + "; this service allows at most " +
+                                     shown(limits.longest_timeout_s) + " s.");
+    return *reader.problem();
+}
+
 }  // namespace
 
-std::variant<PreparedJob, Problem> prepare_job(std::string_view body) {
+std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
     const auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
     const Json& value = std::get<Json>(parsed);
     const auto decoded = decode(value, job_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
     const auto& request = std::get<JobRequest>(decoded);
-    return PreparedJob{request.name.value_or(""), request.timeout_s, compact(body), sha256_hex(canonical(value))};
+    const bool given = value.contains("timeout_s");
+    if (given && request.timeout_s > limits.longest_timeout_s) return too_patient(request.timeout_s, limits);
+    return PreparedJob{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, compact(body),
+                       sha256_hex(canonical(value))};
 }
 
 JobOutcome run_job(std::string_view request_json, const RunControl& control) {

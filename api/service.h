@@ -31,8 +31,14 @@ struct Answer {
     std::string body;
 };
 
+/// What an operator allows beside the contract.
+struct JobLimits {
+    double default_timeout_s = 60;    ///< of a request without timeout_s
+    double longest_timeout_s = 3600;  ///< at most 3600
+};
+
 /// Reads and checks a tuning request; every fault at once. 400 not JSON, 422 not a valid request.
-std::variant<PreparedJob, Problem> prepare_job(std::string_view body);
+std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits = {});
 
 /// Runs a prepared request to its end. Never throws for anything in the request.
 JobOutcome run_job(std::string_view request_json, const RunControl& control);

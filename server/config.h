@@ -2,19 +2,42 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tunewright::server {
+
+/// What of the service this process does. `api` takes requests and computes nothing; `worker` computes and answers
+/// probes and metrics alone.
+enum class Role { all, api, worker };
 
 struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
     std::string store = "sqlite:tunewright.db";
-    std::size_t workers = 0;  ///< 0: as many as there are cores
-    std::size_t queue_limit = 10'000;
-    std::size_t body_limit_mib = 8;    ///< of one request
-    std::string web;                   ///< "": `web` beside the folder of the binary
-    std::string log_format = "plain";  ///< or json
-    std::string log_level = "info";    ///< debug, info, warn, error
-    double grace_s = 5;                ///< what running jobs get when the service is asked to stop
+    std::string role = "all";         ///< or api, worker
+    std::size_t workers = 0;          ///< 0: as many as there are cores
+    std::string web;                  ///< "": `web` beside the folder of the binary
+    double drain_timeout_s = 5;       ///< what running jobs get when the service is asked to stop
+    std::string log_format = "text";  ///< or json
+    std::string log_level = "info";   ///< debug, info, warn, error
+
+    // Jobs
+    std::size_t queue_limit = 10'000;     ///< single jobs that may wait
+    std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
+    int max_attempts = 10;
+    double lease_s = 10;
+    double retention_h = 168;  ///< 0: for ever
+    double job_timeout_s = 60;
+    double max_timeout_s = 3600;
+
+    // The port
+    std::size_t max_body_mib = 8;          ///< of one request
+    std::size_t max_batch_body_mib = 256;  ///< of one batch
+    std::string auth = "none";             ///< or keys
+    std::string keys;                      ///< the file of keys
+    bool allow_anonymous = false;          ///< beyond loopback without keys
+    double rate_limit = 0;                 ///< calls a second of one client; 0: none
+    std::vector<std::string> cors_origins;
+    bool behind_proxy = false;
 };
 
 struct HostPort {
@@ -24,9 +47,14 @@ struct HostPort {
 
 /// Throws std::invalid_argument with a sentence.
 HostPort parse_listen(const std::string& text);
-
+Role parse_role(const std::string& text);
 /// The path of "sqlite:PATH". Throws std::invalid_argument with a sentence.
 std::string parse_store(const std::string& text);
+
+/// Throws std::invalid_argument with a sentence where the options do not go together: a port beyond loopback that asks
+/// for no keys, keys without a file, a worker of a store that only one process can use, a shorter longest time-out than
+/// the default one.
+void check_config(const Config& config);
 
 /// build/release/tunewright -> build/web
 std::string default_web_folder();

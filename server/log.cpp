@@ -34,8 +34,8 @@ void log_message(spdlog::level::level_enum level, std::string_view message) {
 }  // namespace
 
 void start_log(const std::string& format, const std::string& level) {
-    if (format != "plain" && format != "json")
-        throw std::invalid_argument("The log's format is \"" + format + "\"; it must be plain or json.");
+    if (format != "text" && format != "json")
+        throw std::invalid_argument("The log's format is \"" + format + "\"; it must be text or json.");
     const auto chosen = spdlog::level::from_str(level);
     if (chosen == spdlog::level::off && level != "off")
         throw std::invalid_argument("The log's level is \"" + level +
@@ -63,12 +63,14 @@ void log_exchange(const http::Exchange& exchange) {
     const double ms = static_cast<double>(exchange.duration.count()) * 1e-3;
     const std::string target = json_string(exchange.target);
     if (as_json)
-        spdlog::log(level,
-                    R"("event":"request","method":"{}","target":{},"status":{},"ms":{:.2f},"bytes":{},"remote":"{}")",
-                    exchange.method, target, exchange.status, ms, exchange.bytes, exchange.remote_addr);
+        spdlog::log(
+            level,
+            R"("event":"request","id":{},"method":{},"target":{},"status":{},"ms":{:.2f},"bytes":{},"client":{})",
+            json_string(exchange.request_id), json_string(exchange.method), target, exchange.status, ms, exchange.bytes,
+            json_string(exchange.client));
     else
-        spdlog::log(level, "request {} {} {} {:.2f} ms, {} bytes to {}", exchange.method, target, exchange.status, ms,
-                    exchange.bytes, exchange.remote_addr);
+        spdlog::log(level, "request {} {} {} {} {:.2f} ms, {} bytes to {}", exchange.request_id, exchange.method,
+                    target, exchange.status, ms, exchange.bytes, exchange.client);
 }
 
 void log_job(const JobRecord& job, double seconds) {

@@ -1,5 +1,5 @@
-// One line for each request and each job, on standard error, plain or as JSON; written by a thread of its own, so that
-// a slow reader of the log never holds up an answer (the oldest lines are dropped instead).
+// One line for each request and each job, on standard error, as text or as JSON; written by a thread of its own, so
+// that a slow reader of the log never holds up an answer (the oldest lines are dropped instead).
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct Exchange;
 }
 struct JobRecord;
 
-/// Format: plain or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
+/// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
 /// Writes what is waiting.
 void stop_log();

@@ -1,12 +1,99 @@
 // The command line of the one binary; everything else is behind serve() and tune().
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <exception>
 #include <iostream>
 
+#include "server/access/key_command.h"
 #include "server/config.h"
 #include "server/identify_command.h"
 #include "server/serve.h"
 #include "server/tune_command.h"
+
+namespace {
+
+using tunewright::server::Config;
+
+/// Each option has a variable of the same name: --max-body is TUNEWRIGHT_MAX_BODY.
+template <class T>
+CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std::string& help) {
+    std::string variable = "TUNEWRIGHT_";
+    for (const char c : name)
+        variable.push_back(c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+    return app.add_option("--" + name, value, help)->envname(variable);
+}
+
+void flag(CLI::App& app, const std::string& name, bool& value, const std::string& variable, const std::string& help) {
+    app.add_flag("--" + name, value, help)->envname(variable);
+}
+
+void add_process_options(CLI::App& app, Config& config) {
+    option(app, "listen", config.listen, "HOST:PORT; port 0 lets the system choose")->capture_default_str();
+    option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
+        ->capture_default_str();
+    option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")
+        ->capture_default_str();
+    option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
+        ->check(CLI::Range(1, 1024));
+    option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
+    option(app, "drain-timeout", config.drain_timeout_s, "Seconds that running jobs get when the service is stopped")
+        ->check(CLI::Range(0.0, 3600.0))
+        ->capture_default_str();
+    option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
+    option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
+}
+
+void add_job_options(CLI::App& app, Config& config) {
+    option(app, "queue-limit", config.queue_limit, "Single jobs that may wait; more are answered 429")
+        ->check(CLI::Range(1, 10'000'000))
+        ->capture_default_str();
+    option(app, "entry-limit", config.entry_limit, "Entries of batches that may wait; more are answered 429")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    option(app, "max-attempts", config.max_attempts, "A job that was interrupted so often fails")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    option(app, "lease", config.lease_s, "Seconds without a sign of life after which another worker takes a job")
+        ->check(CLI::Range(1.0, 3600.0))
+        ->capture_default_str();
+    option(app, "retention", config.retention_h, "Hours that ended jobs are kept; 0: for ever")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    option(app, "job-timeout", config.job_timeout_s, "Seconds for a job that does not say timeout_s")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->capture_default_str();
+    option(app, "max-timeout", config.max_timeout_s, "Longest timeout_s that a request may ask for")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->capture_default_str();
+}
+
+void add_port_options(CLI::App& app, Config& config) {
+    option(app, "max-body", config.max_body_mib, "Most of one request's body, in MiB; longer ones are answered 413")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    option(app, "max-batch-body", config.max_batch_body_mib, "Most of one batch's body, in MiB")
+        ->check(CLI::Range(1, 16384))
+        ->capture_default_str();
+    option(app, "auth", config.auth, "none or keys: what a call below /v1 must show")->capture_default_str();
+    option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
+    flag(app, "allow-anonymous", config.allow_anonymous, "TUNEWRIGHT_ALLOW_ANONYMOUS",
+         "Listen beyond loopback without keys");
+    option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: as many as he likes")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
+        ->delimiter(',');
+    flag(app, "behind-proxy", config.behind_proxy, "TUNEWRIGHT_BEHIND_PROXY",
+         "Clients are told apart by the last address of X-Forwarded-For");
+}
+
+void add_serve_options(CLI::App& app, Config& config) {
+    add_process_options(app, config);
+    add_job_options(app, config);
+    add_port_options(app, config);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace tunewright::server;
@@ -17,37 +104,7 @@ int main(int argc, char** argv) {
 
     Config config;
     CLI::App* serving = app.add_subcommand("serve", "Answer over HTTP until SIGTERM or Ctrl-C");
-    serving->add_option("--listen", config.listen, "HOST:PORT; port 0 lets the system choose")
-        ->envname("TUNEWRIGHT_LISTEN")
-        ->capture_default_str();
-    serving->add_option("--store", config.store, "Where jobs are kept: sqlite:PATH")
-        ->envname("TUNEWRIGHT_STORE")
-        ->capture_default_str();
-    serving->add_option("--workers", config.workers, "Jobs computed at the same time (default: one a core)")
-        ->envname("TUNEWRIGHT_WORKERS")
-        ->check(CLI::Range(1, 1024));
-    serving->add_option("--queue-limit", config.queue_limit, "Jobs that may wait; more are answered 429")
-        ->envname("TUNEWRIGHT_QUEUE_LIMIT")
-        ->check(CLI::Range(1, 10'000'000))
-        ->capture_default_str();
-    serving
-        ->add_option("--body-limit", config.body_limit_mib,
-                     "Most of one request's body, in MiB; longer ones are answered 413")
-        ->envname("TUNEWRIGHT_BODY_LIMIT")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    serving->add_option("--web", config.web, "Folder of the built page (default: web beside the binary's folder)")
-        ->envname("TUNEWRIGHT_WEB");
-    serving->add_option("--log-format", config.log_format, "plain or json, on standard error")
-        ->envname("TUNEWRIGHT_LOG_FORMAT")
-        ->capture_default_str();
-    serving->add_option("--log-level", config.log_level, "debug, info, warn, error or off")
-        ->envname("TUNEWRIGHT_LOG_LEVEL")
-        ->capture_default_str();
-    serving->add_option("--grace", config.grace_s, "Seconds that running jobs get when the service is stopped")
-        ->envname("TUNEWRIGHT_GRACE")
-        ->check(CLI::Range(0.0, 3600.0))
-        ->capture_default_str();
+    add_serve_options(*serving, config);
 
     std::string file;
     CLI::App* tuning = app.add_subcommand("tune", "Answer one tuning request: result on stdout, problem on stderr");
@@ -68,8 +125,14 @@ int main(int argc, char** argv) {
     identify_app->add_option("--model", identifying.question.model,
                              "CSV: auto, fopdt, sopdt, sopdt_zero, ipdt or ipdt_lag");
 
+    KeyCommand naming;
+    CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
+    key_app->add_option("name", naming.name, "Whose it is; jobs belong to that name")->required();
+    key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
+
     CLI11_PARSE(app, argc, argv);
     try {
+        if (key_app->parsed()) return make_key(naming);
         if (identify_app->parsed()) return identify(identifying);
         return serving->parsed() ? serve(config) : tune(file);
     } catch (const std::exception& fault) {

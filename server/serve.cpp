@@ -9,6 +9,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "server/access/gate.h"
 #include "server/executor.h"
 #include "server/http/problems.h"
 #include "server/http/router.h"
@@ -67,6 +68,7 @@ public:
           pool_(kHttpThreads),
           router_(pool_),
           page_(config.web.empty() ? default_web_folder() : config.web),
+          gate_(gate_settings(config)),
           server_(
               limits(config),
               [this](http::Request request, http::Reply reply) { route(std::move(request), std::move(reply)); },
@@ -93,7 +95,7 @@ public:
     /// False where a computation did not stop: the process must end without waiting for it.
     bool stop() {
         closing_.request_stop();
-        const bool idle = jobs_.drain(std::chrono::duration<double>(config_.grace_s));
+        const bool idle = jobs_.drain(std::chrono::duration<double>(config_.drain_timeout_s));
         server_.stop();
         loop_.join();
         lane_.stop();
@@ -106,8 +108,14 @@ public:
 private:
     JobSettings settings(const Config& config) {
         JobSettings made;
-        made.workers = config.workers == 0 ? core_count() : config.workers;
+        const bool computes = parse_role(config.role) != Role::api;
+        made.workers = !computes ? 0 : config.workers == 0 ? core_count() : config.workers;
         made.queue_limit = config.queue_limit;
+        made.entry_limit = config.entry_limit;
+        made.most_attempts = config.max_attempts;
+        made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
+        if (config.retention_h > 0)
+            made.retention = std::chrono::seconds(static_cast<std::int64_t>(config.retention_h * 3600));
         made.version = TUNEWRIGHT_VERSION;
         made.run = api::run_job;
         made.now = wall_clock;
@@ -121,21 +129,37 @@ private:
     static http::Limits limits(const Config& config) {
         http::Limits made;
         made.connections = connection_limit();
-        made.body = config.body_limit_mib << 20;
+        made.body = config.max_body_mib << 20;
         made.buffered = std::max(made.buffered, 2 * made.body);
         return made;
     }
 
+    static GateSettings gate_settings(const Config& config) {
+        GateSettings made;
+        if (config.auth == "keys") made.keys_file = config.keys;
+        made.rate = config.rate_limit;
+        made.burst = 2 * config.rate_limit;
+        made.cors_origins = config.cors_origins;
+        made.behind_proxy = config.behind_proxy;
+        return made;
+    }
+
     void add_routes() {
+        router_.guard([this](http::Request& request) { return gate_.admit(request); });
         add_health_routes(router_, jobs_, *store_, metrics_);
-        add_job_routes(router_, jobs_, pool_);
-        add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
-        add_description_routes(router_);
-        router_.otherwise([this](const http::Request& request) { return page_.find(request); });
+        if (parse_role(config_.role) != Role::worker) add_public_routes();
         router_.observe([this](const http::Exchange& exchange) {
             metrics_.count(exchange);
             log_exchange(exchange);
         });
+    }
+
+    /// What a process that only computes does not answer.
+    void add_public_routes() {
+        add_job_routes(router_, jobs_, pool_);
+        add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
+        add_description_routes(router_);
+        router_.otherwise([this](const http::Request& request) { return page_.find(request); });
     }
 
     void route(http::Request request, http::Reply reply) const { router_.handle(std::move(request), std::move(reply)); }
@@ -143,7 +167,7 @@ private:
     http::Response refusal(int status, const std::string& detail, const std::string& from) {
         http::Exchange exchange;
         exchange.method = "refused";
-        exchange.remote_addr = from;
+        exchange.client = from;
         exchange.status = status;
         metrics_.count(exchange);
         log_exchange(exchange);
@@ -162,6 +186,7 @@ private:
     Executor pool_;
     http::Router router_;
     http::StaticFiles page_;
+    Gate gate_;
     http::Server server_;
     std::jthread loop_;
 };
@@ -191,7 +216,7 @@ void wait_for_stop(const sigset_t& signals) {
 
 int serve(const Config& config) {
     try {
-        parse_listen(config.listen);
+        check_config(config);
         parse_store(config.store);
         start_log(config.log_format, config.log_level);
     } catch (const std::invalid_argument& error) {
@@ -208,6 +233,8 @@ int serve(const Config& config) {
         service = std::make_unique<Service>(config);
         port = service->listen();
         service->start();
+    } catch (const std::invalid_argument& error) {
+        return failed(kBadConfiguration, error.what());
     } catch (const StoreError& error) {
         return failed(kStoreFailed, error.what());
     } catch (const std::runtime_error& error) {
@@ -216,7 +243,7 @@ int serve(const Config& config) {
     std::cout << "Tunewright " << TUNEWRIGHT_VERSION << " is ready at " << url_of(config.listen, port) << std::endl;
 
     wait_for_stop(signals);
-    log_info("stopping: running jobs get " + std::to_string(static_cast<int>(config.grace_s)) + " s");
+    log_info("stopping: running jobs get " + std::to_string(static_cast<int>(config.drain_timeout_s)) + " s");
     const bool idle = service->stop();
     log_info(idle ? "stopped" : "stopped; a computation that did not listen runs again at the next start");
     stop_log();

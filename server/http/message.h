@@ -32,6 +32,7 @@ struct Request {
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all
     std::string request_id;            ///< names this request in answers and logs
+    std::vector<std::pair<std::string, std::string>> answer_headers;  ///< every answer to this request carries them
 
     /// The first header of that name; "" if there is none.
     std::string_view header(std::string_view name) const;

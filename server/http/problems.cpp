@@ -12,25 +12,13 @@ struct Kind {
 };
 
 constexpr std::array kKinds{
-    Kind{400, "malformed-request"},
-    Kind{403, "cross-site-request"},
-    Kind{404, "not-found"},
-    Kind{405, "method-not-allowed"},
-    Kind{406, "not-acceptable"},
-    Kind{408, "request-timeout"},
-    Kind{409, "conflict"},
-    Kind{411, "length-required"},
-    Kind{413, "too-large"},
-    Kind{414, "uri-too-long"},
-    Kind{415, "unsupported-media-type"},
-    Kind{417, "expectation-failed"},
-    Kind{422, "invalid-request"},
-    Kind{429, "queue-full"},
-    Kind{431, "head-too-large"},
-    Kind{500, "internal"},
-    Kind{503, "unavailable"},
-    Kind{505, "http-version"},
-    Kind{507, "disk-full"},
+    Kind{400, "malformed-request"},  Kind{401, "unauthorized"},       Kind{403, "cross-site-request"},
+    Kind{404, "not-found"},          Kind{405, "method-not-allowed"}, Kind{406, "not-acceptable"},
+    Kind{408, "request-timeout"},    Kind{409, "conflict"},           Kind{411, "length-required"},
+    Kind{413, "too-large"},          Kind{414, "uri-too-long"},       Kind{415, "unsupported-media-type"},
+    Kind{417, "expectation-failed"}, Kind{422, "invalid-request"},    Kind{429, "queue-full"},
+    Kind{431, "head-too-large"},     Kind{500, "internal"},           Kind{503, "unavailable"},
+    Kind{505, "http-version"},       Kind{507, "disk-full"},
 };
 
 }  // namespace
@@ -45,12 +33,13 @@ api::Problem problem(int status, std::string detail) {
     return made;
 }
 
-Response problem_response(const api::Problem& problem) {
+Response problem_response(const api::Problem& problem, std::chrono::seconds retry_after) {
     Response response;
     response.status = problem.status;
     response.body = api::to_json(problem);
     response.set("Content-Type", "application/problem+json");
-    if (problem.status == 429 || problem.status == 503) response.set("Retry-After", "1");
+    if (problem.status == 429 || problem.status == 503)
+        response.set("Retry-After", std::to_string(retry_after.count()));
     return response;
 }
 

@@ -1,6 +1,7 @@
 // application/problem+json answers of the transport itself; those of requests and jobs come from api/.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "api/problem.h"
@@ -11,7 +12,8 @@ namespace tunewright::server::http {
 /// The problem for a status that HTTP itself explains (404, 405, 413, 415, 429, ...): type and title from one table.
 api::Problem problem(int status, std::string detail);
 
-Response problem_response(const api::Problem& problem);
+/// 429 and 503 carry Retry-After.
+Response problem_response(const api::Problem& problem, std::chrono::seconds retry_after = std::chrono::seconds(1));
 Response problem_response(int status, std::string detail);
 
 }  // namespace tunewright::server::http

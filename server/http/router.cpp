@@ -100,6 +100,10 @@ Router::Route& Router::add(const std::string& method, const std::string& pattern
 }
 
 void Router::handle(Request request, Reply reply) const {
+    if (admit_) {
+        if (std::optional<Response> refusal = admit_(request))
+            return observed(request, "", std::move(reply))(*std::move(refusal));
+    }
     std::vector<std::string> allowed;
     for (const Route& route : routes_) {
         if (!matches(route.parts, request.segments)) continue;
@@ -142,9 +146,10 @@ Response Router::unrouted(const Request& request, const std::vector<std::string>
 }
 
 Reply Router::observed(const Request& request, const std::string& route, Reply reply) const {
-    Exchange exchange{request.method, request.target, route, request.remote_addr, 0, 0, {}};
-    return [this, exchange = std::move(exchange), reply = std::move(reply),
+    Exchange exchange{request.method, request.target, route, request.client, request.request_id, 0, 0, {}};
+    return [this, exchange = std::move(exchange), reply = std::move(reply), headers = request.answer_headers,
             start = std::chrono::steady_clock::now()](Response response) mutable {
+        for (const auto& [name, value] : headers) response.set(name, value);
         add_common_headers(response);
         if (observer_) {
             exchange.status = response.status;

@@ -31,8 +31,9 @@ using AsyncHandler = std::function<void(Call, Reply)>;
 struct Exchange {
     std::string method;
     std::string target;
-    std::string route;  ///< the pattern, never user text; "" where none matched
-    std::string remote_addr;
+    std::string route;       ///< the pattern, never user text; "" where none matched
+    std::string client;      ///< as in Request
+    std::string request_id;  ///< "" where the request was refused before it had one
     int status = 0;
     std::size_t bytes = 0;
     std::chrono::microseconds duration{0};
@@ -61,6 +62,8 @@ public:
 
     /// Asked on GET and HEAD where no pattern matches: files.
     void otherwise(std::function<std::optional<Response>(const Request&)> fallback) { fallback_ = std::move(fallback); }
+    /// Asked first about every request; what it returns is the answer.
+    void guard(std::function<std::optional<Response>(Request&)> admit) { admit_ = std::move(admit); }
     /// Told once for each answer, on the thread that gave it.
     void observe(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
 
@@ -84,6 +87,7 @@ private:
 
     Executor& pool_;
     std::vector<Route> routes_;
+    std::function<std::optional<Response>(Request&)> admit_;
     std::function<std::optional<Response>(const Request&)> fallback_;
     std::function<void(const Exchange&)> observer_;
 };

@@ -12,10 +12,6 @@ std::optional<http::Response> refuse_form(const http::Request& request) {
 }
 
 std::optional<http::Response> refuse_call(const http::Request& request) {
-    // A browser says so itself when another site's page makes it send something to us.
-    if (request.header("Sec-Fetch-Site") == "cross-site")
-        return http::problem_response(403,
-                                      "Pages of other sites may not use this service through a visitor's browser.");
     if (!http::sends_json(request))
         return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
     return refuse_form(request);

@@ -18,7 +18,7 @@ def run(*arguments, text=None, environment=None):
 class CommandLineTest(unittest.TestCase):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"^tunewright \d+\.\d+\.\d+\n$")
-        for option in ("--listen", "--store", "--workers", "--queue-limit", "--body-limit", "--web"):
+        for option in ("--listen", "--store", "--workers", "--queue-limit", "--max-body", "--web"):
             self.assertIn(option, run("serve", "--help").stdout)
 
     def test_tune_writes_the_result_and_ends_with_0(self):
@@ -80,7 +80,7 @@ class CommandLineTest(unittest.TestCase):
         padded = json.dumps(QUICK).encode() + b" " * (9 << 20)
         with Service() as service:
             self.assertEqual(service.post("/v1/jobs", padded).status, 413)
-        with Service("--body-limit", "16") as service:
+        with Service("--max-body", "16") as service:
             self.assertEqual(service.post("/v1/jobs", padded).status, 202)
 
     def test_identify_reads_a_file_as_exported(self):

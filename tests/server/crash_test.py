@@ -16,7 +16,7 @@ class CrashTest(unittest.TestCase):
             self.assertEqual(service.job(job["id"]), job)
 
     def test_an_interrupted_job_runs_again_and_counts_its_attempts(self):
-        with Service("--workers", "1", "--grace", "0") as service:
+        with Service("--workers", "1", "--drain-timeout", "0") as service:
             job_id = service.post_job(LONG)["id"]
             self.assertEqual(service.wait_for(job_id, ("running",))["attempts"], 1)
             service.kill()
@@ -26,7 +26,7 @@ class CrashTest(unittest.TestCase):
             self.assertEqual(service.wait_for(job_id)["attempts"], 2)
 
     def test_a_job_whose_cancel_was_accepted_does_not_run_again(self):
-        with Service("--workers", "1", "--grace", "0") as service:
+        with Service("--workers", "1", "--drain-timeout", "0") as service:
             job_id = service.post_job(LONG)["id"]
             service.wait_for(job_id, ("running",))
             self.assertEqual(service.post("/v1/jobs/%s/cancel" % job_id, "").status, 202)
@@ -52,7 +52,7 @@ class CrashTest(unittest.TestCase):
             self.assertEqual(sorted(listed), sorted(ids))
 
     def test_sigterm_ends_with_0_and_gives_running_jobs_back_to_the_queue(self):
-        with Service("--workers", "1", "--grace", "0.1") as service:
+        with Service("--workers", "1", "--drain-timeout", "0.1") as service:
             job_id = service.post_job(LONG)["id"]
             service.wait_for(job_id, ("running",))
             service.process.send_signal(signal.SIGTERM)
@@ -63,7 +63,7 @@ class CrashTest(unittest.TestCase):
             self.assertEqual(job["attempts"], 2)
 
     def test_sigterm_lets_a_running_job_end_within_its_grace(self):
-        with Service("--workers", "1", "--grace", "20") as service:
+        with Service("--workers", "1", "--drain-timeout", "20") as service:
             ids = [service.post_job(QUICK)["id"] for _ in range(5)]
             self.assertEqual(service.stop(), 0)
             service.start()
@@ -71,7 +71,7 @@ class CrashTest(unittest.TestCase):
                 self.assertEqual(service.wait_for(job_id)["status"], "succeeded")
 
     def test_a_waiting_client_is_answered_when_the_service_stops(self):
-        with Service("--workers", "1", "--grace", "0.2") as service:
+        with Service("--workers", "1", "--drain-timeout", "0.2") as service:
             answers = []
             client = threading.Thread(
                 target=lambda: answers.append(service.post("/v1/jobs", LONG, {"Prefer": "wait=60"})))

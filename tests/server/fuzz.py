@@ -54,7 +54,7 @@ def main():
     print("seed", given.seed)
     chance = random.Random(given.seed)
     counts = {}
-    with Service("--queue-limit", "50", "--grace", "0") as service:
+    with Service("--queue-limit", "50", "--drain-timeout", "0") as service:
         examples = [example["request"] for example in service.get("/v1/examples").json["examples"]] + [QUICK]
         evaluate = {"plant": FOPDT, "controllers": [{"form": "ideal", "Kp": 1, "Ti": 10, "Td": 1}], "evaluate": {}}
         relay = {"plant": FOPDT, "relay": {"u_plus": 1.3, "u_minus": -0.7, "hysteresis": 0.2, "noise_std": 0.01,

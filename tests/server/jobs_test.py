@@ -166,7 +166,7 @@ class ListTest(unittest.TestCase):
 
 class QueueTest(unittest.TestCase):
     def test_a_full_queue_is_429_with_retry_after(self):
-        with Service("--workers", "1", "--queue-limit", "2", "--grace", "0") as service:
+        with Service("--workers", "1", "--queue-limit", "2", "--drain-timeout", "0") as service:
             running = service.post_job(LONG)["id"]
             service.wait_for(running, ("running",))
             waiting = [service.post_job(LONG)["id"] for _ in range(2)]

@@ -1,0 +1,158 @@
+#include "server/access/gate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "server/http/problems.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::problem_response;
+using http::Request;
+using http::Response;
+
+constexpr std::size_t kLongestRequestId = 64;
+constexpr const char* kExposed = "Location, ETag, Retry-After, X-Request-Id, Server-Timing, Preference-Applied";
+
+bool is_id(std::string_view text) {
+    return !text.empty() && text.size() <= kLongestRequestId && std::ranges::all_of(text, [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' ||
+               c == '-';
+    });
+}
+
+/// Health checks come from whoever watches the machine; they are neither counted nor asked for a key.
+bool is_probe(const Request& request) { return request.path() == "/healthz" || request.path() == "/readyz"; }
+
+/// The page, its description and probes say nothing about anybody's jobs.
+bool needs_key(const Request& request) {
+    if (request.segments.empty()) return false;
+    return request.segments.front() == "v1" || request.segments.front() == "metrics";
+}
+
+bool changes(const Request& request) {
+    return request.method != "GET" && request.method != "HEAD" && request.method != "OPTIONS";
+}
+
+std::string_view bearer(const Request& request) {
+    std::string_view text = request.header("Authorization");
+    constexpr std::string_view scheme = "bearer ";
+    if (text.size() <= scheme.size() || !std::ranges::equal(text.substr(0, scheme.size()), scheme, [](char a, char b) {
+            return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b;
+        }))
+        return {};
+    text.remove_prefix(scheme.size());
+    const std::size_t first = text.find_first_not_of(' ');
+    return first == std::string_view::npos ? std::string_view{} : text.substr(first);
+}
+
+/// What the nearest proxy wrote: the last address of the field.
+std::string_view forwarded(const Request& request) {
+    std::string_view last;
+    const auto [first, end] = request.headers.equal_range("X-Forwarded-For");
+    for (auto it = first; it != end; ++it) last = it->second;
+    last = last.substr(last.find_last_of(',') + 1);
+    while (!last.empty() && last.front() == ' ') last.remove_prefix(1);
+    while (!last.empty() && last.back() == ' ') last.remove_suffix(1);
+    constexpr std::size_t longest = 45;
+    return last.size() <= longest ? last : std::string_view{};
+}
+
+Response preflight() {
+    Response response;
+    response.status = 204;
+    return response.set("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE")
+        .set("Access-Control-Allow-Headers",
+             "Authorization, Content-Type, Idempotency-Key, If-None-Match, Last-Event-ID, Prefer, X-Request-Id")
+        .set("Access-Control-Max-Age", "600");
+}
+
+}  // namespace
+
+Gate::Gate(const GateSettings& settings) : settings_(settings) {
+    for (const std::string& origin : settings_.cors_origins)
+        if (origin != "*" && (origin.find("://") == std::string::npos || origin.ends_with('/')))
+            throw std::invalid_argument("--cors-origin is \"" + origin +
+                                        "\"; it must be SCHEME://HOST[:PORT] without a slash at the end, or *.");
+    if (!settings_.keys_file.empty()) keys_ = std::make_unique<KeyRing>(settings_.keys_file);
+    if (settings_.rate > 0) rate_ = std::make_unique<RateLimit>(settings_.rate, settings_.burst);
+    process_ = new_key().substr(3, 8);
+}
+
+std::optional<Response> Gate::admit(Request& request) {
+    name(request);
+    if (auto refusal = check_site(request)) return refusal;
+    auto no_key = check_key(request);
+    // Who tries keys is slowed down too, under his address.
+    if (auto refusal = check_rate(request)) return refusal;
+    return no_key;
+}
+
+void Gate::name(Request& request) {
+    const std::string_view given = request.header("X-Request-Id");
+    if (is_id(given)) {
+        request.request_id = given;
+    } else {
+        std::array<char, 32> id{};
+        std::snprintf(id.data(), id.size(), "%s-%08llx", process_.c_str(), static_cast<unsigned long long>(++count_));
+        request.request_id = id.data();
+    }
+    request.answer_headers.emplace_back("X-Request-Id", request.request_id);
+    const std::string_view client = settings_.behind_proxy ? forwarded(request) : std::string_view{};
+    request.client = client.empty() ? request.remote_addr : std::string(client);
+}
+
+bool Gate::allowed_origin(const Request& request) const {
+    const std::string_view origin = request.header("Origin");
+    return !origin.empty() && std::ranges::any_of(settings_.cors_origins, [&](const std::string& allowed) {
+        return allowed == "*" || allowed == origin;
+    });
+}
+
+std::optional<Response> Gate::check_site(Request& request) const {
+    if (!settings_.cors_origins.empty()) request.answer_headers.emplace_back("Vary", "Origin");
+    if (allowed_origin(request)) {
+        request.answer_headers.emplace_back("Access-Control-Allow-Origin", request.header("Origin"));
+        request.answer_headers.emplace_back("Access-Control-Expose-Headers", kExposed);
+        if (request.method == "OPTIONS" && request.has_header("Access-Control-Request-Method")) return preflight();
+        return std::nullopt;
+    }
+    // A browser says so itself when another site's page makes it send something to us.
+    const std::string_view site = request.header("Sec-Fetch-Site");
+    if (changes(request) && (site == "cross-site" || site == "same-site"))
+        return problem_response(403, "Pages of other sites may not use this service through a visitor's browser.");
+    return std::nullopt;
+}
+
+std::optional<Response> Gate::check_key(Request& request) {
+    if (!keys_) return std::nullopt;
+    request.owner = "";
+    if (!needs_key(request)) return std::nullopt;
+    const std::string_view key = bearer(request);
+    std::optional<std::string> owner = key.empty() ? std::nullopt : keys_->name_of(key);
+    if (owner) {
+        request.client = "key:" + *owner;
+        request.owner = std::move(owner);
+        return std::nullopt;
+    }
+    Response response =
+        problem_response(401, key.empty() ? "This service asks for a key: send it as Authorization: Bearer KEY."
+                                          : "The key is not known here. Ask whoever runs the service for one.");
+    return response.set("WWW-Authenticate", key.empty() ? "Bearer realm=\"tunewright\""
+                                                        : "Bearer realm=\"tunewright\", error=\"invalid_token\"");
+}
+
+std::optional<Response> Gate::check_rate(const Request& request) {
+    if (!rate_ || is_probe(request)) return std::nullopt;
+    const auto wait = rate_->refuse(request.client, std::chrono::steady_clock::now());
+    if (!wait) return std::nullopt;
+    api::Problem problem = http::problem(429, "This client calls too often. Wait as long as Retry-After says.");
+    problem.type = "rate-limit";
+    return http::problem_response(problem, std::chrono::seconds(static_cast<long>(std::ceil(wait->count()))));
+}
+
+}  // namespace tunewright::server

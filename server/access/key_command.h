@@ -1,0 +1,17 @@
+// `tunewright key NAME`: a new API key.
+#pragma once
+
+#include <string>
+
+namespace tunewright::server {
+
+struct KeyCommand {
+    std::string name;
+    std::string file;  ///< "": the line for the file of keys goes to standard error
+};
+
+/// Prints the key, which nobody keeps, and adds its digest to the file, readable by its owner alone where it is new.
+/// Returns the process' exit code.
+int make_key(const KeyCommand& command);
+
+}  // namespace tunewright::server

@@ -1,0 +1,129 @@
+#include "server/access/keys.h"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "api/json/digest.h"
+#include "server/log.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::size_t kLongestName = 64;
+constexpr std::string_view kPrefix = "sha256:";
+constexpr std::chrono::seconds kLookInterval{1};
+
+bool is_hex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
+
+std::string_view trim(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+KeyLine parse_line(std::string_view line, std::size_t number) {
+    const std::size_t blank = line.find_first_of(" \t");
+    const std::string_view name = line.substr(0, blank);
+    const std::string_view rest = blank == std::string_view::npos ? std::string_view{} : trim(line.substr(blank));
+    const std::string_view digest = rest.starts_with(kPrefix) ? rest.substr(kPrefix.size()) : std::string_view{};
+    if (!is_key_name(name) || digest.size() != 64 || !std::ranges::all_of(digest, is_hex))
+        throw std::invalid_argument("line " + std::to_string(number) +
+                                    " must be NAME sha256:DIGEST, as `tunewright key NAME` writes it");
+    return {std::string(name), std::string(digest)};
+}
+
+/// Looks at every character, whatever it finds, so that the time tells nothing about where two digests differ.
+bool equal_in_constant_time(std::string_view a, std::string_view b) {
+    if (a.size() != b.size()) return false;
+    unsigned char difference = 0;
+    for (std::size_t i = 0; i < a.size(); i++)
+        difference = static_cast<unsigned char>(difference |
+                                                (static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i])));
+    return difference == 0;
+}
+
+std::vector<KeyLine> read_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::invalid_argument("it cannot be read");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::vector<KeyLine> lines = parse_keys(text);
+    if (lines.empty()) throw std::invalid_argument("it has no key; `tunewright key NAME --keys FILE` adds one");
+    return lines;
+}
+
+}  // namespace
+
+bool is_key_name(std::string_view name) {
+    return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' ||
+               c == '-';
+    });
+}
+
+std::vector<KeyLine> parse_keys(std::string_view text) {
+    std::vector<KeyLine> lines;
+    for (std::size_t number = 1; !text.empty(); number++) {
+        const std::size_t end = text.find('\n');
+        const std::string_view line = trim(text.substr(0, end));
+        text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+        if (!line.empty() && line.front() != '#') lines.push_back(parse_line(line, number));
+    }
+    return lines;
+}
+
+std::string new_key() {
+    std::array<unsigned char, 32> bytes{};
+    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+        throw std::runtime_error("the system gives no random bytes");
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string key = "tw_";
+    for (const unsigned char byte : bytes) {
+        key.push_back(digits[byte >> 4]);
+        key.push_back(digits[byte & 15]);
+    }
+    return key;
+}
+
+KeyRing::KeyRing(std::string path) : path_(std::move(path)), looked_(std::chrono::steady_clock::now()) {
+    try {
+        lines_ = read_file(path_);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument("The file of keys " + path_ + " cannot be used: " + error.what() + ".");
+    }
+    std::error_code error;
+    modified_ = std::filesystem::last_write_time(path_, error);
+}
+
+void KeyRing::reload_if_changed() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < kLookInterval) return;
+    looked_ = now;
+    std::error_code error;
+    const auto modified = std::filesystem::last_write_time(path_, error);
+    if (error || modified == modified_) return;
+    modified_ = modified;
+    try {
+        lines_ = read_file(path_);
+        log_info("the file of keys has changed: " + std::to_string(lines_.size()) + " keys");
+    } catch (const std::invalid_argument& fault) {
+        log_error(std::string("the file of keys has changed and is not used: ") + fault.what());
+    }
+}
+
+std::optional<std::string> KeyRing::name_of(std::string_view key) {
+    const std::string digest = api::sha256_hex(key);
+    const std::lock_guard lock(mutex_);
+    reload_if_changed();
+    const KeyLine* found = nullptr;
+    for (const KeyLine& line : lines_)
+        if (equal_in_constant_time(line.digest, digest)) found = &line;
+    return found == nullptr ? std::nullopt : std::optional<std::string>(found->name);
+}
+
+}  // namespace tunewright::server

@@ -57,7 +57,7 @@ class CommandLineTest(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 done = run("serve", "--listen", "127.0.0.1:%d" % service.port, "--store", "sqlite:" + folder + "/jobs.db")
             self.assertEqual(done.returncode, 3)
-            done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + service.store)
+            done = run("serve", "--listen", "127.0.0.1:0", "--store", service.store)
             self.assertEqual(done.returncode, 4)
             self.assertIn("another tunewright is using it", done.stderr)
 

@@ -40,11 +40,14 @@ class Answer:
 
 
 class Service:
-    """One running process. A store that is given outlives it; otherwise each service has its own."""
+    """One running process. A store that is given, as a path or as for --store, outlives it and may be shared by several;
+    otherwise each service has an SQLite file of its own."""
 
     def __init__(self, *arguments, store=None, environment=None):
         self.folder = tempfile.TemporaryDirectory(prefix="tunewright-test-")
         self.store = store or os.path.join(self.folder.name, "jobs.db")
+        if not self.store.startswith(("sqlite:", "postgresql:")):
+            self.store = "sqlite:" + self.store
         self.arguments = arguments
         self.environment = environment or {}
         self.process = None
@@ -60,7 +63,7 @@ class Service:
     def start(self):
         self.log = open(os.path.join(self.folder.name, "log"), "ab")
         self.process = subprocess.Popen(
-            [BINARY, "serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + self.store, *self.arguments],
+            [BINARY, "serve", "--listen", "127.0.0.1:0", "--store", self.store, *self.arguments],
             stdout=subprocess.PIPE, stderr=self.log, env={**os.environ, **self.environment})
         self.ready_line = self.process.stdout.readline().decode()
         if " is ready at http://127.0.0.1:" not in self.ready_line:

@@ -64,8 +64,8 @@ function freePort() {
   });
 }
 
-/** Starts the service on a free loopback port with an empty store. `stop` ends it and removes the store. */
-export async function startService() {
+/** Starts the service on a free loopback port with an empty store, and what options are given. `stop` ends it and removes the store. */
+export async function startService(options = []) {
   const web = path.join(root, "build/web");
   if (!existsSync(path.join(web, "index.html")))
     throw new Error("The page is not built: run `npm run build` in web/ first.");
@@ -74,7 +74,7 @@ export async function startService() {
   const base = `http://127.0.0.1:${port}`;
   const child = spawn(
     serviceBinary(),
-    ["serve", "--listen", `127.0.0.1:${port}`, "--store", `sqlite:${path.join(folder, "jobs.db")}`, "--web", web],
+    ["serve", "--listen", `127.0.0.1:${port}`, "--store", `sqlite:${path.join(folder, "jobs.db")}`, "--web", web, ...options],
     {
       stdio: ["ignore", "pipe", "pipe"],
     },
@@ -167,10 +167,10 @@ export async function withPage(service, browser, address, options, body, expecte
 }
 
 /** Starts the service and the browser before a file's tests and ends them afterwards. Both are there once a test runs. */
-export function browserTests() {
+export function browserTests(options = []) {
   const shared = { service: null, browser: null };
   before(async () => {
-    shared.service = await startService();
+    shared.service = await startService(options);
     shared.browser = await launchBrowser();
   });
   after(async () => {

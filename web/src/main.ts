@@ -2,6 +2,7 @@
 import { getExamples, getJob, getMethods, getRecentJobs, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { isFinal } from "./api/types.ts";
 import type { FieldError, IdentifyRequest, Job, TuningRequest } from "./api/types.ts";
+import { askForKeyWith } from "./api/key.ts";
 import { h } from "./dom.ts";
 import { byAllMethods } from "./form/retune.ts";
 import type { TuneSubject } from "./form/tune_subject.ts";
@@ -13,6 +14,7 @@ import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
 import { relayView } from "./views/relay.ts";
 import type { RelayView } from "./views/relay.ts";
+import { askInDialog } from "./views/key_dialog.ts";
 import { identifyView } from "./views/identify.ts";
 import { methodsView } from "./views/methods.ts";
 import { noRecordView } from "./views/no_record.ts";
@@ -53,6 +55,7 @@ let start: StartView | null = null;
 let relay: RelayView | null = null;
 let stopWatching: (() => void) | null = null;
 
+askForKeyWith(askInDialog);
 document.body.append(
   skip,
   h(

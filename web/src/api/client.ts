@@ -1,4 +1,5 @@
 // Calls to the service. Every failure becomes an ApiError with a sentence that can be shown as it is.
+import { currentKey, otherKey } from "./key.ts";
 import type { Problem } from "./types.ts";
 
 export class ApiError extends Error {
@@ -17,31 +18,19 @@ export interface Reply {
   etag: string | null;
 }
 
-/** Addresses are relative to the page, so that a prefix before it does not matter. */
+/** Asks for the service's key where it wants one, and calls again. */
 export async function call(
   method: string,
   path: string,
   body?: unknown,
   headers: Record<string, string> = {},
 ): Promise<Reply> {
-  let response: Response;
-  let text: string;
-  try {
-    response = await fetch(path.replace(/^\//, ""), {
-      method,
-      headers: {
-        Accept: "application/json, application/problem+json",
-        ...(body === undefined ? {} : { "Content-Type": "application/json" }),
-        ...headers,
-      },
-      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
-    });
-    text = response.status === 304 ? "" : await response.text();
-  } catch {
-    throw new ApiError(
-      { type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." },
-      0,
-    );
+  let key = currentKey();
+  let { response, text } = await send(method, path, body, headers, key);
+  while (response.status === 401) {
+    key = await otherKey(key);
+    if (key === null) break;
+    ({ response, text } = await send(method, path, body, headers, key));
   }
   const etag = response.headers.get("ETag");
   if (response.status === 304) return { status: 304, data: null, etag };
@@ -49,6 +38,34 @@ export async function call(
   if (response.ok && data !== undefined) return { status: response.status, data, etag };
   if (response.ok && text === "") return { status: response.status, data: null, etag };
   throw new ApiError(problemOf(data, response.status), response.status, retryAfter(response));
+}
+
+/** Addresses are relative to the page, so that a prefix before it does not matter. */
+async function send(
+  method: string,
+  path: string,
+  body: unknown,
+  headers: Record<string, string>,
+  key: string | null,
+): Promise<{ response: Response; text: string }> {
+  try {
+    const response = await fetch(path.replace(/^\//, ""), {
+      method,
+      headers: {
+        Accept: "application/json, application/problem+json",
+        ...(body === undefined ? {} : { "Content-Type": "application/json" }),
+        ...(key === null ? {} : { Authorization: `Bearer ${key}` }),
+        ...headers,
+      },
+      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+    });
+    return { response, text: response.status === 304 ? "" : await response.text() };
+  } catch {
+    throw new ApiError(
+      { type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." },
+      0,
+    );
+  }
 }
 
 function parse(text: string): unknown {

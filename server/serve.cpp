@@ -74,7 +74,8 @@ public:
               [this](http::Request request, http::Reply reply) { route(std::move(request), std::move(reply)); },
               [this](int status, const std::string& detail, const std::string& from) {
                   return refusal(status, detail, from);
-              }) {
+              },
+              [this](const http::Request& head) { return router_.streams(head); }) {
         add_routes();
     }
 
@@ -129,8 +130,9 @@ private:
     static http::Limits limits(const Config& config) {
         http::Limits made;
         made.connections = connection_limit();
-        made.body = config.max_body_mib << 20;
-        made.buffered = std::max(made.buffered, 2 * made.body);
+        made.max_body = config.max_body_mib << 20;
+        made.max_batch_body = config.max_batch_body_mib << 20;
+        made.buffered = std::max(made.buffered, 2 * made.max_body);
         return made;
     }
 

@@ -24,23 +24,38 @@ public:
     std::size_t waiting() const;
     bool gone() const;
 
-    /// `more` runs on the event loop, soon, whenever less than kRoom is waiting: once at the start and then each time
-    /// that what was written has been taken. Quick: whatever takes longer goes elsewhere and writes from there.
+    /// `more` runs on the event loop, soon, when nothing is waiting: once at the start and then each time that what was
+    /// written has been taken; so also while an earlier call's work, done elsewhere, is still writing. Quick: whatever
+    /// takes longer goes elsewhere and writes from there.
     void on_room(std::function<void()> more);
-    /// `left` runs once, on the event loop, when the client goes before the end. Set before the answer is given.
+    /// `left` runs once, on the event loop, when the client goes before the end, or never wanted a body (HEAD), or the
+    /// service stops. Set before the answer is given. Not called where the service had stopped before the answer.
     void on_gone(std::function<void()> left);
 
 private:
-    friend class Connection;
-    friend class Server;
+    friend class Outgoing;
+    struct Written {
+        std::string bytes;
+        bool ended = false;
+    };
+
+    // The side of the event loop.
+    void attach(std::function<void()> wake);
+    Written take();
+    void taken();
+    void ask();
+    void close(bool tell);
+
     mutable std::mutex mutex_;
     std::string written_;      ///< not yet taken by the loop
     std::size_t sending_ = 0;  ///< taken by the loop, not yet by the client
     bool ended_ = false;
     bool gone_ = false;
+    bool asks_ = false;   ///< there was room since `more` was called
+    bool woken_ = false;  ///< the loop knows and has not looked yet
     std::function<void()> more_;
     std::function<void()> left_;
-    std::function<void()> wake_;  ///< tells the loop that there is something to send
+    std::function<void()> wake_;  ///< tells the loop that there is something to do
 };
 
 }  // namespace tunewright::server::http

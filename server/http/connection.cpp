@@ -1,125 +1,135 @@
 #include "server/http/connection.h"
 
 #include <sys/socket.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <utility>
 
 namespace tunewright::server::http {
 namespace {
 
 constexpr std::size_t kChunk = 64 * 1024;
 constexpr std::size_t kKeptCapacity = 32 * 1024;
+constexpr std::size_t kLingerAllowance = 256 * 1024;
+constexpr std::size_t kLingerBodyMost = 64 * 1024 * 1024;
+
+thread_local std::array<char, kChunk> received;
 
 bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 }  // namespace
 
-Connection::~Connection() { ::close(fd_); }
+Connection::~Connection() {
+    if (incoming) incoming->finish(BodySource::State::gone);
+    ::close(fd_);
+}
 
-Connection::Io Connection::receive(std::size_t body_limit) {
-    thread_local std::array<char, kChunk> chunk;
+Io Connection::receive() {
     for (;;) {
-        std::size_t want = 4096;
-        if (head_.state == Head::State::complete)
-            want = std::max(
-                want, head_.size + head_.content_length - std::min(in_.size(), head_.size + head_.content_length));
-        const std::size_t room = std::min(want, chunk.size());
-        const ssize_t n = ::recv(fd_, chunk.data(), room, 0);
+        const bool in_body = head_.state == Head::State::complete;
+        const std::size_t whole = head_.size + head_.content_length;
+        const std::size_t want = in_body && whole > in_.size() ? whole - in_.size() : 0;
+        const std::size_t room = std::clamp<std::size_t>(want, 4096, received.size());
+        const ssize_t n = ::recv(fd_, received.data(), room, 0);
         if (n == 0) return Io::gone;
         if (n < 0) {
             if (errno == EINTR) continue;
             readable = false;
             return would_block() ? Io::again : Io::gone;
         }
-        in_.append(chunk.data(), static_cast<std::size_t>(n));
+        in_.append(received.data(), static_cast<std::size_t>(n));
         // A short read has emptied the socket, unless the end of the stream is waiting behind it.
-        const bool drained = static_cast<std::size_t>(n) < room && !peer_closed;
-        readable = !drained;
-        if (frame(body_limit).state == Head::State::refused || request_complete()) return Io::done;
-        if (drained) return Io::again;
+        readable = static_cast<std::size_t>(n) == room || peer_closed;
+        if (in_body ? request_ready() : frame().state != Head::State::incomplete) return Io::done;
+        if (!readable) return Io::again;
     }
 }
 
-const Head& Connection::frame(std::size_t body_limit) {
+const Head& Connection::frame() {
     if (head_.state != Head::State::incomplete || in_.empty()) return head_;
     const bool ended = in_.find("\r\n\r\n", scanned_) != std::string::npos;
-    if (ended || in_.size() > kMaxLineBytes) {
-        head_ = read_head(in_, body_limit);
-        if (head_.state == Head::State::complete) in_.reserve(head_.size + head_.content_length);
-    }
+    if (ended || in_.size() > kMaxLineBytes) head_ = read_head(in_);
     scanned_ = in_.size() < 3 ? 0 : in_.size() - 3;
     return head_;
 }
 
-bool Connection::request_complete() const {
-    return head_.state == Head::State::complete && in_.size() >= head_.size + head_.content_length;
+void Connection::admit(Request request, bool streamed, std::size_t body_limit) {
+    refuse_body(head_, streamed, body_limit);
+    if (head_.state != Head::State::complete) return;
+    request_ = std::move(request);
+    streamed_ = streamed;
+    wants_continue_ = head_.expects_continue;
+    chunks_ = !head_.http_1_0;
+    keep_alive_ = head_.keep_alive;
+    if (!streamed) in_.reserve(head_.size + head_.content_length);
 }
 
-std::string Connection::take_body() {
-    const std::size_t total = head_.size + head_.content_length;
-    std::string body = in_.substr(head_.size, head_.content_length);
+void Connection::refuse(int status, std::string detail) {
+    head_.state = Head::State::refused;
+    head_.status = status;
+    head_.detail = std::move(detail);
+}
+
+bool Connection::request_ready() const {
+    return request_ && (streamed_ || in_.size() >= head_.size + head_.content_length);
+}
+
+Request Connection::take_request() {
+    Request request = *std::exchange(request_, std::nullopt);
+    const std::size_t total = head_.size + (streamed_ ? 0 : head_.content_length);
+    if (!streamed_) request.body = in_.substr(head_.size, head_.content_length);
     in_.erase(0, total);
     if (in_.capacity() > kKeptCapacity) in_.shrink_to_fit();
     head_ = {};
     scanned_ = 0;
-    continued_ = false;
-    return body;
+    return request;
 }
 
-void Connection::start_answer(Response response, bool keep_alive) {
-    keep_alive_ = keep_alive;
-    out_head_ = render_head(response, keep_alive);
-    out_body_ = response.body_omitted ? std::string{} : std::move(response.body);
-    sent_ = 0;
+Io Connection::receive_body(std::string& piece) {
+    BodyDecoder& decoder = incoming->decoder;
+    for (;;) {
+        in_.erase(0, decoder.decode(in_, piece, IncomingBody::kPiece - piece.size()));
+        if (decoder.state() != BodyDecoder::State::more || piece.size() == IncomingBody::kPiece) return Io::done;
+        const ssize_t n = readable ? ::recv(fd_, received.data(), received.size(), 0) : -1;
+        if (n < 0 && readable && errno == EINTR) continue;
+        if (n == 0 || (n < 0 && readable && !would_block())) return piece.empty() ? Io::gone : Io::done;
+        if (n < 0) {
+            readable = false;
+            return piece.empty() ? Io::again : Io::done;
+        }
+        readable = static_cast<std::size_t>(n) == received.size() || peer_closed;
+        in_.append(received.data(), static_cast<std::size_t>(n));
+    }
+}
+
+void Connection::start_answer(Response response, bool keep_alive, const std::function<void()>& wake) {
+    const bool body_left = incoming && incoming->decoder.state() != BodyDecoder::State::done;
+    keep_alive_ = keep_alive && keep_alive_ && !body_left && (chunks_ || !response.stream);
+    out.start(std::move(response), keep_alive_, chunks_, wake);
     state = State::writing;
 }
 
-Connection::Io Connection::send() {
-    const std::size_t total = out_head_.size() + out_body_.size();
-    while (sent_ < total) {
-        std::array<iovec, 2> parts{};
-        msghdr message{};
-        message.msg_iov = parts.data();
-        const std::size_t from_head = std::min(sent_, out_head_.size());
-        const std::size_t from_body = sent_ - from_head;
-        if (from_head < out_head_.size())
-            parts[message.msg_iovlen++] = {out_head_.data() + from_head, out_head_.size() - from_head};
-        if (from_body < out_body_.size())
-            parts[message.msg_iovlen++] = {out_body_.data() + from_body, out_body_.size() - from_body};
-        const ssize_t n = ::sendmsg(fd_, &message, MSG_NOSIGNAL);
-        if (n < 0) {
-            if (errno == EINTR) continue;
-            return would_block() ? Io::again : Io::gone;
-        }
-        sent_ += static_cast<std::size_t>(n);
-    }
-    out_head_.clear();
-    out_body_ = {};
-    return Io::done;
-}
-
 void Connection::send_continue() {
-    if (continued_ || !head_.expects_continue || head_.state != Head::State::complete || request_complete()) return;
-    continued_ = true;
+    if (!std::exchange(wants_continue_, false) || request_ready() || (!request_ && !in_.empty())) return;
     constexpr std::string_view text = "HTTP/1.1 100 Continue\r\n\r\n";
     [[maybe_unused]] const ssize_t n = ::send(fd_, text.data(), text.size(), MSG_NOSIGNAL);
 }
 
-void Connection::start_lingering(std::size_t allowance) {
+void Connection::start_lingering() {
+    const std::size_t announced = incoming ? incoming->decoder.remaining() : head_.content_length;
+    linger_left_ = announced <= kLingerBodyMost ? std::max(announced, kLingerAllowance) : kLingerAllowance;
     state = State::lingering;
-    linger_left_ = allowance;
     in_ = {};
+    incoming.reset();
     ::shutdown(fd_, SHUT_WR);
 }
 
-Connection::Io Connection::discard() {
-    std::array<char, 16 * 1024> chunk;
+Io Connection::discard() {
     for (;;) {
-        const ssize_t n = ::recv(fd_, chunk.data(), chunk.size(), 0);
+        const ssize_t n = ::recv(fd_, received.data(), received.size(), 0);
         if (n == 0 || (n < 0 && !would_block())) return Io::gone;
         if (n < 0) return Io::again;
         if (static_cast<std::size_t>(n) > linger_left_) return Io::gone;

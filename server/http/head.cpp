@@ -49,9 +49,9 @@ Head refuse(int status, std::string detail) {
 
 /// What has been seen so far of one request's fields.
 struct Fields {
-    bool http_1_0 = false;
     int hosts = 0;
     int lengths = 0;
+    int transfers = 0;
     std::size_t count = 0;
     std::string_view connection;
 };
@@ -78,8 +78,8 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
             return false;
         }
     } else if (equals(name, "Transfer-Encoding")) {
-        head = refuse(411, "Transfer-Encoding is not accepted here; send the body with a Content-Length.");
-        return false;
+        const bool plain = ++seen.transfers == 1 && equals(value, "chunked");
+        head.transfer = plain ? Head::Transfer::chunked : Head::Transfer::unknown;
     } else if (equals(name, "Content-Encoding") && !equals(value, "identity")) {
         head = refuse(415, "Compressed bodies are not accepted; send the JSON text as it is.");
         return false;
@@ -96,7 +96,7 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
 }
 
 /// False after filling `head` with a refusal.
-bool read_request_line(std::string_view line, Fields& seen, Head& head) {
+bool read_request_line(std::string_view line, Head& head) {
     const std::size_t first = line.find(' ');
     const std::size_t last = line.rfind(' ');
     if (first == std::string_view::npos || last <= first || !is_token(line.substr(0, first))) {
@@ -116,7 +116,7 @@ bool read_request_line(std::string_view line, Fields& seen, Head& head) {
         head = refuse(400, "The target must be an absolute path of printable ASCII characters.");
         return false;
     }
-    seen.http_1_0 = version == "HTTP/1.0";
+    head.http_1_0 = version == "HTTP/1.0";
     return true;
 }
 
@@ -157,7 +157,7 @@ bool read_fields(std::string_view rest, Fields& seen, Head& head) {
 
 }  // namespace
 
-Head read_head(std::string_view input, std::size_t body_limit) {
+Head read_head(std::string_view input) {
     const std::size_t end = input.find("\r\n\r\n");
     if (end == std::string_view::npos || end + 4 > kMaxHeadBytes) {
         const std::size_t line = input.substr(0, kMaxHeadBytes).find('\n');
@@ -173,23 +173,34 @@ Head read_head(std::string_view input, std::size_t body_limit) {
     std::string_view line;
     if (!next_line(rest, line, head)) return head;
     if (line.size() > kMaxLineBytes) return refuse(414, "The request line may have at most 8,000 bytes.");
-    if (!read_request_line(line, seen, head)) return head;
+    if (!read_request_line(line, head)) return head;
     head.clean.append(line).append("\r\n");
     if (!read_fields(rest, seen, head)) return head;
     head.clean.append("\r\n");
 
-    if (seen.hosts > 1 || (seen.hosts == 0 && !seen.http_1_0)) return refuse(400, "Exactly one Host field is needed.");
+    if (seen.hosts > 1 || (seen.hosts == 0 && !head.http_1_0)) return refuse(400, "Exactly one Host field is needed.");
+    if (seen.transfers > 0 && (seen.lengths > 0 || head.http_1_0))
+        return refuse(400, "Transfer-Encoding is not possible with HTTP/1.0, nor beside a Content-Length.");
     head.size = end + 4;
-    head.keep_alive = seen.http_1_0 ? has_word(seen.connection, "keep-alive") : !has_word(seen.connection, "close");
-    if (head.content_length > body_limit) {
-        Head refused = refuse(413, "The body has " + std::to_string(head.content_length) + " bytes; at most " +
-                                       std::to_string(body_limit) + " are accepted.");
-        refused.content_length = head.content_length;
-        refused.size = head.size;
-        return refused;
-    }
+    head.keep_alive = head.http_1_0 ? has_word(seen.connection, "keep-alive") : !has_word(seen.connection, "close");
     head.state = Head::State::complete;
     return head;
+}
+
+void refuse_body(Head& head, bool streamed, std::size_t limit) {
+    Head refused;
+    if (head.transfer != Head::Transfer::length && !streamed)
+        refused = refuse(411, "Transfer-Encoding is not accepted here; send the body with a Content-Length.");
+    else if (head.transfer == Head::Transfer::unknown)
+        refused = refuse(400, "The only Transfer-Encoding that is accepted is chunked, once.");
+    else if (head.content_length > limit)
+        refused = refuse(413, "The body has " + std::to_string(head.content_length) + " bytes; at most " +
+                                  std::to_string(limit) + " are accepted.");
+    else
+        return;
+    refused.content_length = head.content_length;
+    refused.size = head.size;
+    head = std::move(refused);
 }
 
 }  // namespace tunewright::server::http

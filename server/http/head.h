@@ -14,21 +14,28 @@ inline constexpr std::size_t kMaxHeaders = 100;
 
 struct Head {
     enum class State { incomplete, complete, refused };
+    enum class Transfer { length, chunked, unknown };
     State state = State::incomplete;
     int status = 0;      ///< of refused
     std::string detail;  ///< of refused: a sentence for the client
 
     std::size_t size = 0;  ///< bytes up to and with the blank line
     std::size_t content_length = 0;
+    Transfer transfer = Transfer::length;  ///< unknown: a Transfer-Encoding other than one single `chunked`
     bool keep_alive = true;
+    bool http_1_0 = false;
     bool expects_continue = false;
     std::string clean;  ///< the head as the parsing library gets it: without the fields that it would act upon itself
 };
 
 /// Reads the head at the start of `input`. Refused are: more than 16 KiB or 100 fields (431), a target over 8,000 bytes
-/// (414), a body over `body_limit` (413), another version than 1.0 and 1.1 (505), any Transfer-Encoding (411),
-/// a Content-Encoding (415), and as malformed (400) bare line feeds, folded lines, spaces before a colon, control
-/// characters, a missing or double Host, and a Content-Length that is repeated or not a number.
-Head read_head(std::string_view input, std::size_t body_limit);
+/// (414), another version than 1.0 and 1.1 (505), a Content-Encoding (415), and as malformed (400) bare line feeds,
+/// folded lines, spaces before a colon, control characters, a missing or double Host, a Content-Length that is repeated
+/// or not a number, and a Content-Length beside a Transfer-Encoding.
+Head read_head(std::string_view input);
+
+/// Turns a complete head into a refusal where its body is not taken: over `limit` bytes (413); with a Transfer-Encoding
+/// where bodies are not `streamed` (411); with one that is not just `chunked` where they are (400).
+void refuse_body(Head& head, bool streamed, std::size_t limit);
 
 }  // namespace tunewright::server::http

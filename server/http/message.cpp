@@ -84,13 +84,15 @@ std::string_view reason_phrase(int status) {
     return it == kPhrases.end() ? std::string_view{"Status"} : it->text;
 }
 
-std::string render_head(const Response& response, bool keep_alive) {
+std::string render_head(const Response& response, bool keep_alive, Framing framing) {
     std::string out;
     out.reserve(512);
     out.append("HTTP/1.1 ").append(std::to_string(response.status)).append(" ");
     out.append(reason_phrase(response.status)).append("\r\nDate: ").append(http_date()).append("\r\n");
     for (const auto& [name, value] : response.headers) out.append(name).append(": ").append(value).append("\r\n");
-    if (response.status != 204 && response.status != 304)
+    if (framing == Framing::chunked)
+        out.append("Transfer-Encoding: chunked\r\n");
+    else if (framing == Framing::length && response.status != 204 && response.status != 304)
         out.append("Content-Length: ").append(std::to_string(response.body.size())).append("\r\n");
     out.append(keep_alive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n");
     return out;

@@ -65,8 +65,11 @@ using Handler = std::function<void(Request, Reply)>;
 /// "Not Found" for 404 and so on.
 std::string_view reason_phrase(int status);
 
+/// How the client learns where a body ends.
+enum class Framing { length, chunked, until_close };
+
 /// Status line, headers and the blank line of a response, ready to be sent.
-std::string render_head(const Response& response, bool keep_alive);
+std::string render_head(const Response& response, bool keep_alive, Framing framing = Framing::length);
 
 /// 200 with a JSON body.
 Response json_response(std::string body, int status = 200);

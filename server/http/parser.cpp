@@ -120,6 +120,8 @@ Parser::Parser() : front_(std::make_unique<Front>()) {}
 
 Parser::~Parser() { front_->shut(); }
 
+void Parser::stop_listening() { front_->shut(); }
+
 int Parser::listen(const std::string& host, int port) { return front_->open(host, port); }
 
 std::optional<Request> Parser::parse(std::string_view head) { return front_->parse(head); }

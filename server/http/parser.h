@@ -22,6 +22,8 @@ public:
     /// Throws std::runtime_error with a sentence where the port is taken, forbidden or the name unknown.
     /// SO_REUSEADDR alone is set: a port that another process listens on is an error, never shared.
     int listen(const std::string& host, int port);
+    /// Closes it: further clients are refused by the system instead of waiting for nobody.
+    void stop_listening();
 
     /// Method, target, segments, query and headers of a head that has passed read_head (its `clean` text).
     /// Nothing where the library cannot read it.

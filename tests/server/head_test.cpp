@@ -12,8 +12,15 @@ constexpr std::size_t kBody = 1000;
 
 std::string get(const std::string& fields) { return "GET /a HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n"; }
 
-void expect_refused(const std::string& text, int status) {
-    const Head head = read_head(text, kBody);
+/// What becomes of it at a call that takes up to 1,000 bytes.
+Head judge(const std::string& text, bool streamed = false) {
+    Head head = read_head(text);
+    if (head.state == Head::State::complete) refuse_body(head, streamed, kBody);
+    return head;
+}
+
+void expect_refused(const std::string& text, int status, bool streamed = false) {
+    const Head head = judge(text, streamed);
     EXPECT_EQ(head.state, Head::State::refused) << text;
     EXPECT_EQ(head.status, status) << text;
     EXPECT_GT(head.detail.size(), 20U);
@@ -22,28 +29,27 @@ void expect_refused(const std::string& text, int status) {
 TEST(Head, IsIncompleteAtEveryPrefix) {
     const std::string whole = get("Content-Length: 3\r\n");
     for (std::size_t n = 0; n < whole.size(); n++)
-        EXPECT_EQ(read_head(whole.substr(0, n), kBody).state, Head::State::incomplete) << n;
-    EXPECT_EQ(read_head(whole, kBody).state, Head::State::complete);
+        EXPECT_EQ(read_head(whole.substr(0, n)).state, Head::State::incomplete) << n;
+    EXPECT_EQ(read_head(whole).state, Head::State::complete);
 }
 
 TEST(Head, TellsWhereItEndsAndHowLongTheBodyIs) {
     const std::string text = get("Content-Length: 42\r\n");
-    const Head head = read_head(text + "{\"a\": 1}", kBody);
+    const Head head = read_head(text + "{\"a\": 1}");
     EXPECT_EQ(head.size, text.size());
     EXPECT_EQ(head.content_length, 42U);
     EXPECT_TRUE(head.keep_alive);
 }
 
 TEST(Head, KeepsTheConnectionAsVersionAndClientSay) {
-    EXPECT_FALSE(read_head(get("Connection: close\r\n"), kBody).keep_alive);
-    EXPECT_FALSE(read_head(get("connection: foo, CLOSE\r\n"), kBody).keep_alive);
-    EXPECT_FALSE(read_head("GET / HTTP/1.0\r\n\r\n", kBody).keep_alive);
-    EXPECT_TRUE(read_head("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n", kBody).keep_alive);
+    EXPECT_FALSE(read_head(get("Connection: close\r\n")).keep_alive);
+    EXPECT_FALSE(read_head(get("connection: foo, CLOSE\r\n")).keep_alive);
+    EXPECT_FALSE(read_head("GET / HTTP/1.0\r\n\r\n").keep_alive);
+    EXPECT_TRUE(read_head("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n").keep_alive);
 }
 
 TEST(Head, HidesFieldsThatTheParsingLibraryWouldActUpon) {
-    const Head head =
-        read_head(get("Range: bytes=0-,0-\r\nREMOTE_ADDR: 1.2.3.4\r\nExpect: 100-continue\r\nA: b\r\n"), kBody);
+    const Head head = read_head(get("Range: bytes=0-,0-\r\nREMOTE_ADDR: 1.2.3.4\r\nExpect: 100-continue\r\nA: b\r\n"));
     EXPECT_TRUE(head.expects_continue);
     EXPECT_THAT(head.clean, Not(HasSubstr("Range")));
     EXPECT_THAT(head.clean, Not(HasSubstr("REMOTE_ADDR")));
@@ -56,6 +62,8 @@ TEST(Head, RefusesWhatTwoParsersReadDifferently) {
         expect_refused(get(std::string("Content-Length: ") + length + "\r\n"), 400);
     expect_refused(get("Transfer-Encoding: chunked\r\n"), 411);
     expect_refused(get("Transfer-Encoding: identity\r\n"), 411);
+    expect_refused(get("Content-Length: 5\r\nTransfer-Encoding: chunked\r\n"), 400);
+    expect_refused(get("Transfer-Encoding: chunked\r\nContent-Length: 5\r\n"), 400);
     expect_refused(get("Host: y\r\n"), 400);
     expect_refused("GET / HTTP/1.1\r\n\r\n", 400);
     expect_refused(get("A: b\r\n c\r\n"), 400);
@@ -85,7 +93,21 @@ TEST(Head, RefusesWhatIsTooLarge) {
     while (endless.size() < kMaxHeadBytes) endless += "A: " + std::string(1000, 'b') + "\r\n";
     expect_refused(endless, 431);
     expect_refused(get("Content-Length: 1001\r\n"), 413);
-    EXPECT_EQ(read_head(get("Content-Length: 1000\r\n"), kBody).state, Head::State::complete);
+    EXPECT_EQ(judge(get("Content-Length: 1000\r\n")).state, Head::State::complete);
+}
+
+TEST(Head, TakesChunksOnlyWhereBodiesAreStreamedAndNothingElseEncodesThem) {
+    const Head head = judge(get("Transfer-Encoding: Chunked\r\n"), true);
+    EXPECT_EQ(head.state, Head::State::complete);
+    EXPECT_EQ(head.transfer, Head::Transfer::chunked);
+    EXPECT_EQ(judge(get("Content-Length: 1000\r\n"), true).state, Head::State::complete);
+    expect_refused(get("Content-Length: 1001\r\n"), 413, true);
+    for (const char* coding :
+         {"", "identity", "gzip", "gzip, chunked", "chunked, chunked", "chunked;q=1", "xchunked", "\vchunked"})
+        expect_refused(get(std::string("Transfer-Encoding: ") + coding + "\r\n"), 400, true);
+    expect_refused(get("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n"), 400, true);
+    expect_refused(get("Transfer-Encoding: chunked\r\nContent-Length: 0\r\n"), 400, true);
+    expect_refused("POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n", 400, true);
 }
 
 TEST(Head, RefusesCompressedBodiesAndUnknownExpectations) {

@@ -154,7 +154,8 @@ class HttpTest(unittest.TestCase):
         smuggled = b"GET /metrics HTTP/1.1\r\n" + HOST + b"\r\n"
         cases = {
             "length and chunks": (post + HOST + b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n" +
-                                  smuggled, 411),
+                                  smuggled, 400),
+            "chunks": (post + HOST + b"Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n" + smuggled, 411),
             "two lengths": (post + HOST + b"Content-Length: 1\r\nContent-Length: 2\r\n\r\nab", 400),
             "negative length": (post + HOST + b"Content-Length: -1\r\n\r\n" + smuggled, 400),
             "length that is no number": (post + HOST + b"Content-Length: 1e1\r\n\r\n", 400),

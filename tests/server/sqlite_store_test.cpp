@@ -33,7 +33,7 @@ private:
 
 std::unique_ptr<StorePlace> sqlite_place() { return std::make_unique<SqlitePlace>(); }
 
-INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(sqlite_place));
+INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(MakePlace(sqlite_place)));
 
 TEST(SqliteStore, TwoServicesCannotOpenTheSameFile) {
     const TemporaryFolder folder;

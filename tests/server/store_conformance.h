@@ -1,14 +1,17 @@
-// What every store must do, whatever it is made of. A store's own test includes this and instantiates the suite with
-// a way to open it: twice on the same place, to see what survives.
+// What every store must do, whatever it is made of: the fixture of the tests in store_*_conformance.cpp. A store's own
+// test instantiates them with a way to open it: again and again on the same place, to see what survives.
 #pragma once
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <future>
 #include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "server/store/store.h"
 
@@ -31,26 +34,41 @@ public:
     virtual std::unique_ptr<JobStore> open() = 0;
 };
 
-class StoreConformance : public testing::TestWithParam<std::function<std::unique_ptr<StorePlace>()>> {
+/// Makes a place, or says by nothing that it is not to be had here.
+using MakePlace = std::function<std::unique_ptr<StorePlace>()>;
+
+class StoreConformance : public testing::TestWithParam<MakePlace> {
 protected:
+    using Ids = std::vector<std::string>;
+    /// A worker that holds a job no longer than the call: dead as soon as it has it.
+    static constexpr std::chrono::milliseconds kDead{0};
+    static constexpr std::chrono::milliseconds kAlive{600'000};
+
     void SetUp() override {
         place_ = GetParam()();
+        if (!place_) GTEST_SKIP() << "no place for this store here";
         reopen();
     }
 
     Recovery reopen(int most_attempts = 10) {
         store_.reset();
         store_ = place_->open();
-        return store_->recover(9000, most_attempts, R"({"type":"given-up"})");
+        return store_->recover(9000, most_attempts, kGivenUp);
     }
 
-    static NewJob job(const std::string& id) {
+    static UnixMs now() {
+        using std::chrono::system_clock;
+        return std::chrono::duration_cast<std::chrono::milliseconds>(system_clock::now().time_since_epoch()).count();
+    }
+
+    static NewJob job(const std::string& id, const std::string& flow = "") {
         NewJob made;
         made.id = id;
         made.name = "name of " + id;
         made.timeout_s = 12.5;
         made.request = R"({"plant":")" + id + "\"}";
         made.request_hash = "hash of " + id;
+        made.flow = flow;
         made.created_at = 1000;
         return made;
     }
@@ -58,14 +76,36 @@ protected:
     Accepted accept(NewJob made) {
         return completed<Accepted>([&](auto done) { store_->accept(std::move(made), done); });
     }
-    std::optional<JobRecord> claim() {
-        return completed<std::optional<JobRecord>>([&](auto done) { store_->claim_next(2000, done); });
+    std::vector<JobRecord> claim_many(std::size_t most, std::chrono::milliseconds lease = kAlive,
+                                      const std::string& worker = "worker") {
+        const Claim claim{worker, now(), lease, most};
+        return completed<std::vector<JobRecord>>([&](auto done) { store_->claim(claim, done); });
     }
-    bool finish(const std::string& id, JobStatus status, const std::string& result, const std::string& error = "") {
-        return completed<bool>([&](auto done) { store_->finish({id, status, result, error, "1.2.3", 3000}, done); });
+    std::optional<JobRecord> claim(std::chrono::milliseconds lease = kAlive, const std::string& worker = "worker") {
+        std::vector<JobRecord> claimed = claim_many(1, lease, worker);
+        if (claimed.empty()) return std::nullopt;
+        return std::move(claimed.front());
     }
-    bool release(const std::string& id) {
-        return completed<bool>([&](auto done) { store_->release(id, done); });
+    /// Ids in the order in which they are handed out, until none waits.
+    Ids claim_all() {
+        Ids ids;
+        for (auto claimed = claim(); claimed; claimed = claim()) ids.push_back(claimed->id);
+        return ids;
+    }
+    bool finish(const std::string& id, JobStatus status, const std::string& result, const std::string& error = "",
+                int attempts = 1) {
+        const JobEnd end{id, attempts, status, result, error, "1.2.3", 3000};
+        return completed<bool>([&](auto done) { store_->finish(end, done); });
+    }
+    bool release(const std::string& id, int attempts = 1) {
+        return completed<bool>([&](auto done) { store_->release(id, attempts, done); });
+    }
+    std::vector<Renewed> renew(std::vector<Renewal> renewals, std::chrono::milliseconds lease = kAlive) {
+        return completed<std::vector<Renewed>>(
+            [&](auto done) { store_->renew(std::move(renewals), now(), lease, done); });
+    }
+    Recovery reclaim(int most_attempts = 10) {
+        return completed<Recovery>([&](auto done) { store_->reclaim(now(), most_attempts, kGivenUp, done); });
     }
     CancelEffect cancel(const std::string& id) {
         return completed<CancelEffect>([&](auto done) { store_->cancel(id, 2500, done); });
@@ -73,221 +113,58 @@ protected:
     RemoveEffect remove(const std::string& id) {
         return completed<RemoveEffect>([&](auto done) { store_->remove(id, done); });
     }
+    std::size_t sweep(UnixMs ended_before, std::size_t most) {
+        return completed<std::size_t>([&](auto done) { store_->sweep(ended_before, most, done); });
+    }
     JobStatus status(const std::string& id) { return store_->find(id).value().status; }
 
+    void open_batch(const std::string& id, const std::string& owner = "", const std::string& flow = "") {
+        const NewBatch batch{id, "name of " + id, owner, flow, now()};
+        EXPECT_TRUE(completed<bool>([&](auto done) { store_->open_batch(batch, done); }));
+    }
+    /// The id of entry i of a batch is "<batch>-<i>".
+    static NewEntry entry(const std::string& batch, std::int64_t index, const std::string& error = "") {
+        NewEntry made;
+        made.index = index;
+        made.id = batch + "-" + std::to_string(index);
+        made.name = "name of " + made.id;
+        made.timeout_s = 12.5;
+        if (error.empty()) made.request = R"({"plant":")" + made.id + "\"}";
+        made.request_hash = "hash of " + made.id;
+        made.error = error;
+        return made;
+    }
+    bool add_entries(const std::string& batch, std::vector<NewEntry> entries) {
+        return completed<bool>([&](auto done) { store_->add_entries(batch, std::move(entries), now(), done); });
+    }
+    bool add_waiting(const std::string& batch, std::int64_t first, std::int64_t count) {
+        std::vector<NewEntry> entries;
+        for (std::int64_t i = first; i < first + count; i++) entries.push_back(entry(batch, i));
+        return add_entries(batch, std::move(entries));
+    }
+    Sealed seal(const std::string& batch, const std::string& key = "", const std::string& hash = "hash") {
+        return completed<Sealed>([&](auto done) { store_->seal_batch(batch, hash, key, done); });
+    }
+    bool drop(const std::string& batch) {
+        return completed<bool>([&](auto done) { store_->drop_batch(batch, done); });
+    }
+    std::optional<Ids> cancel_batch(const std::string& batch) {
+        return completed<std::optional<Ids>>([&](auto done) { store_->cancel_batch(batch, now(), done); });
+    }
+    RemoveEffect remove_batch(const std::string& batch) {
+        return completed<RemoveEffect>([&](auto done) { store_->remove_batch(batch, done); });
+    }
+    /// A sealed batch of so many waiting entries.
+    void make_batch(const std::string& id, std::int64_t count, const std::string& flow = "") {
+        open_batch(id, "", flow);
+        add_waiting(id, 0, count);
+        EXPECT_EQ(seal(id).kind, Sealed::Kind::sealed);
+    }
+    BatchSummary batch(const std::string& id) { return store_->find_batch(id).value(); }
+
+    static constexpr const char* kGivenUp = R"({"type":"given-up"})";
     std::unique_ptr<StorePlace> place_;
     std::unique_ptr<JobStore> store_;
 };
-
-TEST_P(StoreConformance, AnAcceptedJobIsReadBackAsItWasGiven) {
-    const Accepted accepted = accept(job("a"));
-    EXPECT_EQ(accepted.kind, Accepted::Kind::created);
-    const JobRecord found = store_->find("a").value();
-    EXPECT_EQ(found.seq, accepted.job.seq);
-    EXPECT_EQ(found.name, "name of a");
-    EXPECT_EQ(found.status, JobStatus::queued);
-    EXPECT_EQ(found.request, R"({"plant":"a"})");
-    EXPECT_EQ(found.request_hash, "hash of a");
-    EXPECT_EQ(found.timeout_s, 12.5);
-    EXPECT_EQ(found.created_at, 1000);
-    EXPECT_EQ(found.attempts, 0);
-    EXPECT_FALSE(found.started_at || found.finished_at);
-    EXPECT_FALSE(store_->find("b"));
-}
-
-TEST_P(StoreConformance, TextsKeepQuotesZeroBytesAndOtherLanguages) {
-    NewJob made = job("a");
-    made.name = "Regler \"süß\" 温度'; DROP TABLE jobs; --";
-    made.name.push_back('\0');
-    made.name += "end";
-    const std::string name = made.name;
-    accept(made);
-    EXPECT_EQ(store_->find("a").value().name, name);
-}
-
-TEST_P(StoreConformance, ClaimsComeInTheOrderOfAcceptanceAndEachOnce) {
-    for (const char* id : {"c", "a", "b"}) accept(job(id));
-    for (const char* id : {"c", "a", "b"}) {
-        const JobRecord claimed = claim().value();
-        EXPECT_EQ(claimed.id, id);
-        EXPECT_EQ(claimed.status, JobStatus::running);
-        EXPECT_EQ(claimed.attempts, 1);
-        EXPECT_EQ(claimed.started_at, 2000);
-        EXPECT_EQ(claimed.request, job(id).request);
-    }
-    EXPECT_FALSE(claim());
-}
-
-TEST_P(StoreConformance, ManyClaimsAtOnceNeverGiveAJobTwice) {
-    constexpr int count = 200;
-    for (int i = 0; i < count; i++) accept(job("job" + std::to_string(i)));
-    std::vector<std::promise<std::optional<JobRecord>>> claims(count + 10);
-    for (auto& promise : claims)
-        store_->claim_next(2000, [&promise](auto outcome) {
-            promise.set_value(std::get<std::optional<JobRecord>>(std::move(outcome)));
-        });
-    std::set<std::string> ids;
-    int none = 0;
-    for (auto& promise : claims) {
-        const auto claimed = promise.get_future().get();
-        claimed ? static_cast<void>(ids.insert(claimed->id)) : static_cast<void>(none++);
-    }
-    EXPECT_EQ(ids.size(), count);
-    EXPECT_EQ(none, 10);
-}
-
-TEST_P(StoreConformance, AJobEndsOnceAndKeepsItsFirstEnd) {
-    accept(job("a"));
-    EXPECT_FALSE(finish("a", JobStatus::succeeded, "{}")) << "it is not running yet";
-    claim();
-    EXPECT_TRUE(finish("a", JobStatus::succeeded, R"({"x":1})"));
-    EXPECT_FALSE(finish("a", JobStatus::failed, "", R"({"type":"late"})"));
-    const JobRecord found = store_->find("a").value();
-    EXPECT_EQ(found.status, JobStatus::succeeded);
-    EXPECT_EQ(found.result, R"({"x":1})");
-    EXPECT_EQ(found.error, "");
-    EXPECT_EQ(found.finished_at, 3000);
-}
-
-TEST_P(StoreConformance, AFailedJobKeepsItsErrorAndACancelledOneItsPartialResult) {
-    accept(job("a"));
-    accept(job("b"));
-    claim();
-    claim();
-    EXPECT_TRUE(finish("a", JobStatus::failed, "", R"({"type":"timeout"})"));
-    EXPECT_TRUE(finish("b", JobStatus::cancelled, R"({"partial":true})"));
-    EXPECT_EQ(store_->find("a").value().error, R"({"type":"timeout"})");
-    EXPECT_EQ(store_->find("b").value().result, R"({"partial":true})");
-}
-
-TEST_P(StoreConformance, CancellingAQueuedJobEndsItAndItIsNeverClaimed) {
-    accept(job("a"));
-    EXPECT_EQ(cancel("a"), CancelEffect::cancelled);
-    EXPECT_EQ(status("a"), JobStatus::cancelled);
-    EXPECT_EQ(store_->find("a").value().finished_at, 2500);
-    EXPECT_FALSE(claim());
-    EXPECT_EQ(cancel("a"), CancelEffect::ended);
-    EXPECT_EQ(cancel("b"), CancelEffect::none);
-}
-
-TEST_P(StoreConformance, CancellingARunningJobIsRememberedUntilItEnds) {
-    accept(job("a"));
-    claim();
-    EXPECT_EQ(cancel("a"), CancelEffect::requested);
-    EXPECT_EQ(status("a"), JobStatus::running);
-    EXPECT_TRUE(store_->find("a").value().cancel_requested);
-    const Recovery recovery = reopen();
-    EXPECT_EQ(recovery.queued, 0U);
-    EXPECT_EQ(status("a"), JobStatus::cancelled);
-}
-
-TEST_P(StoreConformance, OnlyEndedJobsAreRemovedAndNothingOfThemStays) {
-    EXPECT_EQ(remove("a"), RemoveEffect::none);
-    NewJob made = job("a");
-    made.idempotency_key = "key";
-    accept(made);
-    EXPECT_EQ(remove("a"), RemoveEffect::not_ended);
-    claim();
-    EXPECT_EQ(remove("a"), RemoveEffect::not_ended);
-    finish("a", JobStatus::succeeded, "{}");
-    EXPECT_EQ(remove("a"), RemoveEffect::removed);
-    EXPECT_FALSE(store_->find("a"));
-    made.id = "b";
-    EXPECT_EQ(accept(made).kind, Accepted::Kind::created) << "its idempotency key went with it";
-}
-
-TEST_P(StoreConformance, AnIdempotencyKeyFindsTheEarlierJobUnlessTheRequestDiffers) {
-    NewJob first = job("a");
-    first.idempotency_key = "key";
-    accept(first);
-    NewJob again = job("b");
-    again.idempotency_key = "key";
-    again.request_hash = first.request_hash;
-    const Accepted same = accept(again);
-    EXPECT_EQ(same.kind, Accepted::Kind::existing);
-    EXPECT_EQ(same.job.id, "a");
-    again.request_hash = "another";
-    EXPECT_EQ(accept(again).kind, Accepted::Kind::conflict);
-    EXPECT_FALSE(store_->find("b"));
-}
-
-TEST_P(StoreConformance, AnInterruptedJobIsQueuedBeforeLaterOnesAndCountsItsAttempts) {
-    accept(job("a"));
-    accept(job("b"));
-    claim();
-    const Recovery recovery = reopen();
-    EXPECT_EQ(recovery.interrupted, 1U);
-    EXPECT_EQ(recovery.queued, 2U);
-    const JobRecord claimed = claim().value();
-    EXPECT_EQ(claimed.id, "a");
-    EXPECT_EQ(claimed.attempts, 2);
-}
-
-TEST_P(StoreConformance, AJobThatWasInterruptedTooOftenFails) {
-    accept(job("a"));
-    claim();
-    reopen(2);
-    claim();
-    const Recovery recovery = reopen(2);
-    EXPECT_EQ(recovery.given_up, 1U);
-    EXPECT_EQ(recovery.queued, 0U);
-    const JobRecord found = store_->find("a").value();
-    EXPECT_EQ(found.status, JobStatus::failed);
-    EXPECT_EQ(found.error, R"({"type":"given-up"})");
-    EXPECT_EQ(found.finished_at, 9000);
-}
-
-TEST_P(StoreConformance, AReleasedJobIsQueuedAgain) {
-    accept(job("a"));
-    EXPECT_FALSE(release("a"));
-    claim();
-    EXPECT_TRUE(release("a"));
-    EXPECT_EQ(status("a"), JobStatus::queued);
-    EXPECT_EQ(claim().value().attempts, 2);
-}
-
-TEST_P(StoreConformance, WhatHasEndedIsTheSameAfterReopening) {
-    accept(job("a"));
-    claim();
-    finish("a", JobStatus::succeeded, R"({"x":1})");
-    const JobRecord before = store_->find("a").value();
-    reopen();
-    const JobRecord after = store_->find("a").value();
-    EXPECT_EQ(after.status, JobStatus::succeeded);
-    EXPECT_EQ(after.result, before.result);
-    EXPECT_EQ(after.started_at, before.started_at);
-    EXPECT_EQ(after.finished_at, before.finished_at);
-}
-
-TEST_P(StoreConformance, PagesGoFromTheNewestToTheOldestWithoutGapsOrRepeats) {
-    for (int i = 0; i < 7; i++) accept(job("job" + std::to_string(i)));
-    JobQuery query;
-    query.limit = 3;
-    std::string seen;
-    bool more = true;
-    while (more) {
-        const JobPage page = store_->list(query);
-        EXPECT_LE(page.jobs.size(), 3U);
-        for (const JobSummary& summary : page.jobs) seen += summary.id.back();
-        query.before_seq = page.jobs.back().seq;
-        more = page.more;
-    }
-    EXPECT_EQ(seen, "6543210");
-}
-
-TEST_P(StoreConformance, ListsFilterByStatusAndByName) {
-    for (const char* id : {"a", "b", "c"}) accept(job(id));
-    claim();
-    JobQuery running;
-    running.status = JobStatus::running;
-    ASSERT_EQ(store_->list(running).jobs.size(), 1U);
-    EXPECT_EQ(store_->list(running).jobs.front().id, "a");
-    JobQuery named;
-    named.name = "name of b";
-    ASSERT_EQ(store_->list(named).jobs.size(), 1U);
-    EXPECT_EQ(store_->list(named).jobs.front().id, "b");
-    named.status = JobStatus::running;
-    EXPECT_TRUE(store_->list(named).jobs.empty());
-}
 
 }  // namespace tunewright::server

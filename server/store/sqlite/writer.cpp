@@ -1,11 +1,11 @@
 #include "server/store/sqlite/writer.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
 #include <algorithm>
 
 #include "server/log.h"
+#include "server/store/sqlite/connection.h"
 
 namespace tunewright::server {
 namespace {
@@ -22,7 +22,7 @@ StoreFault fault_of(const std::exception& error) {
     return fault;
 }
 
-SqliteWriter::SqliteWriter(SQLite::Database& database) : database_(database), thread_([this] { work(); }) {}
+SqliteWriter::SqliteWriter(Connection& connection) : connection_(connection), thread_([this] { work(); }) {}
 
 SqliteWriter::~SqliteWriter() {
     {
@@ -35,24 +35,29 @@ SqliteWriter::~SqliteWriter() {
 void SqliteWriter::submit(Change change) {
     {
         const std::lock_guard lock(mutex_);
-        waiting_.push_back(std::move(change));
+        (change.bulky ? bulky_ : waiting_).push_back(std::move(change));
     }
     changed_.notify_one();
 }
 
-void SqliteWriter::work() {
-    for (;;) {
-        std::vector<Change> group;
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
-            if (waiting_.empty()) return;
-            const auto count = static_cast<std::ptrdiff_t>(std::min(waiting_.size(), kLargestGroup));
-            group.assign(std::make_move_iterator(waiting_.begin()), std::make_move_iterator(waiting_.begin() + count));
-            waiting_.erase(waiting_.begin(), waiting_.begin() + count);
-        }
-        write_group(group);
+std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty() || !bulky_.empty(); });
+    std::vector<Change> group;
+    while (!waiting_.empty() && group.size() < kLargestGroup) {
+        group.push_back(std::move(waiting_.front()));
+        waiting_.pop_front();
     }
+    if (!bulky_.empty()) {
+        group.push_back(std::move(bulky_.front()));
+        bulky_.pop_front();
+    }
+    return group;
+}
+
+void SqliteWriter::work() {
+    // Empty only when it is asked to stop and nothing is left.
+    for (std::vector<Change> group = next_group(); !group.empty(); group = next_group()) write_group(group);
 }
 
 void SqliteWriter::write_group(std::vector<Change>& group) {
@@ -75,9 +80,12 @@ std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, s
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
     try {
         const bool durable = std::any_of(begin, end, [](const Change& change) { return change.durable; });
-        database_.exec(durable ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
-        SQLite::Transaction transaction(database_, SQLite::TransactionBehavior::IMMEDIATE);
-        for (auto change = begin; change != end; ++change) change->apply(database_);
+        if (durable != waits_for_disk_) {
+            connection_.database().exec(durable ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
+            waits_for_disk_ = durable;
+        }
+        SQLite::Transaction transaction(connection_.database(), SQLite::TransactionBehavior::IMMEDIATE);
+        for (auto change = begin; change != end; ++change) change->apply(connection_);
         transaction.commit();
         return std::nullopt;
     } catch (const std::exception& error) {

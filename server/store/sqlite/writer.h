@@ -1,9 +1,11 @@
 // The one thread that writes to the database. What is asked for while a transaction is being made durable goes into
-// the next one together: one wait for the disk for many changes.
+// the next one together: one wait for the disk for many changes. Bulky changes (a batch's) have a lane of their own:
+// each transaction takes one of them, so that they never hold the others up for long.
 #pragma once
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -13,25 +15,25 @@
 
 #include "server/store/store.h"
 
-namespace SQLite {
-class Database;
-}
-
 namespace tunewright::server {
+
+class Connection;
 
 class SqliteWriter {
 public:
     struct Change {
         /// Runs inside a transaction. May run twice (a group that failed is repeated one by one), so it overwrites
         /// whatever it reported before.
-        std::function<void(SQLite::Database&)> apply;
+        std::function<void(Connection&)> apply;
         /// Runs after the commit, with the fault where there was one.
         std::function<void(std::optional<StoreFault>)> done;
         /// The commit waits for the disk. Without it the change survives a kill of the process, not of the machine.
         bool durable = true;
+        /// Touches many rows. Bulky changes keep their order among themselves, the others among themselves.
+        bool bulky = false;
     };
 
-    explicit SqliteWriter(SQLite::Database& database);
+    explicit SqliteWriter(Connection& connection);
     /// Makes everything durable that was asked for, then joins.
     ~SqliteWriter();
     SqliteWriter(const SqliteWriter&) = delete;
@@ -42,13 +44,16 @@ public:
 
 private:
     void work();
+    std::vector<Change> next_group();
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
 
-    SQLite::Database& database_;
+    Connection& connection_;
+    std::optional<bool> waits_for_disk_;  ///< how the connection is set, once it is
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<Change> waiting_;
+    std::deque<Change> waiting_;
+    std::deque<Change> bulky_;
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::jthread thread_;

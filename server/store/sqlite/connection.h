@@ -1,0 +1,67 @@
+// A connection to the SQLite file with its prepared statements: each is compiled once.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+class Connection {
+public:
+    /// A prepared statement in use; it is put back to its start when this goes. The same one never twice at a time.
+    class Use {
+    public:
+        explicit Use(SQLite::Statement& statement) : statement_(statement) {}
+        ~Use();
+        Use(const Use&) = delete;
+        Use& operator=(const Use&) = delete;
+
+        /// Values for ?1, ?2, ...; texts must live as long as this.
+        template <class... Values>
+        Use& with(const Values&... values) {
+            int place = 0;
+            (bind(++place, values), ...);
+            return *this;
+        }
+        void bind(int place, const std::string& value) { statement_.bindNoCopy(place, value); }
+        void bind(int place, const char* value) { statement_.bind(place, value); }
+        void bind(int place, std::int64_t value) { statement_.bind(place, value); }
+        void bind(int place, int value) { statement_.bind(place, value); }
+        void bind(int place, double value) { statement_.bind(place, value); }
+        void bind_null(int place) { statement_.bind(place); }
+
+        /// True where there is a (further) row.
+        bool next() { return statement_.executeStep(); }
+        /// For a statement that gives no rows: how many it changed.
+        int run() { return statement_.exec(); }
+
+        /// Columns from 0; null is "", 0 or nothing.
+        std::string text(int column) const;
+        std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
+        double real(int column) const { return statement_.getColumn(column).getDouble(); }
+        std::optional<UnixMs> moment(int column) const;
+
+    private:
+        SQLite::Statement& statement_;
+    };
+
+    Connection(const std::string& path, int flags);
+
+    Use use(std::string_view sql);
+    /// The only value of the only row.
+    std::int64_t number(std::string_view sql);
+    SQLite::Database& database() { return database_; }
+
+private:
+    SQLite::Database database_;
+    std::map<std::string, SQLite::Statement, std::less<>> statements_;
+};
+
+}  // namespace tunewright::server

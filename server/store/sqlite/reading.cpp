@@ -1,0 +1,109 @@
+#include "server/store/sqlite/reading.h"
+
+#include "server/store/sqlite/rows.h"
+
+namespace tunewright::server {
+
+std::optional<JobRecord> find_record(Connection& store, const std::string& id) {
+    static const std::string sql = "SELECT " + kRecordColumns + kRecordTables + " WHERE j.id = ?1 AND " + kVisible;
+    Connection::Use row = store.use(sql);
+    if (!row.with(id).next()) return std::nullopt;
+    return read_record(row);
+}
+
+std::vector<JobState> find_states(Connection& store, const std::vector<std::string>& ids) {
+    static const std::string sql = "SELECT " + kSummaryColumns + kSummaryTables + " WHERE j.id = ?1 AND " + kVisible;
+    std::vector<JobState> states;
+    for (const std::string& id : ids) {
+        Connection::Use row = store.use(sql);
+        if (row.with(id).next()) states.push_back(read_state(row));
+    }
+    return states;
+}
+
+JobPage list_jobs(Connection& store, const JobQuery& query) {
+    // The entries of a batch stand in the order of their index, which is that of their seq too.
+    std::string sql = "SELECT " + kSummaryColumns + kSummaryTables;
+    sql += query.batch ? " WHERE j.batch = (SELECT seq FROM batches WHERE id = ?1 AND state <> 'leaving')"
+                       : " WHERE j.class = 0";
+    if (query.status) sql += " AND j.status = ?2";
+    if (query.name) sql += " AND j.name = ?3";
+    if (query.owner) sql += " AND j.owner = ?4";
+    if (query.before_seq)
+        sql += query.batch ? " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = ?5)" : " AND j.seq < ?5";
+    sql += query.batch ? " ORDER BY j.batch_index DESC" : " ORDER BY j.seq DESC";
+    sql += " LIMIT ?6";
+    Connection::Use row = store.use(sql);
+    const std::string status(query.status ? to_string(*query.status) : "");
+    if (query.batch) row.bind(1, *query.batch);
+    if (query.status) row.bind(2, status);
+    if (query.name) row.bind(3, *query.name);
+    if (query.owner) row.bind(4, *query.owner);
+    if (query.before_seq) row.bind(5, *query.before_seq);
+    row.bind(6, query.limit + 1);
+    JobPage page;
+    while (row.next()) page.jobs.push_back(read_summary(row));
+    page.more = page.jobs.size() > static_cast<std::size_t>(query.limit);
+    if (page.more) page.jobs.pop_back();
+    return page;
+}
+
+JobStore::Depth count_waiting(Connection& store) {
+    JobStore::Depth depth;
+    depth.single =
+        static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0"));
+    // Batches count their entries themselves; those of one that is leaving wait no longer.
+    depth.entries =
+        static_cast<std::size_t>(store.number("SELECT coalesce(sum(queued), 0) FROM batches WHERE state <> 'leaving'"));
+    return depth;
+}
+
+std::optional<BatchSummary> find_batch(Connection& store, const std::string& id) {
+    static const std::string sql =
+        "SELECT " + kBatchColumns + " FROM batches b WHERE b.id = ?1 AND b.state <> 'leaving'";
+    Connection::Use row = store.use(sql);
+    if (!row.with(id).next()) return std::nullopt;
+    return read_batch(row);
+}
+
+std::optional<std::string> find_batch_of_key(Connection& store, const std::string& owner, const std::string& key) {
+    Connection::Use row =
+        store.use("SELECT b.id FROM batch_keys k JOIN batches b ON b.seq = k.batch WHERE k.owner = ?1 AND k.key = ?2");
+    if (!row.with(owner, key).next()) return std::nullopt;
+    return row.text(0);
+}
+
+BatchPage list_batches(Connection& store, const std::optional<std::string>& owner, int limit,
+                       std::optional<std::int64_t> before_seq) {
+    std::string sql = "SELECT " + kBatchColumns + " FROM batches b WHERE b.state <> 'leaving'";
+    if (owner) sql += " AND b.owner = ?1";
+    if (before_seq) sql += " AND b.seq < ?2";
+    sql += " ORDER BY b.seq DESC LIMIT ?3";
+    Connection::Use row = store.use(sql);
+    if (owner) row.bind(1, *owner);
+    if (before_seq) row.bind(2, *before_seq);
+    row.bind(3, limit + 1);
+    BatchPage page;
+    while (row.next()) page.batches.push_back(read_batch(row));
+    page.more = page.batches.size() > static_cast<std::size_t>(limit);
+    if (page.more) page.batches.pop_back();
+    return page;
+}
+
+std::vector<BatchRow> find_rows(Connection& store, const std::string& batch, std::int64_t from, std::size_t limit) {
+    Connection::Use row = store.use(
+        "SELECT j.batch_index, j.id, j.name, j.status, r.body, r.error FROM jobs j LEFT JOIN results r ON r.seq = "
+        "j.seq "
+        "WHERE j.batch = (SELECT seq FROM batches WHERE id = ?1 AND state <> 'leaving') AND j.batch_index >= ?2 "
+        "ORDER BY j.batch_index LIMIT ?3");
+    row.with(batch, from, static_cast<std::int64_t>(limit));
+    std::vector<BatchRow> rows;
+    while (row.next()) {
+        BatchRow entry{row.integer(0), row.text(1), row.text(2), job_status(row.text(3)).value(),
+                       row.text(4),    row.text(5)};
+        rows.push_back(std::move(entry));
+    }
+    return rows;
+}
+
+}  // namespace tunewright::server

@@ -5,6 +5,28 @@
 #include "api/service.h"
 
 namespace tunewright::api {
+namespace {
+
+/// What the port may answer to any call, whatever the operation: added where the operation says nothing of its own.
+void add_refusals(Json& operation, bool changes) {
+    const auto add = [&](const char* status, const char* name) {
+        Json& responses = operation["responses"];
+        if (!responses.contains(status)) responses[status] = {{"$ref", std::string("#/components/responses/") + name}};
+    };
+    add("400", "Unreadable");
+    add("401", "Unauthorized");
+    add("403", "Forbidden");
+    add("406", "NotAcceptable");
+    add("429", "TooMany");
+    add("503", "Unavailable");
+    add("default", "Refused");
+    if (changes) add("507", "DiskFull");
+    if (!operation.contains("requestBody")) return;
+    add("413", "TooLarge");
+    add("415", "WrongMediaType");
+}
+
+}  // namespace
 
 // paths.json holds what belongs to HTTP: paths, parameters, the job around a request. The types of the contract come
 // from their descriptions.
@@ -23,6 +45,10 @@ std::string openapi_json() {
         relay_answer_contract().schema(book);
         Json& schemas = document["components"]["schemas"];
         for (auto& [name, schema] : book.components.items()) schemas[name] = schema;
+
+        for (auto& [path, item] : document["paths"].items())
+            for (auto& [method, operation] : item.items())
+                if (operation.is_object()) add_refusals(operation, method != "get");
 
         const Json examples = Json::parse(examples_json());
         Json& shown = document["paths"]["/v1/jobs"]["post"]["requestBody"]["content"]["application/json"]["examples"];

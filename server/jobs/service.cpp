@@ -3,38 +3,21 @@
 #include <sys/random.h>
 
 #include <array>
-#include <future>
+#include <stdexcept>
 
-#include "server/executor.h"
+#include "server/jobs/problems.h"
 #include "server/log.h"
 
 namespace tunewright::server {
 namespace {
 
-constexpr int kWorkerNiceness = 5;
+using Stop = HeldJob::Stop;
+
 constexpr std::chrono::seconds kStopPatience{2};
-constexpr std::chrono::seconds kRetryPause{1};
 
-double monotonic_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string timeout_error(double timeout_s) {
-    Error error;
-    error.kind = ErrorKind::timeout;
-    error.where = "timeout_s";
-    error.message = "The job was stopped after timeout_s = " + std::to_string(timeout_s).substr(0, 6) +
-                    " s. Ask for fewer methods or a simpler search, or raise timeout_s.";
-    return api::to_json(api::to_problem(error));
-}
-
-std::string fault_error(const std::string& detail) {
-    api::Problem problem;
-    problem.status = 500;
-    problem.type = "internal";
-    problem.title = "Internal Server Error";
-    problem.detail = detail;
-    return api::to_json(problem);
+JobSettings named(JobSettings settings) {
+    if (settings.name.empty()) settings.name = new_job_id();
+    return settings;
 }
 
 }  // namespace
@@ -49,310 +32,225 @@ std::string new_job_id() {
     return id;
 }
 
-void JobService::Running::request(StopReason why_now) {
-    {
-        const std::lock_guard lock(mutex);
-        if (reason == StopReason::none) reason = why_now;
-    }
-    stop.request_stop();
-}
-
-JobService::StopReason JobService::Running::why() {
-    const std::lock_guard lock(mutex);
-    return reason;
-}
-
 JobService::JobService(JobStore& store, Timer& timer, JobSettings settings)
-    : store_(store), timer_(timer), settings_(std::move(settings)) {}
+    : store_(store),
+      settings_(named(std::move(settings))),
+      depth_(settings_.queue_limit, settings_.entry_limit),
+      waits_(timer),
+      claims_(store, held_, outage_, claim_settings()),
+      ends_(store, outage_, end_listener()),
+      leases_(store, held_, outage_, lease_settings()),
+      workers_(claims_, ends_, timer, worker_settings()) {}
 
 JobService::~JobService() { drain(std::chrono::seconds(0)); }
 
 Recovery JobService::start() {
-    const Recovery recovery = store_.recover(
-        settings_.now(), settings_.most_attempts,
-        fault_error("The job was interrupted " + std::to_string(settings_.most_attempts) +
-                    " times by an end of the service and is not tried again. Post it anew if it is not the cause."));
-    depth_ = recovery.queued;
-    tokens_ = recovery.queued;
-    for (std::size_t i = 0; i < settings_.workers; i++)
-        threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    Recovery recovery =
+        store_.recover(settings_.now(), settings_.most_attempts, given_up_problem(settings_.most_attempts));
+    depth_.refresh(store_);
+    looking_ = std::make_unique<Pulse>([this] { return look(); });
+    store_.watch([this](const StoreNotice& notice) { hear(notice); });
+    workers_.start();
+    claims_.arrived();
+    tending_ = std::make_unique<Pulse>([this] { return tend(); });
     return recovery;
 }
 
 // ---- accepting -------------------------------------------------------------------------------------------------
 
-void JobService::submit(api::PreparedJob job, std::string idempotency_key, std::chrono::duration<double> wait,
-                        std::function<void(Submission)> done, std::function<void()> ended) {
+void JobService::submit(Order order, std::function<void(Submission)> done, std::function<void()> ended) {
     if (draining_) return done({Submission::Kind::draining, {}, {}});
-    if (depth_.fetch_add(1) >= settings_.queue_limit) {
-        depth_--;
-        return done({Submission::Kind::queue_full, {}, {}});
-    }
-    NewJob entry;
-    entry.id = new_job_id();
-    entry.name = std::move(job.name);
-    entry.timeout_s = job.timeout_s;
-    entry.request_hash = std::move(job.request_hash);
-    entry.idempotency_key = std::move(idempotency_key);
-    entry.created_at = settings_.now();
-    auto request = std::make_shared<std::string>(job.request_json);
-    entry.request = std::move(job.request_json);
+    if (!depth_.reserve()) return done({Submission::Kind::queue_full, {}, {}});
+    NewJob job;
+    job.id = new_job_id();
+    job.name = std::move(order.job.name);
+    job.timeout_s = order.job.timeout_s;
+    job.request_hash = std::move(order.job.request_hash);
+    job.idempotency_key = std::move(order.idempotency_key);
+    job.owner = std::move(order.owner);
+    job.flow = std::move(order.flow);
+    job.created_at = settings_.now();
+    auto request = std::make_shared<std::string>(order.job.request_json);
+    job.request = std::move(order.job.request_json);
 
-    const auto accepted = [this, request, wait, done = std::move(done),
+    const auto accepted = [this, request, wait = order.wait, done = std::move(done),
                            ended = std::move(ended)](Outcome<Accepted> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
-            depth_--;
+            depth_.refused();
+            outage_.failed("no job can be accepted", *fault);
             return done({Submission::Kind::store_failed, {}, *fault});
         }
+        outage_.worked();
         auto& value = std::get<Accepted>(outcome);
         Submission submission;
         static_cast<JobSummary&>(submission.job) = std::move(value.job);
         if (value.kind != Accepted::Kind::created) {
-            depth_--;
+            depth_.refused();
             const bool same = value.kind == Accepted::Kind::existing;
             submission.kind = same ? Submission::Kind::existing : Submission::Kind::conflict;
             return done(std::move(submission));
         }
+        depth_.accepted();
         submission.kind = Submission::Kind::created;
         submission.job.request = std::move(*request);
-        // Before a worker can know of the job, so that its end is not missed.
-        if (wait.count() > 0) add_waiter(submission.job.id, wait, ended);
+        // Before a worker of this process can know of the job, so that its end is not missed.
+        if (wait.count() > 0) waits_.add(submission.job.id, wait, ended);
         done(std::move(submission));
-        add_token();
+        claims_.arrived();
     };
-    store_.accept(std::move(entry), accepted);
+    store_.accept(std::move(job), accepted);
 }
 
 std::optional<JobView> JobService::find(const std::string& id) {
-    std::shared_ptr<Running> running;
-    {
-        const std::lock_guard lock(running_mutex_);
-        const auto found = running_.find(id);
-        if (found != running_.end()) running = found->second;
-    }
+    const std::shared_ptr<HeldJob> held = held_.find(id);
     std::optional<JobRecord> job = store_.find(id);
     if (!job) return std::nullopt;
     JobView view{*std::move(job), std::nullopt};
-    if (running && view.job.status == JobStatus::running) {
-        const std::lock_guard lock(running->mutex);
-        view.progress = running->progress;
-    }
+    if (held && view.job.status == JobStatus::running && view.job.attempts == held->job.attempts)
+        view.progress = held->progress();
     return view;
+}
+
+std::optional<JobState> JobService::state(const std::string& id) {
+    std::vector<JobState> found = store_.states({id});
+    if (found.empty()) return std::nullopt;
+    return std::move(found.front());
 }
 
 void JobService::cancel(const std::string& id, Done<CancelEffect> done) {
     store_.cancel(id, settings_.now(), [this, id, done = std::move(done)](Outcome<CancelEffect> outcome) {
         const auto* effect = std::get_if<CancelEffect>(&outcome);
         if (effect != nullptr && *effect == CancelEffect::cancelled) {
-            depth_--;
-            tell_waiters(id);
+            depth_.gone(1);
+            waits_.tell(id);
         }
-        if (effect != nullptr && *effect == CancelEffect::requested) {
-            const std::lock_guard lock(running_mutex_);
-            const auto found = running_.find(id);
-            if (found != running_.end()) found->second->request(StopReason::cancel);
-        }
+        if (effect != nullptr && *effect == CancelEffect::requested) stop_running({id});
         done(std::move(outcome));
     });
 }
 
-// ---- waiting ---------------------------------------------------------------------------------------------------
-
-void JobService::add_waiter(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended) {
-    auto waiter = std::make_shared<Waiter>();
-    waiter->ended = std::move(ended);
-    const std::lock_guard lock(waiters_mutex_);
-    waiter->timeout = timer_.after(wait, [this, id, waiter] {
-        {
-            const std::lock_guard inner(waiters_mutex_);
-            const auto [first, last] = waiters_.equal_range(id);
-            const auto found = std::find_if(first, last, [&](const auto& item) { return item.second == waiter; });
-            if (found == last) return;
-            waiters_.erase(found);
-        }
-        waiter->ended();
-    });
-    waiters_.emplace(id, waiter);
-}
-
-void JobService::tell_waiters(const std::string& id) {
-    std::vector<std::shared_ptr<Waiter>> told;
-    {
-        const std::lock_guard lock(waiters_mutex_);
-        const auto [first, last] = waiters_.equal_range(id);
-        for (auto it = first; it != last; ++it) told.push_back(it->second);
-        waiters_.erase(first, last);
-    }
-    for (const auto& waiter : told) {
-        timer_.cancel(waiter->timeout);
-        waiter->ended();
-    }
-}
-
-void JobService::tell_all_waiters() {
-    std::multimap<std::string, std::shared_ptr<Waiter>> told;
-    {
-        const std::lock_guard lock(waiters_mutex_);
-        told.swap(waiters_);
-    }
-    for (const auto& [id, waiter] : told) {
-        timer_.cancel(waiter->timeout);
-        waiter->ended();
-    }
-}
-
 void JobService::wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended) {
-    add_waiter(id, wait, std::move(ended));
+    waits_.add(id, wait, std::move(ended));
     // It may have ended before the waiter was there.
-    const std::optional<JobRecord> job = store_.find(id);
-    if (!job || has_ended(job->status) || draining_) tell_waiters(id);
+    const std::optional<JobState> found = state(id);
+    if (!found || has_ended(found->status) || draining_) waits_.tell(id);
 }
 
-// ---- working ---------------------------------------------------------------------------------------------------
+// ---- what batches need -----------------------------------------------------------------------------------------
 
-void JobService::add_token() {
-    {
-        const std::lock_guard lock(tokens_mutex_);
-        tokens_++;
-    }
-    tokens_changed_.notify_one();
+bool JobService::room_for_entries(std::size_t count) { return depth_.reserve_entries(count); }
+
+void JobService::work_arrived() { claims_.arrived(); }
+
+void JobService::stop_running(const std::vector<std::string>& ids) {
+    for (const std::string& id : ids)
+        if (const auto held = held_.find(id)) stop_held(held, Stop::cancel);
 }
 
-bool JobService::take_token(const std::stop_token& stop) {
-    std::unique_lock lock(tokens_mutex_);
-    if (!tokens_changed_.wait(lock, stop, [this] { return tokens_ > 0; })) return false;
-    tokens_--;
-    return !stop.stop_requested();
+void JobService::look_again() {
+    look_again_ = true;
+    if (looking_) looking_->wake();
 }
 
-void JobService::work(const std::stop_token& stop) {
-    be_nice(kWorkerNiceness);
-    while (take_token(stop)) {
-        try {
-            std::optional<JobRecord> job = claim();
-            if (job) run_job(*std::move(job));
-        } catch (const StoreError& error) {
-            log_error(std::string("a worker cannot claim a job: ") + error.what());
-            timer_.after(kRetryPause, [this] { add_token(); });
-        }
-    }
-}
+// ---- what happens to held jobs ---------------------------------------------------------------------------------
 
-std::optional<JobRecord> JobService::claim() {
-    std::promise<Outcome<std::optional<JobRecord>>> claimed;
-    store_.claim_next(settings_.now(), [&](Outcome<std::optional<JobRecord>> outcome) {
-        // Registered on the store's thread: a cancel that the store sees later finds the job here.
-        const auto* job = std::get_if<std::optional<JobRecord>>(&outcome);
-        if (job != nullptr && *job) {
-            depth_--;
-            const std::lock_guard lock(running_mutex_);
-            running_.emplace((*job)->id, std::make_shared<Running>());
-        }
-        claimed.set_value(std::move(outcome));
-    });
-    Outcome<std::optional<JobRecord>> outcome = claimed.get_future().get();
-    if (const auto* fault = std::get_if<StoreFault>(&outcome)) throw StoreError(*fault);
-    return std::get<std::optional<JobRecord>>(std::move(outcome));
-}
-
-api::JobOutcome JobService::compute(const JobRecord& job, Running& running) {
-    RunControl control;
-    control.stop = running.stop.get_token();
-    control.now_ms = monotonic_ms;
-    control.progress = [&running](const Progress& progress) {
-        const std::lock_guard lock(running.mutex);
-        running.progress = progress;
+ClaimSettings JobService::claim_settings() {
+    ClaimSettings made;
+    made.worker = settings_.name;
+    made.lease = settings_.lease;
+    made.now = settings_.now;
+    made.most_held += settings_.workers;
+    made.claimed = [this](const std::vector<JobRecord>& jobs) {
+        std::size_t singles = 0;
+        for (const JobRecord& job : jobs) singles += job.batch.empty() ? 1U : 0U;
+        depth_.gone(singles, jobs.size() - singles);
     };
-    try {
-        return settings_.run(job.request, control);
-    } catch (const std::exception& fault) {
-        log_error("job " + job.id + " met a fault: " + fault.what());
-        return {api::JobOutcome::Status::failed, "",
-                fault_error("The computation met a fault of the service; its log says more under the job's id.")};
+    made.late = [this](const std::shared_ptr<HeldJob>& held) { ends_.release(held); };
+    return made;
+}
+
+Ends::Listener JobService::end_listener() {
+    Ends::Listener made;
+    made.done = [this](const Ended& end, bool kept) { ended(end, kept); };
+    made.released = [this](const std::shared_ptr<HeldJob>& held) {
+        held_.forget(held);
+        claims_.arrived();
+    };
+    made.unsaved = [this](std::size_t bytes) { claims_.unsaved(bytes); };
+    return made;
+}
+
+LeaseSettings JobService::lease_settings() {
+    LeaseSettings made;
+    made.lease = settings_.lease;
+    made.most_attempts = settings_.most_attempts;
+    made.given_up = given_up_problem(settings_.most_attempts);
+    made.now = settings_.now;
+    made.cancelled = [this](const std::shared_ptr<HeldJob>& held) { stop_held(held, Stop::cancel); };
+    made.lost = [this](const std::shared_ptr<HeldJob>& held) { stop_held(held, Stop::lost); };
+    made.reclaimed = [this](const Recovery& found) {
+        log_info(std::to_string(found.interrupted) + " jobs of a process that has gone wait again, " +
+                 std::to_string(found.given_up) + " were given up");
+        for (const std::string& id : found.ended) waits_.tell(id);
+        claims_.arrived();
+    };
+    return made;
+}
+
+WorkerSettings JobService::worker_settings() {
+    WorkerSettings made;
+    made.count = settings_.workers;
+    made.version = settings_.version;
+    made.run = settings_.run;
+    made.now = settings_.now;
+    made.reported = [](const std::shared_ptr<HeldJob>&) {};
+    made.lost = [this](const std::shared_ptr<HeldJob>& held) { forget(held); };
+    return made;
+}
+
+void JobService::ended(const Ended& end, bool kept) {
+    if (!kept) return forget(end.held);
+    if (settings_.observer.ended) {
+        JobRecord job = end.held->job;
+        job.status = end.end.status;
+        job.result = end.end.result;
+        job.error = end.end.error;
+        job.finished_at = end.end.finished_at;
+        settings_.observer.ended(job, end.seconds);
     }
+    held_.forget(end.held);
+    waits_.tell(end.held->job.id);
 }
 
-void JobService::run_job(JobRecord job) {
-    std::shared_ptr<Running> running;
-    {
-        const std::lock_guard lock(running_mutex_);
-        running = running_.at(job.id);
-    }
-    const Timer::Key deadline = timer_.after(std::chrono::duration<double>(job.timeout_s),
-                                             [running] { running->request(StopReason::timeout); });
-    const double started = monotonic_ms();
-    api::JobOutcome outcome = compute(job, *running);
-    timer_.cancel(deadline);
-
-    using Status = api::JobOutcome::Status;
-    auto ended = std::make_shared<JobRecord>(std::move(job));
-    ended->result = std::move(outcome.result_json);
-    ended->error = std::move(outcome.error_json);
-    JobEvent event = JobEvent::fail;
-    if (outcome.status == Status::succeeded) event = JobEvent::succeed;
-    if (outcome.status == Status::cancelled) {
-        const StopReason why = running->why();
-        if (why == StopReason::shutdown) return put_back(ended->id);
-        event = why == StopReason::timeout ? JobEvent::fail : JobEvent::cancel;
-        if (why == StopReason::timeout) ended->error = timeout_error(ended->timeout_s);
-    }
-    ended->status = transition(JobStatus::running, event).value();
-    if (ended->status == JobStatus::failed && ended->error.empty())
-        ended->error = fault_error("The computation failed without saying why.");
-    ended->finished_at = settings_.now();
-    end_job(ended, (monotonic_ms() - started) / 1e3);
+/// Another has it, or it is gone: what came of it here counts for nothing.
+void JobService::forget(const std::shared_ptr<HeldJob>& held) {
+    held_.forget(held);
+    if (settings_.observer.dropped) settings_.observer.dropped();
+    look_again();
 }
 
-void JobService::end_job(const std::shared_ptr<JobRecord>& job, double seconds) {
-    JobEnd end{job->id, job->status, job->result, job->error, settings_.version, *job->finished_at};
-    store_.finish(std::move(end), [this, job, seconds](const Outcome<bool>& outcome) {
-        if (std::holds_alternative<StoreFault>(outcome)) {
-            // The result is kept in memory and offered again until the disk takes it.
-            timer_.after(kRetryPause, [this, job, seconds] { end_job(job, seconds); });
-            return;
-        }
-        if (std::get<bool>(outcome) && settings_.observer.ended) settings_.observer.ended(*job, seconds);
-        forget_running(job->id);
-        tell_waiters(job->id);
-    });
-}
-
-void JobService::put_back(const std::string& id) {
-    store_.release(id, [this, id](const Outcome<bool>&) {
-        forget_running(id);
-        tell_waiters(id);
-    });
-}
-
-void JobService::forget_running(const std::string& id) {
-    {
-        const std::lock_guard lock(running_mutex_);
-        running_.erase(id);
-    }
-    running_changed_.notify_all();
-}
-
-std::size_t JobService::running() const {
-    const std::lock_guard lock(running_mutex_);
-    return running_.size();
+void JobService::stop_held(const std::shared_ptr<HeldJob>& held, Stop why) {
+    held->request(why);
+    if (claims_.withdraw(held)) workers_.end_unbegun(held);
 }
 
 // ---- stopping --------------------------------------------------------------------------------------------------
 
 bool JobService::drain(std::chrono::duration<double> grace) {
+    if (drained_) return *drained_;
     draining_ = true;
-    for (std::jthread& thread : threads_) thread.request_stop();
-    bool idle = false;
-    {
-        std::unique_lock lock(running_mutex_);
-        idle = running_changed_.wait_for(lock, grace, [this] { return running_.empty(); });
-        if (!idle) {
-            for (const auto& [id, running] : running_) running->request(StopReason::shutdown);
-            idle = running_changed_.wait_for(lock, kStopPatience, [this] { return running_.empty(); });
-        }
+    workers_.request_stop();
+    for (const auto& held : claims_.close(kStopPatience)) ends_.release(held);
+    bool idle = held_.wait_until_none(grace);
+    if (!idle) {
+        for (const auto& held : held_.all()) stop_held(held, Stop::shutdown);
+        idle = held_.wait_until_none(kStopPatience);
     }
-    tell_all_waiters();
-    if (idle) threads_.clear();
+    waits_.tell_all();
+    if (tending_) tending_->stop();
+    if (looking_) looking_->stop();
+    if (idle) workers_.join();
+    drained_ = idle;
     return idle;
 }
 

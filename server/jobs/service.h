@@ -3,19 +3,24 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "api/service.h"
 #include "engine/progress.h"
+#include "server/jobs/claims.h"
+#include "server/jobs/depth.h"
+#include "server/jobs/ends.h"
+#include "server/jobs/held.h"
+#include "server/jobs/leases.h"
+#include "server/jobs/outage.h"
+#include "server/jobs/pulse.h"
 #include "server/jobs/timer.h"
+#include "server/jobs/waits.h"
+#include "server/jobs/workers.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {
@@ -23,10 +28,11 @@ namespace tunewright::server {
 /// What has been happening, for metrics; the callbacks run on the threads of workers and of the store.
 struct JobObserver {
     std::function<void(const JobRecord& job, double seconds)> ended;  ///< once for each job that a worker ended
+    std::function<void()> dropped;  ///< a result came too late: another process has the job, or had ended it
 };
 
 struct JobSettings {
-    std::string name;                     ///< of this process, for leases
+    std::string name;                     ///< of this process, for leases; "": a random one
     std::size_t workers = 1;              ///< 0: this process takes requests and computes nothing
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait, all processes together
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
@@ -43,7 +49,7 @@ struct JobSettings {
 /// A job as it is this moment.
 struct JobView {
     JobRecord job;
-    std::optional<Progress> progress;  ///< of a running one
+    std::optional<Progress> progress;  ///< of one that runs here; of others job.progress has what was last told
 };
 
 struct Submission {
@@ -78,7 +84,10 @@ public:
     /// after it, once: when the job has ended (wherever it ran), or when `wait` is over.
     void submit(Order order, std::function<void(Submission)> done, std::function<void()> ended);
 
+    /// Reads throw StoreError.
     std::optional<JobView> find(const std::string& id);
+    /// The same without request and result.
+    std::optional<JobState> state(const std::string& id);
     JobPage list(const JobQuery& query) { return store_.list(query); }
     /// A running job is asked to stop; it ends soon after, not necessarily before `done`.
     void cancel(const std::string& id, Done<CancelEffect> done);
@@ -88,7 +97,7 @@ public:
     void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
 
     // ---- for batches (batches.h), which put their entries into the store themselves
-    /// True where so many more entries may wait.
+    /// True where so many more entries may wait; they are counted as waiting from now on.
     bool room_for_entries(std::size_t count);
     /// Entries have been queued: workers look, here and (by the store's notice) elsewhere.
     void work_arrived();
@@ -102,57 +111,43 @@ public:
     bool drain(std::chrono::duration<double> grace);
 
     bool draining() const { return draining_; }
-    std::size_t queued() const { return depth_; }
-    std::size_t running() const;
+    /// Jobs accepted and not yet running, those being accepted included.
+    std::size_t queued() const { return depth_.now().single + depth_.now().entries; }
+    JobStore::Depth depth() const { return depth_.now(); }
+    /// Held by this process.
+    std::size_t running() const { return held_.size(); }
     std::size_t workers() const { return settings_.workers; }
 
 private:
-    enum class StopReason { none, cancel, timeout, shutdown };
-    struct Running {
-        std::stop_source stop;
-        std::mutex mutex;
-        StopReason reason = StopReason::none;
-        Progress progress;
+    ClaimSettings claim_settings();
+    Ends::Listener end_listener();
+    LeaseSettings lease_settings();
+    WorkerSettings worker_settings();
 
-        void request(StopReason why);
-        StopReason why();
-    };
-    struct Waiter {
-        std::function<void()> ended;
-        Timer::Key timeout;
-    };
-
-    void work(const std::stop_token& stop);
-    bool take_token(const std::stop_token& stop);
-    void add_token();
-    std::optional<JobRecord> claim();
-    void run_job(JobRecord job);
-    api::JobOutcome compute(const JobRecord& job, Running& running);
-    void end_job(const std::shared_ptr<JobRecord>& job, double seconds);
-    void put_back(const std::string& id);
-    void forget_running(const std::string& id);
-    void add_waiter(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
-    void tell_waiters(const std::string& id);
-    void tell_all_waiters();
+    void ended(const Ended& ended, bool kept);
+    void stop_held(const std::shared_ptr<HeldJob>& held, HeldJob::Stop why);
+    void forget(const std::shared_ptr<HeldJob>& held);
+    void hear(const StoreNotice& notice);
+    std::chrono::milliseconds tend();
+    std::chrono::milliseconds look();
 
     JobStore& store_;
-    Timer& timer_;
     JobSettings settings_;
     std::atomic<bool> draining_ = false;
-    std::atomic<std::size_t> depth_ = 0;  ///< jobs accepted and not yet running, those being accepted included
-
-    std::mutex tokens_mutex_;
-    std::condition_variable_any tokens_changed_;
-    std::size_t tokens_ = 0;  ///< at least one for each queued job: a reason to ask the store
-
-    mutable std::mutex running_mutex_;
-    std::condition_variable running_changed_;
-    std::map<std::string, std::shared_ptr<Running>> running_;
-
-    std::mutex waiters_mutex_;
-    std::multimap<std::string, std::shared_ptr<Waiter>> waiters_;
-
-    std::vector<std::jthread> threads_;
+    std::optional<bool> drained_;  ///< what drain() returned
+    Outage outage_;
+    Depth depth_;
+    HeldJobs held_;
+    Waits waits_;
+    Claims claims_;
+    Ends ends_;
+    Leases leases_;
+    Workers workers_;
+    std::atomic<bool> look_again_ = false;
+    HeldJob::Clock::time_point next_upkeep_{};
+    HeldJob::Clock::time_point next_depth_{};
+    std::unique_ptr<Pulse> tending_;  ///< renews, reclaims, retries: queues writes, so it is never held up
+    std::unique_ptr<Pulse> looking_;  ///< reads the store, which may take long
 };
 
 /// 128 random bits from the system, as 26 letters and digits.

@@ -22,6 +22,7 @@ std::string links(const JobSummary& job) {
 std::string progress_of(const JobView& view) {
     if (view.progress) return api::progress_json(*view.progress);
     if (has_ended(view.job.status)) return "null";
+    if (!view.job.progress.empty()) return view.job.progress;
     Progress progress;
     progress.stage = std::string(to_string(view.job.status));
     progress.message = view.job.status == JobStatus::queued ? "Waits for a worker." : "Has just been started.";
@@ -88,6 +89,7 @@ std::string job_page_json(const JobPage& page, const JobQuery& query) {
     std::string next = "/v1/jobs?limit=" + std::to_string(query.limit);
     if (query.status) next.append("&status=").append(to_string(*query.status));
     if (query.name) next.append("&name=").append(percent_encode(*query.name));
+    if (query.batch) next.append("&batch=").append(percent_encode(*query.batch));
     next.append("&cursor=").append(std::to_string(page.jobs.back().seq));
     return std::move(object.text("next", next)).str();
 }

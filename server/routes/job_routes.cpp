@@ -40,12 +40,29 @@ Response guarded(Work work) {
     }
 }
 
-Response job_response(JobService& jobs, const std::string& id, int status) {
+/// True where the caller may know of the job: it is his, or nobody asks who he is.
+bool may_see(const http::Request& request, const JobSummary& job) {
+    return !request.owner || *request.owner == job.owner;
+}
+
+Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
-        if (!view) return not_found(id);
+        if (!view || !may_see(request, view->job)) return not_found(id);
         return http::json_response(job_json(*view), status);
     });
+}
+
+/// A refusal where there is no such job for this caller. Owners never change.
+std::optional<Response> refuse_stranger(JobService& jobs, const Call& call) {
+    if (!call.request.owner) return std::nullopt;
+    const std::string& id = call.path.at("id");
+    const Response found = guarded([&] {
+        const std::optional<JobState> state = jobs.state(id);
+        return state && may_see(call.request, *state) ? Response() : not_found(id);
+    });
+    if (found.status == 200) return std::nullopt;
+    return found;
 }
 
 Response submitted(const Submission& submission) {
@@ -66,16 +83,25 @@ Response submitted(const Submission& submission) {
     return store_failed(submission.fault);
 }
 
-/// 200 with the job where it has ended, else 202: the end of a wait.
-Response waited(JobService& jobs, const std::string& id, std::chrono::seconds wait) {
+/// The end of a wait: 200 with the job where it has ended, else 202, as always where nobody waited.
+Response waited(JobService& jobs, const std::string& id, std::optional<std::chrono::seconds> wait) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view) return not_found(id);
-        const bool ended = has_ended(view->job.status);
+        const bool ended = wait && has_ended(view->job.status);
         Response response = http::json_response(job_json(*view), ended ? 200 : 202);
-        response.set("Preference-Applied", "wait=" + std::to_string(wait.count()));
+        if (wait) response.set("Preference-Applied", "wait=" + std::to_string(wait->count()));
         return response.set("Location", "/v1/jobs/" + id);
     });
+}
+
+void wait_for(JobService& jobs, const std::string& id, std::chrono::seconds wait, const Reply& reply,
+              const std::function<void()>& ended) {
+    try {
+        jobs.wait(id, wait, ended);
+    } catch (const StoreError& error) {
+        reply(store_failed({error.kind, error.what()}));
+    }
 }
 
 void post_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
@@ -87,7 +113,13 @@ void post_job(JobService& jobs, Executor& pool, const Call& call, const Reply& r
     auto prepared = api::prepare_job(call.request.body);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return reply(http::problem_response(*problem));
 
+    Order order;
+    order.job = std::get<api::PreparedJob>(std::move(prepared));
+    order.idempotency_key = key;
+    order.owner = call.request.owner.value_or("");
+    order.flow = call.request.client;
     const std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
+    order.wait = wait;
     // `created` runs before `ended`: it leaves the id behind.
     auto id = std::make_shared<std::string>();
     const auto ended = [&jobs, &pool, reply, id, wait] {
@@ -98,17 +130,16 @@ void post_job(JobService& jobs, Executor& pool, const Call& call, const Reply& r
         if (submission.kind == Submission::Kind::created && wait.count() > 0) return;
         pool.post([&jobs, reply, id, wait, ended, submission = std::move(submission)] {
             if (submission.kind != Submission::Kind::existing) return reply(submitted(submission));
-            if (wait.count() > 0) return jobs.wait(*id, wait, ended);
-            Response response = job_response(jobs, *id, 202);
-            reply(response.set("Location", "/v1/jobs/" + *id));
+            if (wait.count() > 0) return wait_for(jobs, *id, wait, reply, ended);
+            reply(waited(jobs, *id, std::nullopt));
         });
     };
-    jobs.submit(std::get<api::PreparedJob>(std::move(prepared)), key, wait, done, ended);
+    jobs.submit(std::move(order), done, ended);
 }
 
 Response get_job(JobService& jobs, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
-    Response response = job_response(jobs, call.path.at("id"), 200);
+    Response response = job_response(jobs, call.request, call.path.at("id"), 200);
     if (response.status == 200) http::apply_entity_tag(call.request, response, http::entity_tag(response.body));
     // It may be kept if it is asked for again each time.
     return response.set("Cache-Control", "no-cache");
@@ -126,6 +157,8 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
             if (!query.status) refuse("it must be one of queued, running, succeeded, failed, cancelled.");
         } else if (name == "name") {
             query.name = value;
+        } else if (name == "batch") {
+            query.batch = value;
         } else if (name == "limit") {
             const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), query.limit);
             if (error != std::errc{} || end != value.data() + value.size() || query.limit < 1 ||
@@ -135,7 +168,7 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
             query.before_seq = parse_cursor(value);
             if (!query.before_seq) refuse("it must come from the next link of an earlier page.");
         } else {
-            refuse("the list knows only status, name, limit and cursor.");
+            refuse("the list knows only status, name, batch, limit and cursor.");
         }
     }
     return problem;
@@ -144,6 +177,7 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
 Response list_jobs(JobService& jobs, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     JobQuery query;
+    query.owner = call.request.owner;
     const api::Problem problem = read_query(call.request, query);
     if (!problem.errors.empty()) return http::problem_response(problem);
     return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query)); });
@@ -151,17 +185,19 @@ Response list_jobs(JobService& jobs, const Call& call) {
 
 void cancel_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
     if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+    if (auto refusal = refuse_stranger(jobs, call)) return reply(*std::move(refusal));
     const std::string& id = call.path.at("id");
-    jobs.cancel(id, [&jobs, &pool, id, reply](const Outcome<CancelEffect>& outcome) {
-        pool.post([&jobs, id, reply, outcome] {
+    jobs.cancel(id, [&jobs, &pool, call, id, reply](const Outcome<CancelEffect>& outcome) {
+        pool.post([&jobs, call, id, reply, outcome] {
             if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
-            reply(job_response(jobs, id, 202));
+            reply(job_response(jobs, call.request, id, 202));
         });
     });
 }
 
 void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
     if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+    if (auto refusal = refuse_stranger(jobs, call)) return reply(*std::move(refusal));
     const std::string& id = call.path.at("id");
     jobs.remove(id, [id, reply](const Outcome<RemoveEffect>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
@@ -171,6 +207,8 @@ void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
             case RemoveEffect::not_ended:
                 return reply(
                     problem_response(409, "The job has not ended. Cancel it first: POST /v1/jobs/" + id + "/cancel."));
+            case RemoveEffect::in_batch:
+                return reply(problem_response(409, "The job belongs to a batch. Delete the batch as a whole."));
             case RemoveEffect::removed: break;
         }
         response.status = 204;

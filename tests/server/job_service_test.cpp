@@ -70,12 +70,12 @@ protected:
     }
 
     Submission submit(const std::string& request, double timeout_s = 60) {
-        api::PreparedJob job;
-        job.timeout_s = timeout_s;
-        job.request_json = request;
+        Order order;
+        order.job.timeout_s = timeout_s;
+        order.job.request_json = request;
         std::promise<Submission> promise;
         service_->submit(
-            job, "", std::chrono::seconds(0), [&](Submission made) { promise.set_value(std::move(made)); }, [] {});
+            order, [&](Submission made) { promise.set_value(std::move(made)); }, [] {});
         return promise.get_future().get();
     }
 

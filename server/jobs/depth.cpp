@@ -1,0 +1,69 @@
+#include "server/jobs/depth.h"
+
+#include <algorithm>
+
+namespace tunewright::server {
+namespace {
+
+constexpr int kTries = 3;
+
+void take(std::size_t& from, std::size_t count) { from -= std::min(from, count); }
+
+}  // namespace
+
+bool Depth::reserve() {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.single + accepting_ >= single_limit_) return false;
+    accepting_++;
+    return true;
+}
+
+void Depth::accepted() {
+    const std::lock_guard lock(mutex_);
+    accepting_--;
+    waiting_.single++;
+    changes_++;
+}
+
+void Depth::refused() {
+    const std::lock_guard lock(mutex_);
+    accepting_--;
+}
+
+void Depth::gone(std::size_t singles, std::size_t entries) {
+    const std::lock_guard lock(mutex_);
+    take(waiting_.single, singles);
+    take(waiting_.entries, entries);
+    changes_++;
+}
+
+bool Depth::reserve_entries(std::size_t count) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.entries + count > entry_limit_) return false;
+    waiting_.entries += count;
+    changes_++;
+    return true;
+}
+
+void Depth::refresh(JobStore& store) {
+    for (int i = 0; i < kTries; i++) {
+        std::uint64_t before = 0;
+        {
+            const std::lock_guard lock(mutex_);
+            before = changes_;
+        }
+        const JobStore::Depth counted = store.depth();
+        const std::lock_guard lock(mutex_);
+        // What came or went while the store counted may be counted twice or not at all; on the last try so be it.
+        if (changes_ != before && i + 1 < kTries) continue;
+        waiting_ = counted;
+        return;
+    }
+}
+
+JobStore::Depth Depth::now() const {
+    const std::lock_guard lock(mutex_);
+    return {waiting_.single + accepting_, waiting_.entries};
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,35 @@
+// A thread that does the same thing again and again, with pauses, and at once when it is asked to.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace tunewright::server {
+
+class Pulse {
+public:
+    /// `beat` returns how long to pause; it must not throw. The first beat comes at once.
+    explicit Pulse(std::function<std::chrono::milliseconds()> beat);
+    ~Pulse() { stop(); }
+    Pulse(const Pulse&) = delete;
+    Pulse& operator=(const Pulse&) = delete;
+
+    /// The next beat begins now, or again after the one that is going on.
+    void wake();
+    /// No beat runs after it returns.
+    void stop();
+
+private:
+    void work(const std::stop_token& stop);
+
+    std::function<std::chrono::milliseconds()> beat_;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    bool woken_ = false;
+    std::jthread thread_;
+};
+
+}  // namespace tunewright::server

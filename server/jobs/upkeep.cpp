@@ -1,0 +1,62 @@
+// What the service does by the clock, and what it does when other processes on the store tell something.
+#include <algorithm>
+#include <set>
+
+#include "server/jobs/service.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::chrono::seconds kUpkeep{1};
+constexpr std::chrono::milliseconds kLook{500};
+constexpr std::chrono::milliseconds kUnbegun{250};  // then others may have what no worker here has begun
+
+}  // namespace
+
+void JobService::hear(const StoreNotice& notice) {
+    switch (notice.kind) {
+        case StoreNotice::Kind::queued: return claims_.arrived();
+        case StoreNotice::Kind::cancel: return stop_running({notice.id});
+        case StoreNotice::Kind::ended: return notice.id.empty() ? look_again() : waits_.tell(notice.id);
+        case StoreNotice::Kind::progress: return;
+    }
+}
+
+std::chrono::milliseconds JobService::tend() {
+    const auto now = HeldJob::Clock::now();
+    leases_.renew();
+    if (store_.shared())
+        for (const auto& held : claims_.withdraw(now - kUnbegun)) ends_.release(held);
+    if (now >= next_upkeep_) {
+        next_upkeep_ = now + kUpkeep;
+        leases_.reclaim();
+        ends_.retry();
+        claims_.retry();
+        if (store_.shared()) claims_.arrived();
+    }
+    return std::min<std::chrono::milliseconds>(leases_.interval(), kUpkeep);
+}
+
+std::chrono::milliseconds JobService::look() {
+    const auto now = HeldJob::Clock::now();
+    try {
+        if (now >= next_depth_) {
+            next_depth_ = now + kUpkeep;
+            depth_.refresh(store_);
+        }
+        std::vector<std::string> ids;
+        if (look_again_.exchange(false) || store_.shared()) ids = waits_.ids();
+        if (ids.empty()) return kLook;
+        std::set<std::string> going;
+        for (const JobState& state : store_.states(ids))
+            if (!has_ended(state.status)) going.insert(state.id);
+        for (const std::string& id : ids)
+            if (!going.contains(id)) waits_.tell(id);
+    } catch (const StoreError& error) {
+        outage_.failed("it cannot be read", {error.kind, error.what()});
+        look_again_ = true;
+    }
+    return kLook;
+}
+
+}  // namespace tunewright::server

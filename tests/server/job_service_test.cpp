@@ -86,8 +86,9 @@ protected:
         return service_->find(id).value().job;
     }
 
+    /// Until its computation stands at the gate.
     void until_running(const std::string& id) {
-        while (service_->find(id).value().job.status == JobStatus::queued) std::this_thread::yield();
+        while (!service_->find(id).value().progress) std::this_thread::yield();
     }
 
     CancelEffect cancel(const std::string& id) {

@@ -57,6 +57,33 @@ Answer identified(const ReadRecord& read, const IdentifyOptions& options, const 
     return {200, out.take()};
 }
 
+Problem too_patient(double timeout_s, const JobLimits& limits) {
+    Reader reader;
+    reader.fault_at("timeout_s", "timeout_s is " + shown(timeout_s) + "; this service allows at most " +
+                                     shown(limits.longest_timeout_s) + " s.");
+    return *reader.problem();
+}
+
+/// `text` spells the request that is kept.
+template <class Spelling>
+std::variant<PreparedJob, Problem> prepared(const Json& value, const JobLimits& limits, const Spelling& text) {
+    const auto decoded = decode(value, job_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
+    const auto& request = std::get<JobRequest>(decoded);
+    const bool given = value.contains("timeout_s");
+    if (given && request.timeout_s > limits.longest_timeout_s) return too_patient(request.timeout_s, limits);
+    return PreparedJob{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, text(),
+                       sha256_hex(canonical(value))};
+}
+
+/// What a batch's request leaves open about traces; one of the wrong kind is left to the contract.
+void ask_for_no_traces(Json& request) {
+    if (!request.is_object()) return;
+    if (!request.contains("evaluate")) request["evaluate"] = Json::object();
+    Json& evaluate = request["evaluate"];
+    if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
+}
+
 /// The request that the words stand for, with a record of no text yet.
 Json question_json(const CsvQuestion& question) {
     Json columns = Json::object();
@@ -73,26 +100,20 @@ Json question_json(const CsvQuestion& question) {
     return record;
 }
 
-Problem too_patient(double timeout_s, const JobLimits& limits) {
-    Reader reader;
-    reader.fault_at("timeout_s", "timeout_s is " + shown(timeout_s) + "; this service allows at most " +
-                                     shown(limits.longest_timeout_s) + " s.");
-    return *reader.problem();
-}
-
 }  // namespace
 
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
     const auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    const Json& value = std::get<Json>(parsed);
-    const auto decoded = decode(value, job_contract());
-    if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
-    const auto& request = std::get<JobRequest>(decoded);
-    const bool given = value.contains("timeout_s");
-    if (given && request.timeout_s > limits.longest_timeout_s) return too_patient(request.timeout_s, limits);
-    return PreparedJob{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, compact(body),
-                       sha256_hex(canonical(value))};
+    return prepared(std::get<Json>(parsed), limits, [&] { return compact(body); });
+}
+
+std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
+    auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    Json& value = std::get<Json>(parsed);
+    ask_for_no_traces(value);
+    return prepared(value, limits, [&] { return value.dump(); });
 }
 
 JobOutcome run_job(std::string_view request_json, const RunControl& control) {

@@ -40,6 +40,10 @@ struct JobLimits {
 /// Reads and checks a tuning request; every fault at once. 400 not JSON, 422 not a valid request.
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits = {});
 
+/// The same for an entry of a batch, which answers no traces unless it asks for them: evaluate.points is 0 by default,
+/// and stands in the request that is kept.
+std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
+
 /// Runs a prepared request to its end. Never throws for anything in the request.
 JobOutcome run_job(std::string_view request_json, const RunControl& control);
 

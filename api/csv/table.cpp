@@ -24,10 +24,6 @@ std::optional<std::string_view> next_line(std::string_view text, std::size_t& at
     return line;
 }
 
-bool is_comment(std::string_view content) {
-    return content.front() == '#' || content.substr(0, 2) == "//" || content.substr(0, 2) == "\"#";
-}
-
 std::string_view blanks_removed(std::string_view text) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -58,21 +54,6 @@ void split_at_blanks(std::string_view line, std::vector<std::string_view>& cells
         end = std::min(end, line.size());
         cells.push_back(unquote(line.substr(at, end - at), storage));
         at = end;
-    }
-}
-
-void split(std::string_view line, char separator, std::vector<std::string_view>& cells,
-           std::deque<std::string>& storage) {
-    cells.clear();
-    if (separator == ' ') return split_at_blanks(line, cells, storage);
-    std::size_t start = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i <= line.size(); ++i) {
-        if (i < line.size() && line[i] == '"') quoted = !quoted;
-        if (i == line.size() || (line[i] == separator && !quoted)) {
-            cells.push_back(unquote(blanks_removed(line.substr(start, i - start)), storage));
-            start = i + 1;
-        }
     }
 }
 
@@ -110,7 +91,7 @@ char find_separator(const std::vector<Head>& lines) {
         int all = 0;
         for (const Head& line : lines) {
             if (line.comment) continue;
-            split(line.content, separator, cells, storage);
+            split_line(line.content, separator, cells, storage);
             ++counts[cells.size()];
             ++all;
         }
@@ -203,13 +184,32 @@ std::optional<CsvLine> commented_headings(const Head& line, CsvLayout& layout) {
     for (const std::string_view content :
          {whole, trimmed(whole.substr(std::min(whole.find_first_not_of("#/"), whole.size())))}) {
         CsvLine cells{line.number, {}};
-        split(content, layout.separator, cells.cells, layout.unquoted);
+        split_line(content, layout.separator, cells.cells, layout.unquoted);
         if (layout.width > 1 && cells.cells.size() == layout.width && is_text(cells)) return cells;
     }
     return std::nullopt;
 }
 
 }  // namespace
+
+void split_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
+                std::deque<std::string>& storage) {
+    cells.clear();
+    if (separator == ' ') return split_at_blanks(line, cells, storage);
+    std::size_t start = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+        if (i < line.size() && line[i] == '"') quoted = !quoted;
+        if (i == line.size() || (line[i] == separator && !quoted)) {
+            cells.push_back(unquote(blanks_removed(line.substr(start, i - start)), storage));
+            start = i + 1;
+        }
+    }
+}
+
+bool is_comment(std::string_view content) {
+    return content.front() == '#' || content.substr(0, 2) == "//" || content.substr(0, 2) == "\"#";
+}
 
 CsvLayout find_layout(std::string_view text) {
     CsvLayout layout;
@@ -235,7 +235,7 @@ CsvLayout find_layout(std::string_view text) {
     for (const Head& head : heads) {
         if (head.comment) continue;
         lines.push_back({head.number, {}});
-        split(head.content, layout.separator, lines.back().cells, layout.unquoted);
+        split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
     }
     layout.lines_of_text = static_cast<int>(lines.size());
     layout.width = usual_width(lines);
@@ -274,7 +274,7 @@ bool CsvLines::next(CsvLine& line) {
         std::size_t first = content->find_first_not_of(" \t");
         if (first == content->npos || is_comment(content->substr(first))) continue;
         line.number = number_;
-        split(*content, separator_, line.cells, unquoted_);
+        split_line(*content, separator_, line.cells, unquoted_);
         return true;
     }
     return false;

@@ -39,6 +39,13 @@ struct CsvLayout {
 /// is a heading line too. `text` must outlive what is returned.
 CsvLayout find_layout(std::string_view text);
 
+/// The cells of one line, trimmed and without quotes; those that held doubled quotes live in `storage`.
+void split_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
+                std::deque<std::string>& storage);
+
+/// What people write beside the data: a line that begins with # or //. `content` is trimmed and not empty.
+bool is_comment(std::string_view content);
+
 /// The lines of data, one after another, without keeping them.
 class CsvLines {
 public:

@@ -1,0 +1,89 @@
+#include "api/batch/lines.h"
+
+#include <algorithm>
+
+#include "api/csv/encoding.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::string_view kLittle = "\xFF\xFE", kBig = "\xFE\xFF", kUtf8 = "\xEF\xBB\xBF";
+
+}  // namespace
+
+bool Lines::feed(std::string_view bytes, const Take& take) {
+    if (code_ != Code::unknown) return feed_known(bytes, take);
+    const std::size_t wanted = kUtf8.size() - std::min(kUtf8.size(), head_.size());
+    head_ += bytes.substr(0, wanted);
+    if (head_.size() < kUtf8.size()) return true;
+    const std::string_view rest = bytes.substr(std::min(wanted, bytes.size()));
+    std::string_view head = head_;
+    code_ = head.starts_with(kLittle) ? Code::utf16_little : head.starts_with(kBig) ? Code::utf16_big : Code::bytes;
+    head.remove_prefix(code_ != Code::bytes ? kLittle.size() : head == kUtf8 ? kUtf8.size() : 0);
+    return feed_known(head, take) && feed_known(rest, take);
+}
+
+bool Lines::feed_known(std::string_view bytes, const Take& take) {
+    std::string joined;
+    if (code_ != Code::bytes && (!half_.empty() || bytes.size() % 2 == 1)) {
+        joined = half_ + std::string(bytes);
+        half_ = joined.size() % 2 == 1 ? joined.substr(joined.size() - 1) : "";
+        joined.resize(joined.size() - half_.size());
+        bytes = joined;
+    }
+    const std::size_t unit = code_ == Code::bytes ? 1 : 2;
+    const std::size_t low = code_ == Code::utf16_big ? 1 : 0;
+    // Of a UTF-16 unit that is an ASCII character, and of any byte.
+    const auto character = [&](std::size_t i) {
+        return unit == 1 || bytes[i + 1 - low] == '\0' ? bytes[i + low] : '\x7F';
+    };
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < bytes.size(); i += unit) {
+        const char c = character(i);
+        if (c != '\n' && (c != '\r' || ends_ == Ends::newline)) {
+            after_return_ = false;
+            continue;
+        }
+        const bool second = c == '\n' && after_return_;
+        after_return_ = c == '\r';
+        if (!second) {
+            keep(bytes.substr(start, i - start));
+            if (!end_line(take)) return false;
+        }
+        start = i + unit;
+    }
+    keep(bytes.substr(start));
+    return true;
+}
+
+void Lines::keep(std::string_view bytes) {
+    bytes_ += bytes.size();
+    if (bytes_ <= longest_) line_ += bytes;
+}
+
+bool Lines::end_line(const Take& take) {
+    std::string storage;
+    std::string_view text = line_;
+    if (bytes_ > longest_) {
+        text = {};
+    } else if (code_ != Code::bytes) {
+        line_.insert(0, code_ == Code::utf16_little ? kLittle : kBig);
+        text = utf8_text(line_, storage);
+    } else if (ends_ == Ends::any) {
+        text = utf8_text(line_, storage);
+    }
+    const bool more = take(number_++, text, bytes_);
+    line_.clear();
+    bytes_ = 0;
+    return more;
+}
+
+bool Lines::finish(const Take& take) {
+    if (code_ == Code::unknown) {
+        code_ = Code::bytes;
+        if (!feed_known(head_, take)) return false;
+    }
+    return bytes_ == 0 || end_line(take);
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,47 @@
+// Lines of a text that arrives piece by piece, in any usual encoding.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace tunewright::api {
+
+class Lines {
+public:
+    enum class Ends {
+        newline,  ///< \n alone ends a line: JSON, in which \r is white space
+        any,      ///< \n, \r\n and \r, as in exports
+    };
+
+    /// What a line is: its number from 1, its text as UTF-8, and how many bytes it has. A line of more than `longest`
+    /// bytes comes with an empty text. The text is valid during the call; where it returns false, nothing follows.
+    using Take = std::function<bool(long number, std::string_view text, std::size_t bytes)>;
+
+    Lines(Ends ends, std::size_t longest) : ends_(ends), longest_(longest) {}
+
+    /// The next bytes; `take` gets each line that ends in them. A byte order mark at the start tells UTF-16, and is no
+    /// part of the first line; lines that are not UTF-8 are taken for Windows-1252 (encoding.h) with Ends::any.
+    bool feed(std::string_view bytes, const Take& take);
+    /// The line that no line end follows, if there is one.
+    bool finish(const Take& take);
+
+private:
+    enum class Code { unknown, bytes, utf16_little, utf16_big };
+
+    bool feed_known(std::string_view bytes, const Take& take);
+    void keep(std::string_view bytes);
+    bool end_line(const Take& take);
+
+    Ends ends_;
+    std::size_t longest_;
+    Code code_ = Code::unknown;
+    std::string head_;  ///< the first bytes, until they tell the encoding
+    std::string line_;
+    std::size_t bytes_ = 0;
+    std::string half_;  ///< of a UTF-16 unit
+    bool after_return_ = false;
+    long number_ = 1;
+};
+
+}  // namespace tunewright::api

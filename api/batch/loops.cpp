@@ -1,0 +1,289 @@
+#include "api/batch/loops.h"
+
+#include <algorithm>
+
+#include "api/contract/request.h"
+#include "api/csv/heading.h"
+#include "api/csv/table.h"
+#include "api/describe/suggest.h"
+#include "api/json/parse.h"
+#include "api/json/writer.h"
+#include "api/service.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kLookedLines = 200, kLookedBytes = 64 * 1024;
+constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
+constexpr std::array<const char*, 4> kTitles = {"name", "K", "T", "L"};
+
+/// Headings in lower case, without their unit.
+std::optional<std::size_t> column_named(const std::string& name) {
+    static const std::array<std::vector<std::string>, 4> kNames = {{
+        {"name", "tag", "loop", "loop name", "tag name", "tagname"},
+        {"k", "gain", "process gain", "static gain"},
+        {"t", "tau", "lag", "time constant"},
+        {"l", "theta", "dead time", "deadtime", "delay"},
+    }};
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        if (std::find(kNames[i].begin(), kNames[i].end(), name) != kNames[i].end()) return i;
+    }
+    return std::nullopt;
+}
+
+Problem not_valid(std::string title, std::vector<FieldError> errors) {
+    Problem problem{422, "invalid-request", std::move(title), errors.front().detail, std::move(errors), {}};
+    if (problem.errors.size() > 1)
+        problem.detail =
+            std::to_string(problem.errors.size()) + " values need mending. The first: " + problem.errors.front().detail;
+    return problem;
+}
+
+Problem refused(std::string detail) { return not_valid("The CSV of loops cannot be read", {{"", std::move(detail)}}); }
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kLongest = 40;
+    std::size_t end = std::min(text.size(), kLongest);
+    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return "\"" + std::string(text.substr(0, end)) + (end < text.size() ? "...\"" : "\"");
+}
+
+/// "filter/Tf" opens an object.
+void place(Json& object, std::string_view path, Json value) {
+    const std::size_t slash = path.find('/');
+    Json& member = object[std::string(path.substr(0, slash))];
+    if (slash == path.npos) {
+        member = std::move(value);
+    } else {
+        if (!member.is_object()) member = Json::object();
+        place(member, path.substr(slash + 1), std::move(value));
+    }
+}
+
+/// 1.6, true and [1, 2] are what they are in JSON; everything else is a text.
+Json value_of(const std::string& text) {
+    auto parsed = parse(text);
+    if (auto* value = std::get_if<Json>(&parsed)) return std::move(*value);
+    return text;
+}
+
+bool is_blank(const std::vector<std::string_view>& cells) {
+    return std::all_of(cells.begin(), cells.end(), [](std::string_view cell) { return cell.empty(); });
+}
+
+}  // namespace
+
+Loops::Loops(const LoopOptions& options) {
+    constexpr std::ptrdiff_t kDeepest = 4;
+    for (std::size_t i = 0; i < options.size(); ++i) {
+        const auto& [name, value] = options[i];
+        const auto same = [&, &key = name](const auto& other) { return other.first == key; };
+        if (std::find_if(options.begin(), options.begin() + static_cast<std::ptrdiff_t>(i), same) !=
+                options.begin() + static_cast<std::ptrdiff_t>(i) ||
+            std::count(name.begin(), name.end(), '/') > kDeepest) {
+            names_given_twice_.push_back(name);
+        } else if (name == "timeout_s") {
+            timeout_ = value_of(value);
+        } else {
+            place(tune_, name, name == "method" ? Json(value) : value_of(value));
+        }
+    }
+    Writer tail;
+    tail.begin_object();
+    if (!tune_.empty()) {
+        if (!tune_.contains("method")) tune_["method"] = JobRequest{}.tune.front().method;
+        tail.key("tune");
+        tail.raw(Json::array({tune_}).dump());
+    }
+    if (!timeout_.is_null()) {
+        tail.key("timeout_s");
+        tail.raw(timeout_.dump());
+    }
+    tail.end_object();
+    tail_ = tail.take().substr(1);
+}
+
+std::optional<Problem> Loops::check_options() const {
+    constexpr const char* kTitle = "The parameters of the call are not valid";
+    if (!names_given_twice_.empty()) {
+        return not_valid(kTitle,
+                         {{"/" + pointer_segment(names_given_twice_.front()),
+                           in_quotes(names_given_twice_.front()) +
+                               " is given twice, or nests too deep. A CSV of loops asks for one method; batches "
+                               "of JSON may ask for several."}});
+    }
+    const auto tried = prepare_entry(request("", {1, 1, 1}));
+    const auto* problem = std::get_if<Problem>(&tried);
+    if (problem == nullptr) return std::nullopt;
+    Problem told = *problem;
+    told.title = kTitle;
+    constexpr std::string_view kPrefix = "/tune/0";
+    for (FieldError& error : told.errors) {
+        if (error.pointer.starts_with(kPrefix)) error.pointer.erase(0, kPrefix.size());
+    }
+    return told;
+}
+
+std::string Loops::request(std::string_view name, const std::array<double, 3>& plant) const {
+    Writer out;
+    out.begin_object();
+    if (!name.empty()) {
+        out.key("name");
+        out.text(name);
+    }
+    if (!time_unit_.empty()) {
+        out.key("units");
+        out.begin_object();
+        out.key("time");
+        out.text(time_unit_);
+        out.end_object();
+    }
+    out.key("plant");
+    out.begin_object();
+    out.key("type");
+    out.text("fopdt");
+    for (std::size_t i = 0; i < plant.size(); ++i) {
+        out.key(kTitles[i + kGain]);
+        out.number(plant[i]);
+    }
+    out.end_object();
+    std::string text = out.take();
+    if (tail_.size() > 1) text += ',';
+    return text += tail_;
+}
+
+std::optional<Problem> Loops::feed(long number, std::string_view line, std::vector<RawEntry>& entries) {
+    const std::string_view content = trimmed(line);
+    if (content.empty() || is_comment(content)) return std::nullopt;
+    if (!headed_) return read_headings(number, line);
+    if (sign_known_) return read_line(number, line, entries), std::nullopt;
+    held_.push_back({number, std::string(line)});
+    held_bytes_ += line.size();
+    if (held_.size() >= kLookedLines || held_bytes_ >= kLookedBytes) finish(entries);
+    return std::nullopt;
+}
+
+void Loops::finish(std::vector<RawEntry>& entries) {
+    if (!sign_known_) find_sign();
+    for (const Held& held : held_) read_line(held.number, held.text, entries);
+    held_.clear();
+}
+
+std::optional<Problem> Loops::read_headings(long number, std::string_view line) {
+    constexpr std::string_view kTold = "sep=";
+    const std::string_view content = trimmed(line);
+    if (!told_ && lower_case(content.substr(0, kTold.size())) == kTold && line.find('=') + 1 < line.size()) {
+        separator_ = line[line.find('=') + 1];
+        told_ = true;
+        return std::nullopt;
+    }
+    // The separator that shows the most columns we know.
+    std::size_t most = 0;
+    char best = told_ ? separator_ : ',';
+    for (const char separator : {';', '\t', ',', '|', ' '}) {
+        if (told_) break;
+        separator_ = separator;
+        split(line);
+        const auto known =
+            static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](std::string_view heading) {
+                return column_named(split_heading(heading).name);
+            }));
+        if (known <= most) continue;
+        most = known;
+        best = separator;
+    }
+    separator_ = best;
+    split(line);
+    return find_columns(number, cells_);
+}
+
+std::optional<Problem> Loops::find_columns(long number, const std::vector<std::string_view>& headings) {
+    const std::string where = "Line " + std::to_string(number) + " must name the columns, such as name,K,T,L: ";
+    at_.fill(kMissing);
+    width_ = headings.size();
+    while (width_ > 0 && headings[width_ - 1].empty()) --width_;
+    std::array<std::string, kColumns> units;
+    for (std::size_t i = 0; i < width_; ++i) {
+        const Heading heading = split_heading(headings[i]);
+        const auto column = column_named(heading.name);
+        if (!column)
+            return refused(where + in_quotes(headings[i]) +
+                           " is none of name, K, T and L. Remove that column; options of the method are "
+                           "parameters of the call, such as ?method=robust&Ms=1.6.");
+        if (at_[*column] != kMissing) return refused(where + "two columns say " + kTitles[*column] + ". Remove one.");
+        at_[*column] = i;
+        units[*column] = heading.unit;
+    }
+    std::vector<std::string> missing;
+    for (const Column column : {kGain, kLag, kDelay}) {
+        if (at_[column] == kMissing) missing.emplace_back(kTitles[column]);
+    }
+    if (!missing.empty())
+        return refused(
+            where + listed(missing, "and") + (missing.size() == 1 ? " is" : " are") +
+            " missing. Each loop is K e^(-L s)/(T s + 1): K the gain, T the time constant, L the dead time.");
+    if (!units[kLag].empty() && !units[kDelay].empty() && units[kLag] != units[kDelay])
+        return refused(where + "T is in " + in_quotes(units[kLag]) + " and L in " + in_quotes(units[kDelay]) +
+                       "; both must be in the same unit.");
+    time_unit_ = units[kLag].empty() ? units[kDelay] : units[kLag];
+    constexpr std::size_t kLongestUnit = 40;
+    if (time_unit_.size() > kLongestUnit) return refused(where + "the unit of T is longer than 40 characters.");
+    headed_ = true;
+    return std::nullopt;
+}
+
+void Loops::find_sign() {
+    DecimalSignFinder finder;
+    for (const Held& held : held_) {
+        split(held.text);
+        for (const Column column : {kGain, kLag, kDelay}) finder.look_at(cell(column));
+    }
+    sign_ = finder.found();
+    sign_known_ = true;
+}
+
+void Loops::split(std::string_view line) {
+    unquoted_.clear();
+    cells_.clear();
+    split_line(line, separator_, cells_, unquoted_);
+}
+
+std::string_view Loops::cell(Column column) const {
+    return at_[column] < cells_.size() ? cells_[at_[column]] : std::string_view();
+}
+
+double Loops::read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const {
+    double value = 0;
+    if (read_cell_number(cell, value, sign_, unit_suffix(cell))) return value;
+    faults.push_back({std::string("/plant/") + name,
+                      is_missing(cell) ? std::string(name) + " is missing; every loop needs K, T and L."
+                                       : std::string(name) + " is " + in_quotes(cell) + "; it must be a number."});
+    return 0;
+}
+
+void Loops::read_line(long number, std::string_view line, std::vector<RawEntry>& entries) {
+    constexpr const char* kTitle = "The line is no loop";
+    split(line);
+    if (is_blank(cells_)) return;
+    RawEntry entry{number, {}, {}, {}};
+    std::size_t filled = cells_.size();
+    while (filled > 0 && cells_[filled - 1].empty()) --filled;
+    if (filled > width_) {
+        entry.fault = not_valid(
+            kTitle, {{"", "It has " + std::to_string(filled) + " cells, the headings are " + std::to_string(width_) +
+                              ". Numbers with a decimal comma need ; or tab as separator, or quotes."}});
+    } else {
+        std::vector<FieldError> faults;
+        std::array<double, 3> plant{};
+        for (const Column column : {kGain, kLag, kDelay})
+            plant[column - kGain] = read_number(cell(column), kTitles[column], faults);
+        if (faults.empty())
+            entry.text = request(cell(kName), plant);
+        else
+            entry.fault = not_valid(kTitle, std::move(faults));
+    }
+    if (entry.fault) entry.name = std::string(cell(kName));
+    entries.push_back(std::move(entry));
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,70 @@
+// A CSV of loops, one first-order plant with dead time a line, as tuning requests: columns name, K, T and L.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "api/batch/entry.h"
+#include "api/csv/cell.h"
+#include "api/json/json.h"
+
+namespace tunewright::api {
+
+/// What is asked for every loop: parameters of the call by name. `method` is the method, `timeout_s` the request's own,
+/// everything else an option of the method ("Ms" 1.6; "filter/Tf_over_Td" 0.1 goes into the object filter).
+using LoopOptions = std::vector<std::pair<std::string, std::string>>;
+
+class Loops {
+public:
+    explicit Loops(const LoopOptions& options);
+
+    /// What is wrong with the options, whatever the loops: 422, with the parameters' names as pointers.
+    std::optional<Problem> check_options() const;
+
+    /// The next line as UTF-8, its line end apart. Requests are appended once the file's first lines have told what .
+    /// and , mean in its numbers. 422 where the headings leave open which column is which.
+    std::optional<Problem> feed(long number, std::string_view line, std::vector<RawEntry>& entries);
+    void finish(std::vector<RawEntry>& entries);
+
+private:
+    enum Column : std::size_t { kName, kGain, kLag, kDelay, kColumns };
+    struct Held {
+        long number;
+        std::string text;
+    };
+
+    std::optional<Problem> read_headings(long number, std::string_view line);
+    std::optional<Problem> find_columns(long number, const std::vector<std::string_view>& headings);
+    void find_sign();
+    void read_line(long number, std::string_view line, std::vector<RawEntry>& entries);
+    double read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const;
+    std::string request(std::string_view name, const std::array<double, 3>& plant) const;
+    std::string_view cell(Column column) const;
+    void split(std::string_view line);
+
+    Json tune_ = Json::object();
+    Json timeout_;
+    std::string tail_;  ///< members of every request after the plant, as JSON text
+    std::vector<std::string> names_given_twice_;
+
+    char separator_ = 0;  ///< 0: not known yet
+    bool told_ = false;   ///< by a line such as sep=;
+    bool headed_ = false;
+    std::array<std::size_t, kColumns> at_{};
+    std::size_t width_ = 0;
+    std::string time_unit_;
+
+    std::vector<Held> held_;  ///< the first lines, until the sign is known
+    std::size_t held_bytes_ = 0;
+    bool sign_known_ = false;
+    DecimalSign sign_ = DecimalSign::either;
+
+    std::vector<std::string_view> cells_;
+    std::deque<std::string> unquoted_;
+};
+
+}  // namespace tunewright::api

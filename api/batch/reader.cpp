@@ -1,0 +1,248 @@
+#include "api/batch/reader.h"
+
+#include <algorithm>
+
+#include "api/batch/jobs_array.h"
+#include "api/batch/lines.h"
+#include "api/json/parse.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kLongestLoop = 64 * 1024;
+
+Problem not_valid(std::string pointer, std::string detail) {
+    Problem problem{422, "invalid-request", "The batch is not valid", detail, {}, {}};
+    problem.errors.push_back({std::move(pointer), std::move(detail)});
+    return problem;
+}
+
+bool is_white(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// Of a request that is not valid, so that its owner knows it.
+std::string name_in(const std::string& text) {
+    const auto parsed = parse(text);
+    const auto* value = std::get_if<Json>(&parsed);
+    if (value == nullptr || !value->is_object() || !value->contains("name")) return {};
+    const Json& name = (*value)["name"];
+    if (!name.is_string() || name.get_ref<const std::string&>().size() > kLongestName) return {};
+    return name.get<std::string>();
+}
+
+}  // namespace
+
+Problem too_long(std::size_t bytes, std::size_t most) {
+    Problem problem{413, "too-large", "The request is too large", {}, {}, {}};
+    problem.detail =
+        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(most) + " are accepted of one request.";
+    return problem;
+}
+
+/// Cuts a body into requests.
+class BatchReader::Cutter {
+public:
+    virtual ~Cutter() = default;
+    virtual std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) = 0;
+    virtual std::optional<Problem> finish(std::vector<RawEntry>& entries) = 0;
+    /// The name that stands in the body.
+    virtual std::string name() const { return {}; }
+};
+
+class BatchReader::JsonCutter : public Cutter {
+public:
+    explicit JsonCutter(std::size_t longest) : array_(longest) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
+        return array_.feed(bytes, entries);
+    }
+    std::optional<Problem> finish(std::vector<RawEntry>&) override { return array_.finish(); }
+    std::string name() const override { return array_.name(); }
+    bool found_jobs() const { return array_.found_jobs(); }
+
+private:
+    JobsArray array_;
+};
+
+class BatchReader::NdjsonCutter : public Cutter {
+public:
+    explicit NdjsonCutter(std::size_t longest) : longest_(longest), lines_(Lines::Ends::newline, longest) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
+        lines_.feed(bytes, taker(entries));
+        return std::nullopt;
+    }
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        lines_.finish(taker(entries));
+        return std::nullopt;
+    }
+
+private:
+    Lines::Take taker(std::vector<RawEntry>& entries) const {
+        return [&](long number, std::string_view text, std::size_t bytes) {
+            RawEntry entry{number, std::string(text), {}, {}};
+            if (bytes > longest_) entry.fault = too_long(bytes, longest_);
+            if (entry.fault || !std::all_of(text.begin(), text.end(), is_white)) entries.push_back(std::move(entry));
+            return true;
+        };
+    }
+
+    std::size_t longest_;
+    Lines lines_;
+};
+
+class BatchReader::LoopsCutter : public Cutter {
+public:
+    explicit LoopsCutter(const LoopOptions& options) : loops_(options), lines_(Lines::Ends::any, kLongestLoop) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
+        std::optional<Problem> problem;
+        if (!checked_) problem = loops_.check_options();
+        checked_ = true;
+        if (!problem) lines_.feed(bytes, taker(entries, problem));
+        return problem;
+    }
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        std::optional<Problem> problem;
+        lines_.finish(taker(entries, problem));
+        if (!problem) loops_.finish(entries);
+        return problem;
+    }
+
+private:
+    Lines::Take taker(std::vector<RawEntry>& entries, std::optional<Problem>& problem) {
+        return [&](long number, std::string_view text, std::size_t bytes) {
+            if (bytes > kLongestLoop)
+                problem = not_valid("", "Line " + std::to_string(number) +
+                                            " has more than 65536 bytes; it is no line of a CSV of loops.");
+            else
+                problem = loops_.feed(number, text, entries);
+            return !problem;
+        };
+    }
+
+    Loops loops_;
+    Lines lines_;
+    bool checked_ = false;
+};
+
+/// Finds out which form a body has: one that begins with { is {"jobs": ...} or the first of many lines.
+class BatchReader::Finder : public Cutter {
+public:
+    explicit Finder(const BatchQuestion& question)
+        : question_(question), json_(std::make_unique<JsonCutter>(question.longest_entry)) {}
+
+    std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
+        if (chosen_) return chosen_->feed(bytes, entries);
+        // What is decided depends on the text alone, not on how it was cut.
+        const std::size_t looked = std::min(bytes.size(), kLongestHead - head_.size());
+        head_ += bytes.substr(0, looked);
+        if (auto problem = find(bytes.substr(0, looked), entries)) return problem;
+        if (looked == bytes.size()) return std::nullopt;
+        if (!chosen_) chosen_ = std::move(json_);
+        return chosen_->feed(bytes.substr(looked), entries);
+    }
+
+    std::optional<Problem> finish(std::vector<RawEntry>& entries) override {
+        if (chosen_) return chosen_->finish(entries);
+        const bool blank = std::all_of(head_.begin(), head_.end(), is_white);
+        if (blank) return std::nullopt;
+        if (auto problem = choose(std::make_unique<NdjsonCutter>(question_.longest_entry), entries)) return problem;
+        return chosen_->finish(entries);
+    }
+
+    std::string name() const override { return chosen_ ? chosen_->name() : std::string(); }
+
+private:
+    static constexpr std::size_t kLongestHead = 64 * 1024;
+
+    /// `fresh` is the end of the head.
+    std::optional<Problem> find(std::string_view fresh, std::vector<RawEntry>& entries) {
+        constexpr std::string_view kMark = "\xEF\xBB\xBF";
+        if (head_.size() < kMark.size() && kMark.starts_with(head_)) {
+            // Perhaps a byte order mark: the first character is still to come.
+        } else if (!first_) {
+            if (first_at_ == 0 && head_.starts_with(kMark)) first_at_ = kMark.size();
+            while (first_at_ < head_.size() && is_white(head_[first_at_])) ++first_at_;
+            if (first_at_ < head_.size()) first_ = head_[first_at_];
+        }
+        if (first_ && *first_ != '{' && *first_ != '[')
+            return choose(std::make_unique<LoopsCutter>(question_.options), entries);
+        auto problem = json_->feed(fresh, entries);
+        if (json_->found_jobs() || first_ == '[') {
+            chosen_ = std::move(json_);
+            return problem;
+        }
+        if (!problem) return std::nullopt;
+        return choose(std::make_unique<NdjsonCutter>(question_.longest_entry), entries);
+    }
+
+    std::optional<Problem> choose(std::unique_ptr<Cutter> cutter, std::vector<RawEntry>& entries) {
+        chosen_ = std::move(cutter);
+        const std::string head = std::move(head_);
+        return chosen_->feed(head, entries);
+    }
+
+    BatchQuestion question_;
+    std::unique_ptr<JsonCutter> json_;
+    std::unique_ptr<Cutter> chosen_;
+    std::string head_;
+    std::size_t first_at_ = 0;
+    std::optional<char> first_;  ///< that is no white space
+};
+
+BatchReader::BatchReader(BatchQuestion question) : question_(std::move(question)), name_(question_.name) {
+    if (!question_.form)
+        cutter_ = std::make_unique<Finder>(question_);
+    else if (*question_.form == BatchForm::json)
+        cutter_ = std::make_unique<JsonCutter>(question_.longest_entry);
+    else if (*question_.form == BatchForm::ndjson)
+        cutter_ = std::make_unique<NdjsonCutter>(question_.longest_entry);
+    else
+        cutter_ = std::make_unique<LoopsCutter>(question_.options);
+}
+
+BatchReader::~BatchReader() = default;
+
+std::optional<Problem> BatchReader::feed(std::string_view bytes, std::vector<BatchEntry>& entries) {
+    std::vector<RawEntry> raw;
+    if (auto problem = cutter_->feed(bytes, raw)) return problem;
+    return take(std::move(raw), entries);
+}
+
+std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
+    std::vector<RawEntry> raw;
+    if (auto problem = cutter_->finish(raw)) return problem;
+    if (auto problem = take(std::move(raw), entries)) return problem;
+    if (count_ == 0) return not_valid("", "The batch has no requests; it needs at least one.");
+    return std::nullopt;
+}
+
+std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries) {
+    if (count_ + raw.size() > question_.most_entries) {
+        return not_valid(
+            "", "The batch has more than " + std::to_string(question_.most_entries) + " requests. Send it in parts.");
+    }
+    if (question_.name.empty()) name_ = cutter_->name();
+    for (RawEntry& entry : raw) {
+        ++count_;
+        BatchEntry& made = entries.emplace_back();
+        if (entry.fault) {
+            made.name = entry.name.size() <= kLongestName ? std::move(entry.name) : std::string();
+            made.job = std::move(*entry.fault);
+        } else {
+            made.job = prepare_entry(entry.text, question_.limits);
+        }
+        if (const auto* job = std::get_if<PreparedJob>(&made.job)) {
+            made.name = job->name;
+            continue;
+        }
+        if (made.name.empty() && !entry.fault) made.name = name_in(entry.text);
+        Problem& problem = std::get<Problem>(made.job);
+        problem.detail =
+            "Request " + std::to_string(count_) + ", line " + std::to_string(entry.line) + ": " + problem.detail;
+    }
+    return std::nullopt;
+}
+
+}  // namespace tunewright::api

@@ -2,32 +2,51 @@
 
 #include <utility>
 
+#include "server/http/compression.h"
+
 namespace tunewright::server::http {
 
+BodyStream::BodyStream() = default;
+BodyStream::~BodyStream() = default;
+
 bool BodyStream::write(std::string piece) {
+    if (piece.empty()) return !gone();
+    const std::lock_guard packing(packing_);
+    return put(packer_ ? packer_->piece(piece) : std::move(piece), false);
+}
+
+void BodyStream::end() {
+    const std::lock_guard packing(packing_);
+    put(packer_ ? packer_->end() : std::string{}, true);
+    packer_.reset();
+}
+
+void BodyStream::compress() {
+    const std::lock_guard packing(packing_);
+    packer_ = std::make_unique<GzipStream>();
+    const std::lock_guard lock(mutex_);
+    if (!written_.empty()) written_ = packer_->piece(written_);
+    if (!ended_) return;
+    written_ += packer_->end();
+    packer_.reset();
+}
+
+/// False where the client has gone.
+bool BodyStream::put(std::string piece, bool last) {
     std::function<void()> wake;
     {
         const std::lock_guard lock(mutex_);
         if (gone_) return false;
-        if (piece.empty() || ended_) return true;
+        if (ended_) return true;
         if (written_.empty())
             written_ = std::move(piece);
         else
             written_.append(piece);
+        ended_ = last;
         if (!std::exchange(woken_, true)) wake = wake_;
     }
     if (wake) wake();
     return true;
-}
-
-void BodyStream::end() {
-    std::function<void()> wake;
-    {
-        const std::lock_guard lock(mutex_);
-        if (std::exchange(ended_, true) || gone_) return;
-        if (!std::exchange(woken_, true)) wake = wake_;
-    }
-    if (wake) wake();
 }
 
 std::size_t BodyStream::waiting() const {

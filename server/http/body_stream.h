@@ -11,8 +11,15 @@
 
 namespace tunewright::server::http {
 
+class GzipStream;
+
 class BodyStream {
 public:
+    BodyStream();
+    ~BodyStream();
+    BodyStream(const BodyStream&) = delete;
+    BodyStream& operator=(const BodyStream&) = delete;
+
     /// The producer should write no more than this ahead of the client.
     static constexpr std::size_t kRoom = 256 * 1024;
 
@@ -32,6 +39,10 @@ public:
     /// service stops. Set before the answer is given. Not called where the service had stopped before the answer.
     void on_gone(std::function<void()> left);
 
+    /// What is written is sent as gzip from now on; before the answer is given, and once. Compressed where it is
+    /// written.
+    void compress();
+
 private:
     friend class Outgoing;
     struct Written {
@@ -46,6 +57,10 @@ private:
     void ask();
     void close(bool tell);
 
+    bool put(std::string piece, bool last);
+
+    std::mutex packing_;  ///< of packer_, which takes longer than the loop may be held up; taken before mutex_
+    std::unique_ptr<GzipStream> packer_;
     mutable std::mutex mutex_;
     std::string written_;      ///< not yet taken by the loop
     std::size_t sending_ = 0;  ///< taken by the loop, not yet by the client

@@ -35,6 +35,24 @@ std::string lower(std::string_view text) {
     return out;
 }
 
+/// The weight among the parameters of one item of a list.
+double weight(const std::vector<std::string_view>& parts) {
+    for (std::size_t i = 1; i < parts.size(); i++) {
+        const std::string parameter = lower(parts[i]);
+        if (!parameter.starts_with("q=")) continue;
+        double q = 0;
+        const char* const end = parameter.data() + parameter.size();
+        const auto [stop, error] = std::from_chars(parameter.data() + 2, end, q, std::chars_format::fixed);
+        return error == std::errc{} && stop == end && q >= 0 && q <= 1 ? q : 0;
+    }
+    return 1;
+}
+
+std::string_view without_weakness(std::string_view tag) {
+    if (tag.starts_with("W/")) tag.remove_prefix(2);
+    return tag;
+}
+
 bool has_zero_quality(const std::vector<std::string_view>& parameters) {
     return std::ranges::any_of(parameters, [](std::string_view parameter) {
         const std::string text = lower(parameter);
@@ -53,6 +71,16 @@ bool accepts(const Request& request, std::string_view type) {
         const std::string name = lower(parts.front());
         return (name == "*/*" || name == family || name == type) && !has_zero_quality(parts);
     });
+}
+
+std::optional<double> quality(std::string_view list, std::string_view name) {
+    std::optional<double> of_rest;
+    for (const std::string_view item : split(list, ',')) {
+        const auto parts = split(item, ';');
+        if (lower(parts.front()) == name) return weight(parts);
+        if (parts.front() == "*") of_rest = weight(parts);
+    }
+    return of_rest;
 }
 
 bool sends_json(const Request& request) {
@@ -93,8 +121,7 @@ void apply_entity_tag(const Request& request, Response& response, const std::str
     response.set("ETag", tag);
     const auto tags = split(request.header("If-None-Match"), ',');
     const bool known = std::ranges::any_of(tags, [&](std::string_view candidate) {
-        if (candidate.starts_with("W/")) candidate.remove_prefix(2);
-        return candidate == "*" || candidate == tag;
+        return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
     });
     if (!known) return;
     response.status = 304;

@@ -13,6 +13,10 @@ namespace tunewright::server::http {
 /// True where the client takes `type` ("application/json"): no Accept, or a range of it with q > 0.
 bool accepts(const Request& request, std::string_view type);
 
+/// What a list such as that of Accept-Encoding says about `name`, or else about `*`: 0 (not wanted) to 1; nothing where
+/// it says neither. A weight that is not one counts as 0.
+std::optional<double> quality(std::string_view list, std::string_view name);
+
 /// True for a body that may be JSON: application/json, anything ending in +json, no type at all, and
 /// application/x-www-form-urlencoded, which is what `curl -d` claims about every body.
 bool sends_json(const Request& request);
@@ -23,7 +27,7 @@ std::optional<std::chrono::seconds> preferred_wait(const Request& request);
 /// A strong entity tag of the bytes, with its quotes.
 std::string entity_tag(std::string_view body);
 
-/// Sets ETag, and turns the answer into 304 where the request has that tag already.
+/// Sets ETag, and turns the answer into 304 where the request has that tag already, as a weak or a strong one.
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag);
 
 }  // namespace tunewright::server::http

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/executor.h"
+#include "server/http/compression.h"
 #include "server/http/problems.h"
 #include "server/log.h"
 
@@ -102,7 +103,7 @@ Router::Route& Router::add(const std::string& method, const std::string& pattern
 void Router::handle(Request request, Reply reply) const {
     if (admit_) {
         if (std::optional<Response> refusal = admit_(request))
-            return observed(request, "", std::move(reply))(*std::move(refusal));
+            return observed(request, "", false, std::move(reply))(*std::move(refusal));
     }
     std::vector<std::string> allowed;
     for (const Route& route : routes_) {
@@ -111,7 +112,7 @@ void Router::handle(Request request, Reply reply) const {
             allowed.push_back(route.method);
             continue;
         }
-        Reply answer = observed(request, route.pattern, std::move(reply));
+        Reply answer = observed(request, route.pattern, route.lane == Lane::pooled, std::move(reply));
         Call call{std::move(request), {}};
         call.path = values_of(route.parts, call.request.segments);
         if (route.lane == Lane::quick) return run_guarded(route.handler, std::move(call), answer);
@@ -120,7 +121,7 @@ void Router::handle(Request request, Reply reply) const {
         });
         return;
     }
-    const Reply answer = observed(request, "", std::move(reply));
+    const Reply answer = observed(request, "", false, std::move(reply));
     answer(unrouted(request, allowed));
 }
 
@@ -145,10 +146,13 @@ Response Router::unrouted(const Request& request, const std::vector<std::string>
     return response.set("Allow", allow);
 }
 
-Reply Router::observed(const Request& request, const std::string& route, Reply reply) const {
+/// `may_compress`: the answer is made on a thread that has the time.
+Reply Router::observed(const Request& request, const std::string& route, bool may_compress, Reply reply) const {
     Exchange exchange{request.method, request.target, route, request.client, request.request_id, 0, 0, {}};
     return [this, exchange = std::move(exchange), reply = std::move(reply), headers = request.answer_headers,
+            takes_gzip = may_compress && accepts_gzip(request), may_compress,
             start = std::chrono::steady_clock::now()](Response response) mutable {
+        if (may_compress) compress(response, takes_gzip);
         for (const auto& [name, value] : headers) response.set(name, value);
         add_common_headers(response);
         if (observer_) {

@@ -82,7 +82,7 @@ private:
     };
 
     Route& add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler);
-    Reply observed(const Request& request, const std::string& route, Reply reply) const;
+    Reply observed(const Request& request, const std::string& route, bool may_compress, Reply reply) const;
     Response unrouted(const Request& request, const std::vector<std::string>& allowed) const;
 
     Executor& pool_;

@@ -5,8 +5,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "server/http/negotiation.h"
-
 namespace tunewright::server::http {
 namespace {
 
@@ -67,12 +65,7 @@ StaticFiles::StaticFiles(const std::string& folder) {
 }
 
 void StaticFiles::add(const std::string& path, std::string body) {
-    File file;
-    file.type = type_of(path);
-    file.tag = entity_tag(body);
-    file.immutable = path.starts_with("/assets/");
-    file.body = std::move(body);
-    files_.insert_or_assign(path, std::move(file));
+    files_.insert_or_assign(path, File{{std::move(body), type_of(path)}, path.starts_with("/assets/")});
 }
 
 std::optional<Response> StaticFiles::find(const Request& request) const {
@@ -81,14 +74,10 @@ std::optional<Response> StaticFiles::find(const Request& request) const {
     const auto found = files_.find(path.empty() ? "/index.html" : path);
     if (found == files_.end()) return std::nullopt;
     const File& file = found->second;
-    Response response;
-    response.body = file.body;
-    response.set("Content-Type", file.type)
-        .set("Cache-Control", file.immutable ? "public, max-age=31536000, immutable" : "no-cache")
+    Response response = file.body.respond(request);
+    return response.set("Cache-Control", file.immutable ? "public, max-age=31536000, immutable" : "no-cache")
         .set("Content-Security-Policy", kPagePolicy)
         .set("Cross-Origin-Opener-Policy", "same-origin");
-    apply_entity_tag(request, response, file.tag);
-    return response;
 }
 
 }  // namespace tunewright::server::http

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "server/http/compression.h"
 #include "server/http/message.h"
 
 namespace tunewright::server::http {
@@ -21,9 +22,7 @@ public:
 
 private:
     struct File {
-        std::string body;
-        std::string type;
-        std::string tag;
+        ConstantBody body;
         bool immutable = false;  ///< its name changes with its content
     };
     void add(const std::string& path, std::string body);

@@ -1,5 +1,5 @@
 #include "api/service.h"
-#include "server/http/negotiation.h"
+#include "server/http/compression.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -11,12 +11,9 @@ using http::Response;
 
 /// A text that does not change while the process lives.
 http::SyncHandler constant(std::string body) {
-    const std::string tag = http::entity_tag(body);
-    return [body = std::move(body), tag](const Call& call) {
+    return [text = http::ConstantBody(std::move(body), "application/json")](const Call& call) {
         if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
-        Response response = http::json_response(body);
-        http::apply_entity_tag(call.request, response, tag);
-        return response.set("Cache-Control", "no-cache");
+        return text.respond(call.request).set("Cache-Control", "no-cache");
     };
 }
 

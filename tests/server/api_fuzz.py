@@ -32,7 +32,7 @@ INTENDED = (503, 507)
 REFUSED = (408, 411, 414, 417, 431, 505)
 METHODS = ("get", "put", "post", "delete", "patch")
 # Short limits: the fuzz is after answers, not after designs.
-OPTIONS = ("--queue-limit", "100", "--grace", "0")
+OPTIONS = ("--queue-limit", "100", "--drain-timeout", "0", "--job-timeout", "1", "--max-timeout", "1")
 
 
 def not_a_number(word):

@@ -100,6 +100,11 @@ Json question_json(const CsvQuestion& question) {
     return record;
 }
 
+std::string method_label(const JobRequest& request) {
+    if (request.tune.empty()) return "none";
+    return request.tune.size() == 1 ? request.tune.front().method : "several";
+}
+
 }  // namespace
 
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
@@ -124,19 +129,21 @@ JobOutcome run_job(std::string_view request_json, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
     auto& request = std::get<JobRequest>(decoded);
 
+    const std::string method = method_label(request);
     ReadRecord read{{}, request.read.dropped, request.read.notes};
     const std::optional<Units> units = request.units;
     auto result = tune(to_engine(std::move(request)), control);
     if (!result) {
         JobOutcome outcome = failure(to_problem(result.error()));
         if (result.error().kind == ErrorKind::cancelled) outcome = {JobOutcome::Status::cancelled, {}, {}};
+        outcome.method = method;
         return outcome;
     }
     if (result->model) add_reading(read, result->model->data_quality);
     const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
     Writer out;
     result_contract().write({std::move(*result), units, sha256_hex(canonical(value))}, out);
-    return {status, out.take(), {}};
+    return {status, out.take(), {}, method};
 }
 
 std::string progress_json(const Progress& progress) {

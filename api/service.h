@@ -23,6 +23,7 @@ struct JobOutcome {
     Status status = Status::failed;
     std::string result_json;  ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
     std::string error_json;   ///< problem object of failed; else empty
+    std::string method = {};  ///< the method asked for; "several" of more than one; "none" of a request with none
 };
 
 /// Status and body of a synchronous call; the media type is problem+json from 400 on.

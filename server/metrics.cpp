@@ -35,10 +35,16 @@ struct Metrics::Families {
                                             .Register(registry);
     prometheus::Family<Histogram>& job_time_family = BuildHistogram()
                                                          .Name("tunewright_job_duration_seconds")
-                                                         .Help("Computing time of jobs that workers ended")
+                                                         .Help("Computing time of jobs that workers ended, by method")
                                                          .Register(registry);
-    Histogram& job_time =
-        job_time_family.Add({}, Histogram::BucketBoundaries{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100});
+    prometheus::Family<Histogram>& store_time = BuildHistogram()
+                                                    .Name("tunewright_store_duration_seconds")
+                                                    .Help("Time from a call of the store to its answer, by operation")
+                                                    .Register(registry);
+    prometheus::Family<Counter>& store_faults = BuildCounter()
+                                                    .Name("tunewright_store_faults_total")
+                                                    .Help("Calls that the store could not do, by operation")
+                                                    .Register(registry);
     Gauge& queued = BuildGauge()
                         .Name("tunewright_jobs_queued")
                         .Help("Accepted jobs that no worker has yet")
@@ -53,6 +59,8 @@ struct Metrics::Families {
     std::mutex mutex;
     std::map<std::tuple<std::string, std::string, int>, Counter*, std::less<>> request_counters;
     std::map<std::string, Histogram*, std::less<>> latency_by_route;
+    std::map<std::string, Histogram*, std::less<>> time_by_method;
+    std::map<std::string, Histogram*, std::less<>> time_by_operation;
 };
 
 Metrics::Metrics() : families_(std::make_unique<Families>()) {}
@@ -86,9 +94,27 @@ void Metrics::count(const http::Exchange& exchange) {
     latency->Observe(static_cast<double>(exchange.duration.count()) * 1e-6);
 }
 
-void Metrics::count(const JobRecord& job, double seconds) {
-    families_->jobs.Add({{"status", std::string(to_string(job.status))}}).Increment();
-    families_->job_time.Observe(seconds);
+void Metrics::count(const JobRecord& job, const std::string& method, double seconds) {
+    Families& all = *families_;
+    all.jobs.Add({{"status", std::string(to_string(job.status))}}).Increment();
+    const std::lock_guard lock(all.mutex);
+    Histogram*& slot = all.time_by_method[method];
+    if (slot == nullptr)
+        slot = &all.job_time_family.Add(
+            {{"method", method}}, Histogram::BucketBoundaries{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100});
+    slot->Observe(seconds);
+}
+
+void Metrics::count_store(std::string_view operation, double seconds, bool done) {
+    Families& all = *families_;
+    const std::string name(operation);
+    if (!done) all.store_faults.Add({{"operation", name}}).Increment();
+    const std::lock_guard lock(all.mutex);
+    Histogram*& slot = all.time_by_operation[name];
+    if (slot == nullptr)
+        slot = &all.store_time.Add({{"operation", name}}, Histogram::BucketBoundaries{0.0001, 0.0003, 0.001, 0.003,
+                                                                                      0.01, 0.03, 0.1, 0.3, 1, 3});
+    slot->Observe(seconds);
 }
 
 std::string Metrics::text(const JobService& jobs) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "server/http/router.h"
 #include "server/jobs/service.h"
@@ -17,7 +18,10 @@ public:
     Metrics& operator=(const Metrics&) = delete;
 
     void count(const http::Exchange& exchange);
-    void count(const JobRecord& job, double seconds);
+    /// `method` as in api::JobOutcome.
+    void count(const JobRecord& job, const std::string& method, double seconds);
+    /// An operation of the store; its name must be one of a few.
+    void count_store(std::string_view operation, double seconds, bool done);
 
     /// Everything counted so far and the queue as it is now.
     std::string text(const JobService& jobs);

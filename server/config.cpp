@@ -1,5 +1,6 @@
 #include "server/config.h"
 
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <stdexcept>
@@ -33,6 +34,46 @@ Role parse_role(const std::string& text) {
     if (text == "api") return Role::api;
     if (text == "worker") return Role::worker;
     throw std::invalid_argument("--role is \"" + text + "\"; it must be all, api or worker.");
+}
+
+namespace {
+
+struct Unit {
+    std::string_view name;
+    double factor;
+};
+
+template <std::size_t N>
+double in_units(const std::string& text, const std::array<Unit, N>& units, const std::string& rule) {
+    double number = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    if (error == std::errc{} && number >= 0 && number < 1e12) {
+        const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+        for (const auto& [name, factor] : units)
+            if (name == unit) return number * factor;
+    }
+    throw std::invalid_argument("\"" + text + "\" must be " + rule);
+}
+
+}  // namespace
+
+std::size_t parse_size(const std::string& text) {
+    constexpr double mib = 1024.0 * 1024.0;
+    constexpr double most_plain = 65'536;
+    constexpr std::array<Unit, 5> units{{{"", mib}, {"B", 1}, {"KiB", 1024}, {"MiB", mib}, {"GiB", 1024 * mib}}};
+    double bytes = in_units(text, units, "a size such as 8 (MiB), 512KiB or 1GiB");
+    const bool plain = text.find_first_not_of("0123456789.") == std::string::npos;
+    if (plain && bytes > most_plain * mib) bytes /= mib;
+    if (bytes < 1024 || bytes > most_plain * mib)
+        throw std::invalid_argument("\"" + text + "\" must lie between 1KiB and 64GiB");
+    return static_cast<std::size_t>(bytes);
+}
+
+double parse_duration(const std::string& text) {
+    constexpr std::array<Unit, 7> units{
+        {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"m", 60}, {"min", 60}, {"h", 3600}, {"d", 86400}}};
+    return in_units(text, units, "a time such as 10 (s), 500ms, 5min, 12h or 7d");
 }
 
 std::string parse_store(const std::string& text) {

@@ -25,17 +25,17 @@ struct Config {
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
     int max_attempts = 10;
     double lease_s = 10;
-    double retention_h = 168;  ///< 0: for ever
+    double retention_s = 7 * 86400;  ///< 0: for ever
     double job_timeout_s = 60;
     double max_timeout_s = 3600;
 
     // The port
-    std::size_t max_body_mib = 8;          ///< of one request
-    std::size_t max_batch_body_mib = 256;  ///< of one batch
-    std::string auth = "none";             ///< or keys
-    std::string keys;                      ///< the file of keys
-    bool allow_anonymous = false;          ///< beyond loopback without keys
-    double rate_limit = 0;                 ///< calls a second of one client; 0: none
+    std::size_t max_body = 8 << 20;          ///< bytes of one request
+    std::size_t max_batch_body = 256 << 20;  ///< bytes of one batch
+    std::string auth = "none";               ///< or keys
+    std::string keys;                        ///< the file of keys
+    bool allow_anonymous = false;            ///< beyond loopback without keys
+    double rate_limit = 0;                   ///< calls a second of one client; 0: none
     std::vector<std::string> cors_origins;
     bool behind_proxy = false;
 };
@@ -48,6 +48,10 @@ struct HostPort {
 /// Throws std::invalid_argument with a sentence.
 HostPort parse_listen(const std::string& text);
 Role parse_role(const std::string& text);
+/// Bytes of "8" (MiB), "512KiB", "8MiB", "1GiB". A plain number of more than 65,536 is one of bytes.
+std::size_t parse_size(const std::string& text);
+/// Seconds of "10", "10s", "500ms", "5min", "12h", "7d".
+double parse_duration(const std::string& text);
 /// The path of "sqlite:PATH". Throws std::invalid_argument with a sentence.
 std::string parse_store(const std::string& text);
 

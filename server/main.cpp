@@ -3,6 +3,7 @@
 #include <cctype>
 #include <exception>
 #include <iostream>
+#include <stdexcept>
 
 #include "server/access/key_command.h"
 #include "server/config.h"
@@ -15,16 +16,46 @@ namespace {
 using tunewright::server::Config;
 
 /// Each option has a variable of the same name: --max-body is TUNEWRIGHT_MAX_BODY.
-template <class T>
-CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std::string& help) {
+std::string variable_of(const std::string& name) {
     std::string variable = "TUNEWRIGHT_";
     for (const char c : name)
         variable.push_back(c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
-    return app.add_option("--" + name, value, help)->envname(variable);
+    return variable;
 }
 
-void flag(CLI::App& app, const std::string& name, bool& value, const std::string& variable, const std::string& help) {
-    app.add_flag("--" + name, value, help)->envname(variable);
+template <class T>
+CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std::string& help) {
+    return app.add_option("--" + name, value, help)->envname(variable_of(name));
+}
+
+void flag(CLI::App& app, const std::string& name, bool& value, const std::string& help) {
+    app.add_flag("--" + name, value, help)->envname(variable_of(name));
+}
+
+/// What is typed with a unit and kept as a number; `shown` is the default as one would type it.
+template <class T>
+void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const std::string&), const std::string& shown,
+              std::pair<double, double> range, const std::string& help) {
+    const auto take = [&value, read, range, name](const std::string& text) {
+        try {
+            value = read(text);
+        } catch (const std::invalid_argument& error) {
+            throw CLI::ValidationError("--" + name, error.what());
+        }
+        if (static_cast<double>(value) < range.first || static_cast<double>(value) > range.second)
+            throw CLI::ValidationError("--" + name, "\"" + text + "\" is out of range");
+    };
+    app.add_option_function<std::string>("--" + name, take, help)->envname(variable_of(name))->default_str(shown);
+}
+
+void duration(CLI::App& app, const std::string& name, double& seconds, const std::string& shown,
+              std::pair<double, double> range, const std::string& help) {
+    quantity(app, name, seconds, tunewright::server::parse_duration, shown, range, help);
+}
+
+void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std::string& shown,
+          const std::string& help) {
+    quantity(app, name, bytes, tunewright::server::parse_size, shown, {0, 1e18}, help);
 }
 
 void add_process_options(CLI::App& app, Config& config) {
@@ -36,9 +67,8 @@ void add_process_options(CLI::App& app, Config& config) {
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
         ->check(CLI::Range(1, 1024));
     option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
-    option(app, "drain-timeout", config.drain_timeout_s, "Seconds that running jobs get when the service is stopped")
-        ->check(CLI::Range(0.0, 3600.0))
-        ->capture_default_str();
+    duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
+             "What running jobs get when the service is stopped");
     option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
     option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
 }
@@ -53,38 +83,27 @@ void add_job_options(CLI::App& app, Config& config) {
     option(app, "max-attempts", config.max_attempts, "A job that was interrupted so often fails")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    option(app, "lease", config.lease_s, "Seconds without a sign of life after which another worker takes a job")
-        ->check(CLI::Range(1.0, 3600.0))
-        ->capture_default_str();
-    option(app, "retention", config.retention_h, "Hours that ended jobs are kept; 0: for ever")
-        ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
-    option(app, "job-timeout", config.job_timeout_s, "Seconds for a job that does not say timeout_s")
-        ->check(CLI::Range(0.1, 3600.0))
-        ->capture_default_str();
-    option(app, "max-timeout", config.max_timeout_s, "Longest timeout_s that a request may ask for")
-        ->check(CLI::Range(0.1, 3600.0))
-        ->capture_default_str();
+    duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
+             "Without a sign of life for so long, a job is taken by another worker");
+    duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: for ever");
+    duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
+             "Time for a job that does not say timeout_s");
+    duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
+             "Longest timeout_s that a request may ask for");
 }
 
 void add_port_options(CLI::App& app, Config& config) {
-    option(app, "max-body", config.max_body_mib, "Most of one request's body, in MiB; longer ones are answered 413")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    option(app, "max-batch-body", config.max_batch_body_mib, "Most of one batch's body, in MiB")
-        ->check(CLI::Range(1, 16384))
-        ->capture_default_str();
+    size(app, "max-body", config.max_body, "8MiB", "Most of one request's body; longer ones are answered 413");
+    size(app, "max-batch-body", config.max_batch_body, "256MiB", "Most of one batch's body");
     option(app, "auth", config.auth, "none or keys: what a call below /v1 must show")->capture_default_str();
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
-    flag(app, "allow-anonymous", config.allow_anonymous, "TUNEWRIGHT_ALLOW_ANONYMOUS",
-         "Listen beyond loopback without keys");
+    flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
     option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: as many as he likes")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
     option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
         ->delimiter(',');
-    flag(app, "behind-proxy", config.behind_proxy, "TUNEWRIGHT_BEHIND_PROXY",
-         "Clients are told apart by the last address of X-Forwarded-For");
+    flag(app, "behind-proxy", config.behind_proxy, "Clients are told apart by the last address of X-Forwarded-For");
 }
 
 void add_serve_options(CLI::App& app, Config& config) {

@@ -115,8 +115,8 @@ private:
         made.entry_limit = config.entry_limit;
         made.most_attempts = config.max_attempts;
         made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
-        if (config.retention_h > 0)
-            made.retention = std::chrono::seconds(static_cast<std::int64_t>(config.retention_h * 3600));
+        if (config.retention_s > 0)
+            made.retention = std::chrono::seconds(static_cast<std::int64_t>(config.retention_s));
         made.version = TUNEWRIGHT_VERSION;
         made.run = api::run_job;
         made.now = wall_clock;
@@ -130,9 +130,8 @@ private:
     static http::Limits limits(const Config& config) {
         http::Limits made;
         made.connections = connection_limit();
-        made.max_body = config.max_body_mib << 20;
-        made.max_batch_body = config.max_batch_body_mib << 20;
-        made.buffered = std::max(made.buffered, 2 * made.max_body);
+        made.max_body = config.max_body;
+        made.max_batch_body = config.max_batch_body;
         return made;
     }
 

@@ -73,7 +73,7 @@ void log_exchange(const http::Exchange& exchange) {
                     target, exchange.status, ms, exchange.bytes, exchange.client);
 }
 
-void log_job(const JobRecord& job, double seconds) {
+void log_job(const JobEnd& job, double seconds) {
     if (as_json)
         spdlog::info(R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{})", job.id,
                      to_string(job.status), seconds * 1e3, job.attempts);

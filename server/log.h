@@ -10,7 +10,7 @@ namespace tunewright::server {
 namespace http {
 struct Exchange;
 }
-struct JobRecord;
+struct JobEnd;
 
 /// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
@@ -20,6 +20,6 @@ void stop_log();
 void log_info(std::string_view message);
 void log_error(std::string_view message);
 void log_exchange(const http::Exchange& exchange);
-void log_job(const JobRecord& job, double seconds);
+void log_job(const JobEnd& job, double seconds);
 
 }  // namespace tunewright::server

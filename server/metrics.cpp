@@ -45,6 +45,11 @@ struct Metrics::Families {
                                                     .Name("tunewright_store_faults_total")
                                                     .Help("Calls that the store could not do, by operation")
                                                     .Register(registry);
+    Counter& dropped = BuildCounter()
+                           .Name("tunewright_jobs_dropped_total")
+                           .Help("Results that came too late: the job's lease had gone to another process")
+                           .Register(registry)
+                           .Add({});
     Gauge& queued = BuildGauge()
                         .Name("tunewright_jobs_queued")
                         .Help("Accepted jobs that no worker has yet")
@@ -94,9 +99,9 @@ void Metrics::count(const http::Exchange& exchange) {
     latency->Observe(static_cast<double>(exchange.duration.count()) * 1e-6);
 }
 
-void Metrics::count(const JobRecord& job, const std::string& method, double seconds) {
+void Metrics::count(JobStatus status, const std::string& method, double seconds) {
     Families& all = *families_;
-    all.jobs.Add({{"status", std::string(to_string(job.status))}}).Increment();
+    all.jobs.Add({{"status", std::string(to_string(status))}}).Increment();
     const std::lock_guard lock(all.mutex);
     Histogram*& slot = all.time_by_method[method];
     if (slot == nullptr)
@@ -116,6 +121,8 @@ void Metrics::count_store(std::string_view operation, double seconds, bool done)
                                                                                       0.01, 0.03, 0.1, 0.3, 1, 3});
     slot->Observe(seconds);
 }
+
+void Metrics::count_dropped() { families_->dropped.Increment(); }
 
 std::string Metrics::text(const JobService& jobs) {
     families_->queued.Set(static_cast<double>(jobs.queued()));

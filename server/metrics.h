@@ -19,7 +19,8 @@ public:
 
     void count(const http::Exchange& exchange);
     /// `method` as in api::JobOutcome.
-    void count(const JobRecord& job, const std::string& method, double seconds);
+    void count(JobStatus status, const std::string& method, double seconds);
+    void count_dropped();
     /// An operation of the store; its name must be one of a few.
     void count_store(std::string_view operation, double seconds, bool done);
 

@@ -19,6 +19,7 @@
 #include "server/log.h"
 #include "server/metrics.h"
 #include "server/routes/routes.h"
+#include "server/store/metered_store.h"
 #include "server/store/sqlite/sqlite_store.h"
 
 namespace tunewright::server {
@@ -62,7 +63,10 @@ class Service {
 public:
     explicit Service(const Config& config)
         : config_(config),
-          store_(open_sqlite_store(parse_store(config.store))),
+          store_(metered(open_sqlite_store(parse_store(config.store)),
+                         [this](std::string_view operation, double seconds, bool done) {
+                             metrics_.count_store(operation, seconds, done);
+                         })),
           jobs_(*store_, timer_, settings(config)),
           lane_(core_count()),
           pool_(kHttpThreads),
@@ -120,10 +124,11 @@ private:
         made.version = TUNEWRIGHT_VERSION;
         made.run = api::run_job;
         made.now = wall_clock;
-        made.observer.ended = [this](const JobRecord& job, double seconds) {
-            metrics_.count(job, seconds);
-            log_job(job, seconds);
+        made.observer.ended = [this](const Ended& ended) {
+            metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
+            log_job(ended.end, ended.seconds);
         };
+        made.observer.dropped = [this] { metrics_.count_dropped(); };
         return made;
     }
 
@@ -132,6 +137,7 @@ private:
         made.connections = connection_limit();
         made.max_body = config.max_body;
         made.max_batch_body = config.max_batch_body;
+        made.buffered = std::max(made.buffered, 2 * made.max_body);
         return made;
     }
 
@@ -157,7 +163,7 @@ private:
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, pool_);
+        add_job_routes(router_, jobs_, pool_, {config_.job_timeout_s, config_.max_timeout_s});
         add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
         add_description_routes(router_);
         router_.otherwise([this](const http::Request& request) { return page_.find(request); });

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "server/jobs/held.h"
@@ -18,6 +19,7 @@ struct Ended {
     std::shared_ptr<HeldJob> held;
     JobEnd end;
     double seconds = 0;  ///< of computing
+    std::string method;  ///< as in api::JobOutcome; "" where it was not computed
 };
 
 class Ends {

@@ -210,14 +210,7 @@ WorkerSettings JobService::worker_settings() {
 
 void JobService::ended(const Ended& end, bool kept) {
     if (!kept) return forget(end.held);
-    if (settings_.observer.ended) {
-        JobRecord job = end.held->job;
-        job.status = end.end.status;
-        job.result = end.end.result;
-        job.error = end.end.error;
-        job.finished_at = end.end.finished_at;
-        settings_.observer.ended(job, end.seconds);
-    }
+    if (settings_.observer.ended) settings_.observer.ended(end);
     held_.forget(end.held);
     waits_.tell(end.held->job.id);
 }

@@ -27,7 +27,7 @@ namespace tunewright::server {
 
 /// What has been happening, for metrics; the callbacks run on the threads of workers and of the store.
 struct JobObserver {
-    std::function<void(const JobRecord& job, double seconds)> ended;  ///< once for each job that a worker ended
+    std::function<void(const Ended& ended)> ended;  ///< once for each job that a worker ended, when the store has it
     std::function<void()> dropped;  ///< a result came too late: another process has the job, or had ended it
 };
 

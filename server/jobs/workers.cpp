@@ -88,7 +88,7 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
         end.error = fault_problem("The computation failed without saying why.");
     end.version = settings_.version;
     end.finished_at = settings_.now();
-    ends_.finish({held, std::move(end), seconds});
+    ends_.finish({held, std::move(end), seconds, std::move(outcome.method)});
 }
 
 }  // namespace tunewright::server

@@ -104,13 +104,13 @@ void wait_for(JobService& jobs, const std::string& id, std::chrono::seconds wait
     }
 }
 
-void post_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
+void post_job(JobService& jobs, Executor& pool, const api::JobLimits& limits, const Call& call, const Reply& reply) {
     if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
     const std::string key(call.request.header("Idempotency-Key"));
     if (key.size() > kLongestKey)
         return reply(problem_response(
             422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted."));
-    auto prepared = api::prepare_job(call.request.body);
+    auto prepared = api::prepare_job(call.request.body, limits);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return reply(http::problem_response(*problem));
 
     Order order;
@@ -218,9 +218,10 @@ void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Executor& pool) {
-    router.deferred("POST", "/v1/jobs",
-                    [&](const Call& call, const Reply& reply) { post_job(jobs, pool, call, reply); });
+void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, const api::JobLimits& limits) {
+    router.deferred("POST", "/v1/jobs", [&jobs, &pool, limits](const Call& call, const Reply& reply) {
+        post_job(jobs, pool, limits, call, reply);
+    });
     router.pooled("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
     router.pooled("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
     router.deferred("DELETE", "/v1/jobs/{id}",

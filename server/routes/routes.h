@@ -12,7 +12,7 @@
 namespace tunewright::server {
 
 /// /v1/jobs and what is below it. Answers that come later are made on `pool`.
-void add_job_routes(http::Router& router, JobService& jobs, Executor& pool);
+void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, const api::JobLimits& limits);
 
 /// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or until `closing`.
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);

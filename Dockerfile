@@ -24,8 +24,8 @@ RUN npm run build
 
 FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
-        libcpp-httplib0.11 libnlopt0 libsqlite3-0 libspdlog1.10 libprometheus-cpp-core1.0 curl \
-    && rm -rf /var/lib/apt/lists/* /var/cache/apt/* \
+        libcpp-httplib0.11 libnlopt0 libsqlite3-0 libspdlog1.10 libprometheus-cpp-core1.0 \
+    && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
     && useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin tunewright \
     && install -d -o tunewright -g tunewright /var/lib/tunewright
 COPY --from=binary /src/build/release/tunewright /opt/tunewright/bin/tunewright
@@ -34,6 +34,6 @@ USER 10001
 VOLUME /var/lib/tunewright
 EXPOSE 8080
 ENV TUNEWRIGHT_LISTEN=0.0.0.0:8080 TUNEWRIGHT_STORE=sqlite:/var/lib/tunewright/jobs.db
-HEALTHCHECK --interval=10s --timeout=3s --start-period=5s CMD ["curl", "-fsS", "-o", "/dev/null", "http://127.0.0.1:8080/healthz"]
+HEALTHCHECK --interval=10s --timeout=3s --start-period=5s CMD ["/opt/tunewright/bin/tunewright", "health"]
 ENTRYPOINT ["/opt/tunewright/bin/tunewright"]
 CMD ["serve"]

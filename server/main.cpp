@@ -7,6 +7,7 @@
 
 #include "server/access/key_command.h"
 #include "server/config.h"
+#include "server/health_command.h"
 #include "server/identify_command.h"
 #include "server/serve.h"
 #include "server/tune_command.h"
@@ -149,8 +150,15 @@ int main(int argc, char** argv) {
     key_app->add_option("name", naming.name, "Whose it is; jobs belong to that name")->required();
     key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
 
+    std::string asked;
+    CLI::App* health_app = app.add_subcommand("health", "Ask a running service whether it is well: exit code 0 if so");
+    health_app->add_option("url", asked, "Default: /healthz of this machine's service, by TUNEWRIGHT_LISTEN");
+    std::string listening = config.listen;
+    option(*health_app, "listen", listening, "HOST:PORT of that service");
+
     CLI11_PARSE(app, argc, argv);
     try {
+        if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
         if (identify_app->parsed()) return identify(identifying);
         return serving->parsed() ? serve(config) : tune(file);

@@ -41,6 +41,24 @@ class CommandLineTest(unittest.TestCase):
             file.flush()
             self.assertEqual(run("tune", file.name).returncode, 0)
 
+    def test_health_is_0_for_a_service_that_answers_and_1_for_none(self):
+        with Service() as service:
+            address = "127.0.0.1:%d" % service.port
+            self.assertEqual(run("health", "http://%s/readyz" % address).returncode, 0)
+            for listen in (address, "0.0.0.0:%d" % service.port):
+                done = run("health", environment={"TUNEWRIGHT_LISTEN": listen})
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+            done = run("health", "http://%s/nothing" % address)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("404", done.stderr)
+        done = run("health", "--listen", address)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("refused", done.stderr)
+        for url in ("https://localhost:1/", "http://localhost", "localhost:80"):
+            done = run("health", url)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("http://HOST:PORT/PATH", done.stderr)
+
     def test_a_taken_port_is_told_and_ends_with_3(self):
         with socket.socket() as taken:
             taken.bind(("127.0.0.1", 0))

@@ -158,11 +158,11 @@ bool read_fields(std::string_view rest, Fields& seen, Head& head) {
 }  // namespace
 
 Head read_head(std::string_view input) {
+    // Each of these limits is found at the same byte however the input is cut.
+    if (std::min(input.find('\n'), input.size()) > kMaxLineBytes + 1)
+        return refuse(414, "The request line may have at most 8,000 bytes.");
     const std::size_t end = input.find("\r\n\r\n");
     if (end == std::string_view::npos || end + 4 > kMaxHeadBytes) {
-        const std::size_t line = input.substr(0, kMaxHeadBytes).find('\n');
-        if (line == std::string_view::npos && input.size() > kMaxLineBytes)
-            return refuse(414, "The request line may have at most 8,000 bytes.");
         if (input.size() >= kMaxHeadBytes) return refuse(431, "The head of a request may have at most 16 KiB.");
         return {};
     }

@@ -222,6 +222,9 @@ void wait_for_stop(const sigset_t& signals) {
 }  // namespace
 
 int serve(const Config& config) {
+    // Blocked before any thread exists, the log's too, so that only wait_for_stop sees them.
+    const sigset_t signals = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     try {
         check_config(config);
         parse_store(config.store);
@@ -230,9 +233,6 @@ int serve(const Config& config) {
         return failed(kBadConfiguration, error.what());
     }
     raise_file_limit();
-    // Blocked before any thread exists, so that only wait_for_stop sees them.
-    const sigset_t signals = stop_signals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     std::unique_ptr<Service> service;
     int port = 0;

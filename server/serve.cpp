@@ -164,6 +164,7 @@ private:
     /// What a process that only computes does not answer.
     void add_public_routes() {
         add_job_routes(router_, jobs_, pool_, {config_.job_timeout_s, config_.max_timeout_s});
+        add_event_routes(router_, jobs_, timer_);
         add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
         add_description_routes(router_);
         router_.otherwise([this](const http::Request& request) { return page_.find(request); });

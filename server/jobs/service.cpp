@@ -37,6 +37,7 @@ JobService::JobService(JobStore& store, Timer& timer, JobSettings settings)
       settings_(named(std::move(settings))),
       depth_(settings_.queue_limit, settings_.entry_limit),
       waits_(timer),
+      followers_(store, held_, outage_),
       claims_(store, held_, outage_, claim_settings()),
       ends_(store, outage_, end_listener()),
       leases_(store, held_, outage_, lease_settings()),
@@ -122,7 +123,7 @@ void JobService::cancel(const std::string& id, Done<CancelEffect> done) {
         const auto* effect = std::get_if<CancelEffect>(&outcome);
         if (effect != nullptr && *effect == CancelEffect::cancelled) {
             depth_.gone(1);
-            waits_.tell(id);
+            tell_ended(id);
         }
         if (effect != nullptr && *effect == CancelEffect::requested) stop_running({id});
         done(std::move(outcome));
@@ -149,6 +150,7 @@ void JobService::stop_running(const std::vector<std::string>& ids) {
 
 void JobService::look_again() {
     look_again_ = true;
+    followers_.changed("");
     if (looking_) looking_->wake();
 }
 
@@ -174,6 +176,7 @@ Ends::Listener JobService::end_listener() {
     made.done = [this](const Ended& end, bool kept) { ended(end, kept); };
     made.released = [this](const std::shared_ptr<HeldJob>& held) {
         held_.forget(held);
+        followers_.changed(held->job.id);
         claims_.arrived();
     };
     made.unsaved = [this](std::size_t bytes) { claims_.unsaved(bytes); };
@@ -191,7 +194,7 @@ LeaseSettings JobService::lease_settings() {
     made.reclaimed = [this](const Recovery& found) {
         log_info(std::to_string(found.interrupted) + " jobs of a process that has gone wait again, " +
                  std::to_string(found.given_up) + " were given up");
-        for (const std::string& id : found.ended) waits_.tell(id);
+        for (const std::string& id : found.ended) tell_ended(id);
         claims_.arrived();
     };
     return made;
@@ -203,7 +206,6 @@ WorkerSettings JobService::worker_settings() {
     made.version = settings_.version;
     made.run = settings_.run;
     made.now = settings_.now;
-    made.reported = [](const std::shared_ptr<HeldJob>&) {};
     made.lost = [this](const std::shared_ptr<HeldJob>& held) { forget(held); };
     return made;
 }
@@ -212,7 +214,12 @@ void JobService::ended(const Ended& end, bool kept) {
     if (!kept) return forget(end.held);
     if (settings_.observer.ended) settings_.observer.ended(end);
     held_.forget(end.held);
-    waits_.tell(end.held->job.id);
+    tell_ended(end.held->job.id);
+}
+
+void JobService::tell_ended(const std::string& id) {
+    waits_.tell(id);
+    followers_.changed(id);
 }
 
 /// Another has it, or it is gone: what came of it here counts for nothing.
@@ -242,6 +249,7 @@ bool JobService::drain(std::chrono::duration<double> grace) {
     waits_.tell_all();
     if (tending_) tending_->stop();
     if (looking_) looking_->stop();
+    followers_.close();
     if (idle) workers_.join();
     drained_ = idle;
     return idle;

@@ -14,7 +14,9 @@
 #include "server/jobs/claims.h"
 #include "server/jobs/depth.h"
 #include "server/jobs/ends.h"
+#include "server/jobs/followers.h"
 #include "server/jobs/held.h"
+#include "server/jobs/job_view.h"
 #include "server/jobs/leases.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
@@ -44,12 +46,6 @@ struct JobSettings {
     std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
     std::function<UnixMs()> now;  ///< wall clock
     JobObserver observer;
-};
-
-/// A job as it is this moment.
-struct JobView {
-    JobRecord job;
-    std::optional<Progress> progress;  ///< of one that runs here; of others job.progress has what was last told
 };
 
 struct Submission {
@@ -96,6 +92,12 @@ public:
     /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
     void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
 
+    /// As Followers say; a job that is not there is told as gone.
+    Followers::Key follow(const std::string& id, Followers::Told told) {
+        return followers_.follow(id, std::move(told));
+    }
+    void unfollow(Followers::Key key) { followers_.leave(key); }
+
     // ---- for batches (batches.h), which put their entries into the store themselves
     /// True where so many more entries may wait; they are counted as waiting from now on.
     bool room_for_entries(std::size_t count);
@@ -127,6 +129,7 @@ private:
     void ended(const Ended& ended, bool kept);
     void stop_held(const std::shared_ptr<HeldJob>& held, HeldJob::Stop why);
     void forget(const std::shared_ptr<HeldJob>& held);
+    void tell_ended(const std::string& id);
     void hear(const StoreNotice& notice);
     std::chrono::milliseconds tend();
     std::chrono::milliseconds look();
@@ -139,6 +142,7 @@ private:
     Depth depth_;
     HeldJobs held_;
     Waits waits_;
+    Followers followers_;
     Claims claims_;
     Ends ends_;
     Leases leases_;

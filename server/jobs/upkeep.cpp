@@ -17,8 +17,8 @@ void JobService::hear(const StoreNotice& notice) {
     switch (notice.kind) {
         case StoreNotice::Kind::queued: return claims_.arrived();
         case StoreNotice::Kind::cancel: return stop_running({notice.id});
-        case StoreNotice::Kind::ended: return notice.id.empty() ? look_again() : waits_.tell(notice.id);
-        case StoreNotice::Kind::progress: return;
+        case StoreNotice::Kind::ended: return notice.id.empty() ? look_again() : tell_ended(notice.id);
+        case StoreNotice::Kind::progress: return followers_.changed(notice.id);
     }
 }
 

@@ -55,10 +55,7 @@ api::JobOutcome Workers::compute(const std::shared_ptr<HeldJob>& held) {
     RunControl control;
     control.stop = held->token();
     control.now_ms = monotonic_ms;
-    control.progress = [this, &held](const Progress& progress) {
-        held->report(progress);
-        settings_.reported(held);
-    };
+    control.progress = [&held](const Progress& progress) { held->report(progress); };
     try {
         return settings_.run(held->job.request, control);
     } catch (const std::exception& fault) {

@@ -21,8 +21,7 @@ struct WorkerSettings {
     std::string version;
     std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
     std::function<UnixMs()> now;
-    std::function<void(const std::shared_ptr<HeldJob>&)> reported;  ///< there is new progress
-    std::function<void(const std::shared_ptr<HeldJob>&)> lost;      ///< stopped because another has it
+    std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another has it
 };
 
 class Workers {

@@ -19,15 +19,8 @@ std::string links(const JobSummary& job) {
     return std::move(object).str();
 }
 
-std::string progress_of(const JobView& view) {
-    if (view.progress) return api::progress_json(*view.progress);
-    if (has_ended(view.job.status)) return "null";
-    if (!view.job.progress.empty()) return view.job.progress;
-    Progress progress;
-    progress.stage = std::string(to_string(view.job.status));
-    progress.message = view.job.status == JobStatus::queued ? "Waits for a worker." : "Has just been started.";
-    return api::progress_json(progress);
-}
+/// Only a stopped search leaves a result behind without having succeeded.
+bool is_partial(const JobRecord& job) { return !job.result.empty() && job.status != JobStatus::succeeded; }
 
 JsonObject head_of(const JobSummary& job) {
     JsonObject object;
@@ -58,16 +51,36 @@ std::string percent_encode(const std::string& text) {
 
 }  // namespace
 
+std::string job_progress_json(const JobView& view) {
+    if (view.progress) return api::progress_json(*view.progress);
+    if (has_ended(view.job.status)) return "null";
+    if (!view.job.progress.empty()) return view.job.progress;
+    Progress progress;
+    progress.stage = std::string(to_string(view.job.status));
+    progress.message = view.job.status == JobStatus::queued ? "Waits for a worker." : "Has just been started.";
+    return api::progress_json(progress);
+}
+
 std::string job_json(const JobView& view) {
     const JobRecord& job = view.job;
     JsonObject object = head_of(job);
-    object.raw("progress", progress_of(view));
+    object.raw("progress", job_progress_json(view));
     add_times(object, job);
     object.raw("request", job.request);
     if (!job.result.empty()) object.raw("result", job.result);
     if (!job.error.empty()) object.raw("error", job.error);
-    // Only a stopped search leaves a result behind without having succeeded.
-    if (!job.result.empty() && job.status != JobStatus::succeeded) object.boolean("partial", true);
+    if (is_partial(job)) object.boolean("partial", true);
+    object.raw("links", links(job));
+    return std::move(object).str();
+}
+
+std::string job_news_json(const JobView& view) {
+    const JobRecord& job = view.job;
+    JsonObject object = head_of(job);
+    object.raw("progress", job_progress_json(view));
+    add_times(object, job);
+    if (!job.error.empty()) object.raw("error", job.error);
+    if (is_partial(job)) object.boolean("partial", true);
     object.raw("links", links(job));
     return std::move(object).str();
 }

@@ -4,6 +4,7 @@
 #include "api/service.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
+#include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
@@ -19,50 +20,12 @@ using http::Response;
 constexpr int kLargestPage = 200;
 constexpr std::size_t kLongestKey = 200;
 
-Response not_found(const std::string& id) {
-    return problem_response(404, "There is no job " + id.substr(0, 64) + "; it may have been deleted.");
-}
-
-Response store_failed(const StoreFault& fault) {
-    if (fault.kind == StoreFault::Kind::full)
-        return problem_response(507,
-                                "The disk of the service is full; nothing was kept. Try again when there is room.");
-    return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
-}
-
-/// Runs what reads the store; its failure becomes 503.
-template <class Work>
-Response guarded(Work work) {
-    try {
-        return work();
-    } catch (const StoreError& error) {
-        return store_failed({error.kind, error.what()});
-    }
-}
-
-/// True where the caller may know of the job: it is his, or nobody asks who he is.
-bool may_see(const http::Request& request, const JobSummary& job) {
-    return !request.owner || *request.owner == job.owner;
-}
-
 Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
-        if (!view || !may_see(request, view->job)) return not_found(id);
+        if (!view || !may_see(request, view->job)) return no_such_job(id);
         return http::json_response(job_json(*view), status);
     });
-}
-
-/// A refusal where there is no such job for this caller. Owners never change.
-std::optional<Response> refuse_stranger(JobService& jobs, const Call& call) {
-    if (!call.request.owner) return std::nullopt;
-    const std::string& id = call.path.at("id");
-    const Response found = guarded([&] {
-        const std::optional<JobState> state = jobs.state(id);
-        return state && may_see(call.request, *state) ? Response() : not_found(id);
-    });
-    if (found.status == 200) return std::nullopt;
-    return found;
 }
 
 Response submitted(const Submission& submission) {
@@ -87,7 +50,7 @@ Response submitted(const Submission& submission) {
 Response waited(JobService& jobs, const std::string& id, std::optional<std::chrono::seconds> wait) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
-        if (!view) return not_found(id);
+        if (!view) return no_such_job(id);
         const bool ended = wait && has_ended(view->job.status);
         Response response = http::json_response(job_json(*view), ended ? 200 : 202);
         if (wait) response.set("Preference-Applied", "wait=" + std::to_string(wait->count()));
@@ -203,7 +166,7 @@ void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
         Response response;
         switch (std::get<RemoveEffect>(outcome)) {
-            case RemoveEffect::none: return reply(not_found(id));
+            case RemoveEffect::none: return reply(no_such_job(id));
             case RemoveEffect::not_ended:
                 return reply(
                     problem_response(409, "The job has not ended. Cancel it first: POST /v1/jobs/" + id + "/cancel."));

@@ -14,6 +14,9 @@ namespace tunewright::server {
 /// /v1/jobs and what is below it. Answers that come later are made on `pool`.
 void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, const api::JobLimits& limits);
 
+/// /v1/jobs/{id}/events: progress as server-sent events. `timer` beats their hearts.
+void add_event_routes(http::Router& router, JobService& jobs, Timer& timer);
+
 /// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or until `closing`.
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);
 

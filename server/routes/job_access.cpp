@@ -1,0 +1,36 @@
+#include "server/routes/job_access.h"
+
+#include "server/http/problems.h"
+
+namespace tunewright::server {
+
+using http::problem_response;
+using http::Response;
+
+Response no_such_job(const std::string& id) {
+    return problem_response(404, "There is no job " + id.substr(0, 64) + "; it may have been deleted.");
+}
+
+Response store_failed(const StoreFault& fault) {
+    if (fault.kind == StoreFault::Kind::full)
+        return problem_response(507,
+                                "The disk of the service is full; nothing was kept. Try again when there is room.");
+    return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
+}
+
+bool may_see(const http::Request& request, const JobSummary& job) {
+    return !request.owner || *request.owner == job.owner;
+}
+
+std::optional<Response> refuse_stranger(JobService& jobs, const http::Call& call) {
+    if (!call.request.owner) return std::nullopt;
+    const std::string& id = call.path.at("id");
+    Response found = guarded([&] {
+        const std::optional<JobState> state = jobs.state(id);
+        return state && may_see(call.request, *state) ? Response() : no_such_job(id);
+    });
+    if (found.status == 200) return std::nullopt;
+    return found;
+}
+
+}  // namespace tunewright::server

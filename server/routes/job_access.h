@@ -1,0 +1,33 @@
+// What all calls about one job have in common: whom it belongs to, and what a store that fails is answered with.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/http/router.h"
+#include "server/jobs/service.h"
+
+namespace tunewright::server {
+
+http::Response no_such_job(const std::string& id);
+
+/// 507 where the disk is full, else 503.
+http::Response store_failed(const StoreFault& fault);
+
+/// Runs what reads the store; its failure becomes such an answer.
+template <class Work>
+http::Response guarded(Work work) {
+    try {
+        return work();
+    } catch (const StoreError& error) {
+        return store_failed({error.kind, error.what()});
+    }
+}
+
+/// True where the caller may know of the job: it is his, or nobody asks who he is.
+bool may_see(const http::Request& request, const JobSummary& job);
+
+/// The refusal of a call about /v1/jobs/{id} where there is no such job for this caller. Owners never change.
+std::optional<http::Response> refuse_stranger(JobService& jobs, const http::Call& call);
+
+}  // namespace tunewright::server

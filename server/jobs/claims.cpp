@@ -8,6 +8,8 @@ namespace {
 constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
 constexpr std::size_t kMostAhead = 16;
 constexpr double kForgetting = 0.2;
+// Where no worker has come for that long, each is at a long job, whatever the latest took.
+constexpr std::chrono::milliseconds kBusy{25};
 
 }  // namespace
 
@@ -25,6 +27,7 @@ std::shared_ptr<HeldJob> Claims::take(const std::stop_token& stop) {
     if (!found || closed_ || ready_.empty()) return nullptr;
     std::shared_ptr<HeldJob> next = std::move(ready_.front());
     ready_.pop_front();
+    last_take_ = HeldJob::Clock::now();
     ask(lock);
     return next;
 }
@@ -62,7 +65,7 @@ double Claims::pace() const {
 bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->job.batch.empty(); }
 
 std::size_t Claims::ahead() const {
-    if (!measured_ || pace_ >= kShortJob) return 0;
+    if (!more_ || !measured_ || pace_ >= kShortJob || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
     return std::min(kMostAhead, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4)));
 }
 

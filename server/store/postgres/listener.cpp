@@ -1,0 +1,91 @@
+#include "server/store/postgres/listener.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <pqxx/notification>
+
+#include "server/store/postgres/notices.h"
+#include "server/store/postgres/session.h"
+
+namespace tunewright::server::postgres {
+namespace {
+
+constexpr int kFirstPauseMs = 100;
+constexpr int kLongestPauseMs = 2000;
+
+class Receiver : public pqxx::notification_receiver {
+public:
+    Receiver(pqxx::connection_base& connection, std::function<void(const std::string&)> told)
+        : pqxx::notification_receiver(connection, kChannel), told_(std::move(told)) {}
+    void operator()(const std::string& payload, int) override { told_(payload); }
+
+private:
+    std::function<void(const std::string&)> told_;
+};
+
+}  // namespace
+
+Listener::Listener(Address address, std::string own_tag)
+    : address_(std::move(address)),
+      own_tag_(std::move(own_tag)),
+      wake_(::eventfd(0, EFD_CLOEXEC)),
+      thread_([this] { work(); }) {}
+
+Listener::~Listener() {
+    stopping_ = true;
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(wake_, &one, sizeof one);
+    thread_.join();
+    ::close(wake_);
+}
+
+void Listener::watch(std::function<void(const StoreNotice&)> told) {
+    const std::lock_guard lock(mutex_);
+    told_ = std::move(told);
+}
+
+void Listener::tell(const StoreNotice& notice) {
+    const std::lock_guard lock(mutex_);
+    if (told_) told_(notice);
+}
+
+bool Listener::pause(int milliseconds) {
+    pollfd waited{wake_, POLLIN, 0};
+    ::poll(&waited, 1, milliseconds);
+    return !stopping_;
+}
+
+void Listener::work() {
+    int pause_ms = 0;
+    while (!stopping_) {
+        try {
+            listen();
+        } catch (const std::exception&) {  // whoever writes logs what is wrong
+            pause_ms = connected_.exchange(false) ? kFirstPauseMs : std::min(2 * pause_ms, kLongestPauseMs);
+            if (!pause(pause_ms)) return;
+        }
+    }
+}
+
+void Listener::listen() {
+    const std::unique_ptr<pqxx::connection> connection = connect(address_);
+    const Receiver receiver(*connection, [this](const std::string& payload) {
+        read_payload(payload, own_tag_, [this](const StoreNotice& notice) { tell(notice); });
+    });
+    if (!connected_.exchange(true)) {
+        tell({StoreNotice::Kind::queued, ""});
+        tell({StoreNotice::Kind::ended, ""});
+    }
+    while (!stopping_) {
+        std::array<pollfd, 2> waited{{{connection->sock(), POLLIN, 0}, {wake_, POLLIN, 0}}};
+        ::poll(waited.data(), waited.size(), -1);
+        connection->get_notifs();
+        if (!connection->is_open()) throw Failure(Failure::Kind::broken, "the connection was closed");
+    }
+}
+
+}  // namespace tunewright::server::postgres

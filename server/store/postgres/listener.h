@@ -1,0 +1,44 @@
+// Hears what other processes have done, on a connection of its own. What is said while that is lost is lost too:
+// afterwards it says that anything may have happened.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "server/store/postgres/address.h"
+#include "server/store/store.h"
+
+namespace tunewright::server::postgres {
+
+class Listener {
+public:
+    /// Notices with this tag are our own and not told.
+    Listener(Address address, std::string own_tag);
+    ~Listener();
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+
+    void watch(std::function<void(const StoreNotice&)> told);
+    bool connected() const { return connected_; }
+
+private:
+    void work();
+    void listen();
+    /// False when it is time to stop.
+    bool pause(int milliseconds);
+    void tell(const StoreNotice& notice);
+
+    Address address_;
+    std::string own_tag_;
+    int wake_;  ///< an eventfd that ends every wait
+    std::atomic<bool> stopping_ = false;
+    std::atomic<bool> connected_ = true;
+    std::mutex mutex_;
+    std::function<void(const StoreNotice&)> told_;
+    std::jthread thread_;
+};
+
+}  // namespace tunewright::server::postgres

@@ -1,0 +1,135 @@
+#include "server/store/postgres/reading.h"
+
+#include "server/store/postgres/rows.h"
+#include "server/store/postgres/text.h"
+
+namespace tunewright::server::postgres {
+namespace {
+
+/// A SELECT that grows condition by condition, with the values of its parameters.
+class Query {
+public:
+    explicit Query(std::string sql) : sql_(std::move(sql)) {}
+    /// The next parameter, as "$2".
+    std::string text(const std::string& value) {
+        values_.text(value);
+        return "$" + std::to_string(values_.list.size());
+    }
+    std::string number(std::int64_t value) {
+        values_.number(value);
+        return "$" + std::to_string(values_.list.size());
+    }
+    Query& operator+=(const std::string& sql) {
+        sql_ += sql;
+        return *this;
+    }
+    Query around(const std::string& before, const std::string& after) const {
+        Query whole(*this);
+        whole.sql_ = before + sql_ + after;
+        return whole;
+    }
+    pqxx::result run(Session& session) const { return session.run(sql_, values_); }
+
+private:
+    std::string sql_;
+    Values values_;
+};
+
+const std::string kBatchOfId = "(SELECT seq FROM batches WHERE state <> 'leaving' AND id = ";
+
+}  // namespace
+
+std::optional<JobRecord> find_record(Session& session, const std::string& id) {
+    static const std::string sql = "SELECT " + kRecordColumns + kTables + " WHERE j.id = $1 AND " + kVisible;
+    const pqxx::result rows = session.run(sql, Values().text(id));
+    if (rows.empty()) return std::nullopt;
+    return read_record(rows[0]);
+}
+
+std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids) {
+    static const std::string sql =
+        "SELECT " + kSummaryColumns + kTables + " WHERE j.id = ANY ($1::text[]) AND " + kVisible;
+    TextArray wanted;
+    for (const std::string& id : ids) wanted.add(id);
+    std::vector<JobState> states;
+    for (const pqxx::row& row : session.run(sql, Values().plain(wanted.literal()))) states.push_back(read_state(row));
+    return states;
+}
+
+JobPage list_jobs(Session& session, const JobQuery& query) {
+    // The entries of a batch stand in the order of their index, which is that of their seq too.
+    Query sql("SELECT " + kSummaryColumns + kTables);
+    if (query.batch)
+        sql += " WHERE j.batch = " + kBatchOfId + sql.text(*query.batch) + ")";
+    else
+        sql += " WHERE j.class = 0";
+    if (query.status) sql += " AND j.status = " + sql.text(std::string(to_string(*query.status)));
+    if (query.name) sql += " AND j.name = " + sql.text(*query.name);
+    if (query.owner) sql += " AND j.owner = " + sql.text(*query.owner);
+    if (query.before_seq && query.batch)
+        sql += " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = " + sql.number(*query.before_seq) + ")";
+    if (query.before_seq && !query.batch) sql += " AND j.seq < " + sql.number(*query.before_seq);
+    sql += std::string(" ORDER BY ") + (query.batch ? "j.batch_index" : "j.seq") + " DESC LIMIT " +
+           sql.number(query.limit + 1);
+    JobPage page;
+    for (const pqxx::row& row : sql.run(session)) page.jobs.push_back(read_summary(row));
+    page.more = page.jobs.size() > static_cast<std::size_t>(query.limit);
+    if (page.more) page.jobs.pop_back();
+    return page;
+}
+
+JobStore::Depth count_waiting(Session& session) {
+    const pqxx::row row = session.run(
+        "SELECT (SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0), "
+        "(SELECT coalesce(sum(c.queued), 0) FROM batch_counts c JOIN batches b ON b.seq = c.batch "
+        "WHERE b.state <> 'leaving')")[0];
+    return {row[0].as<std::size_t>(), row[1].as<std::size_t>()};
+}
+
+std::optional<BatchSummary> find_batch(Session& session, const std::string& id) {
+    static const std::string sql =
+        "SELECT " + kBatchColumns + kBatchTables + " WHERE b.id = $1 AND b.state <> 'leaving'" + kBatchGroups;
+    const pqxx::result rows = session.run(sql, Values().text(id));
+    if (rows.empty()) return std::nullopt;
+    return read_batch(rows[0]);
+}
+
+std::optional<std::string> find_batch_of_key(Session& session, const std::string& owner, const std::string& key) {
+    const pqxx::result rows =
+        session.run("SELECT id FROM batches WHERE owner = $1 AND idempotency_key = $2", Values().text(owner).text(key));
+    if (rows.empty()) return std::nullopt;
+    return text_of(rows[0][0]);
+}
+
+BatchPage list_batches(Session& session, const std::optional<std::string>& owner, int limit,
+                       std::optional<std::int64_t> before_seq) {
+    Query inner("(SELECT * FROM batches WHERE state <> 'leaving'");
+    if (owner) inner += " AND owner = " + inner.text(*owner);
+    if (before_seq) inner += " AND seq < " + inner.number(*before_seq);
+    inner += " ORDER BY seq DESC LIMIT " + inner.number(limit + 1) + ") b";
+    BatchPage page;
+    for (const pqxx::row& row : inner
+                                    .around("SELECT " + kBatchColumns + " FROM ",
+                                            " LEFT JOIN batch_counts c ON c.batch = b.seq GROUP BY b.seq, b.id, "
+                                            "b.name, b.owner, b.created_at, b.state, b.cancel_requested "
+                                            "ORDER BY b.seq DESC")
+                                    .run(session))
+        page.batches.push_back(read_batch(row));
+    page.more = page.batches.size() > static_cast<std::size_t>(limit);
+    if (page.more) page.batches.pop_back();
+    return page;
+}
+
+std::vector<BatchRow> find_rows(Session& session, const std::string& batch, std::int64_t from, std::size_t limit) {
+    static const std::string sql =
+        "SELECT batch_index, id, name, status, result, error FROM jobs WHERE batch = " + kBatchOfId +
+        "$1) AND batch_index >= $2 ORDER BY batch_index LIMIT $3";
+    std::vector<BatchRow> rows;
+    for (const pqxx::row& row :
+         session.run(sql, Values().text(batch).number(from).number(static_cast<std::int64_t>(limit))))
+        rows.push_back({row[0].as<std::int64_t>(), text_of(row[1]), text_of(row[2]), job_status(row[3].c_str()).value(),
+                        text_of(row[4]), text_of(row[5])});
+    return rows;
+}
+
+}  // namespace tunewright::server::postgres

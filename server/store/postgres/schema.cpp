@@ -1,0 +1,185 @@
+#include "server/store/postgres/schema.h"
+
+#include <array>
+
+namespace tunewright::server::postgres {
+namespace {
+
+// The number is ours alone in the database: "tunewrig" in ASCII.
+constexpr const char* kLock = "SELECT pg_advisory_xact_lock(x'74756e6577726967'::bigint)";
+
+// The rules of the states are in the database too. Batches count their entries by a trigger; each connection counts in
+// a row of its own, so that replicas which finish entries of one batch do not wait for each other. jobs.batch is no
+// foreign key, for its check would be one more look-up an entry: only a batch without entries is deleted.
+constexpr const char* kStep1 = R"sql(
+CREATE TABLE batches (
+    seq bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+    id text COLLATE "C" NOT NULL UNIQUE CHECK (length(id) > 0),
+    name text NOT NULL,
+    owner text NOT NULL,
+    flow text NOT NULL,
+    created_at bigint NOT NULL,
+    heard_at timestamptz NOT NULL DEFAULT clock_timestamp(),
+    state text NOT NULL DEFAULT 'receiving' CHECK (state IN ('receiving', 'sealed', 'leaving')),
+    cancel_requested boolean NOT NULL DEFAULT false,
+    request_hash text NOT NULL DEFAULT '',
+    idempotency_key text COLLATE "C",
+    UNIQUE (owner, idempotency_key)
+);
+CREATE INDEX batches_unsettled ON batches (state) WHERE state <> 'sealed' OR cancel_requested;
+CREATE TABLE batch_counts (
+    batch bigint NOT NULL REFERENCES batches (seq) ON DELETE CASCADE,
+    slot integer NOT NULL,
+    queued bigint NOT NULL,
+    running bigint NOT NULL,
+    succeeded bigint NOT NULL,
+    failed bigint NOT NULL,
+    cancelled bigint NOT NULL,
+    last_end bigint NOT NULL,
+    PRIMARY KEY (batch, slot)
+) WITH (fillfactor = 50);
+
+CREATE TABLE jobs (
+    seq bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+    id text COLLATE "C" NOT NULL UNIQUE CHECK (length(id) > 0),
+    name text COLLATE "C" NOT NULL,
+    status text COLLATE "C" NOT NULL CHECK (status IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')),
+    class smallint NOT NULL,
+    turn bigint NOT NULL,
+    owner text COLLATE "C" NOT NULL,
+    flow text COLLATE "C" NOT NULL,
+    batch bigint,
+    batch_index bigint CHECK (batch_index >= 0),
+    created_at bigint NOT NULL,
+    started_at bigint,
+    finished_at bigint,
+    attempts integer NOT NULL DEFAULT 0 CHECK (attempts >= 0),
+    worker text,
+    lease_until timestamptz,
+    timeout_s double precision NOT NULL CHECK (timeout_s > 0),
+    request_hash text NOT NULL,
+    cancel_requested boolean NOT NULL DEFAULT false,
+    version text,
+    idempotency_key text COLLATE "C",
+    request text,
+    result text,
+    error text,
+    progress text,
+    progress_attempts integer,
+    CHECK ((finished_at IS NOT NULL) = (status IN ('succeeded', 'failed', 'cancelled'))),
+    CHECK (status <> 'running' OR (started_at IS NOT NULL AND attempts > 0)),
+    CHECK ((worker IS NOT NULL) = (status = 'running') AND (lease_until IS NOT NULL) = (status = 'running')),
+    CHECK (status <> 'succeeded' OR attempts > 0),
+    CHECK (class = CASE WHEN batch IS NULL THEN 0 ELSE 1 END AND (batch IS NULL) = (batch_index IS NULL))
+) WITH (autovacuum_vacuum_scale_factor = 0.05, autovacuum_analyze_scale_factor = 0.05);
+CREATE UNIQUE INDEX jobs_by_key ON jobs (owner, idempotency_key) WHERE idempotency_key IS NOT NULL;
+CREATE INDEX jobs_waiting ON jobs (class, turn, seq) WHERE status = 'queued';
+CREATE INDEX jobs_flows ON jobs (class, flow, turn) WHERE status = 'queued';
+CREATE INDEX jobs_running ON jobs (class, turn) WHERE status = 'running';
+CREATE INDEX jobs_single ON jobs (seq) WHERE class = 0;
+CREATE INDEX jobs_by_status ON jobs (status, seq) WHERE class = 0;
+CREATE INDEX jobs_by_name ON jobs (name, seq) WHERE class = 0;
+CREATE INDEX jobs_by_owner ON jobs (owner, seq) WHERE class = 0;
+CREATE INDEX jobs_by_end ON jobs (finished_at) WHERE class = 0 AND finished_at IS NOT NULL;
+CREATE UNIQUE INDEX jobs_by_batch ON jobs (batch, batch_index) WHERE batch IS NOT NULL;
+
+CREATE FUNCTION refuse_move() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+    RAISE EXCEPTION 'job % cannot move from % (attempts %) to % (attempts %)',
+        OLD.id, OLD.status, OLD.attempts, NEW.status, NEW.attempts USING ERRCODE = 'check_violation';
+END $$;
+CREATE TRIGGER jobs_move BEFORE UPDATE ON jobs FOR EACH ROW
+    WHEN ((OLD.status <> NEW.status AND OLD.status IN ('succeeded', 'failed', 'cancelled'))
+       OR (OLD.status = 'queued' AND NEW.status IN ('succeeded', 'failed'))
+       OR NEW.attempts <> OLD.attempts
+                          + CASE WHEN OLD.status = 'queued' AND NEW.status = 'running' THEN 1 ELSE 0 END)
+    EXECUTE FUNCTION refuse_move();
+
+CREATE FUNCTION count_entries_added() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+    INSERT INTO batch_counts AS c (batch, slot, queued, running, succeeded, failed, cancelled, last_end)
+        SELECT n.batch, pg_backend_pid() % 64, count(*) FILTER (WHERE n.status = 'queued'),
+               count(*) FILTER (WHERE n.status = 'running'), count(*) FILTER (WHERE n.status = 'succeeded'),
+               count(*) FILTER (WHERE n.status = 'failed'), count(*) FILTER (WHERE n.status = 'cancelled'),
+               coalesce(max(n.finished_at), 0)
+        FROM new_rows n WHERE n.batch IS NOT NULL GROUP BY n.batch ORDER BY n.batch
+        ON CONFLICT (batch, slot) DO UPDATE SET queued = c.queued + EXCLUDED.queued,
+            running = c.running + EXCLUDED.running, succeeded = c.succeeded + EXCLUDED.succeeded,
+            failed = c.failed + EXCLUDED.failed, cancelled = c.cancelled + EXCLUDED.cancelled,
+            last_end = greatest(c.last_end, EXCLUDED.last_end);
+    RETURN NULL;
+END $$;
+CREATE FUNCTION count_entries_moved() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+    INSERT INTO batch_counts AS c (batch, slot, queued, running, succeeded, failed, cancelled, last_end)
+        SELECT n.batch, pg_backend_pid() % 64,
+               count(*) FILTER (WHERE n.status = 'queued') - count(*) FILTER (WHERE o.status = 'queued'),
+               count(*) FILTER (WHERE n.status = 'running') - count(*) FILTER (WHERE o.status = 'running'),
+               count(*) FILTER (WHERE n.status = 'succeeded'), count(*) FILTER (WHERE n.status = 'failed'),
+               count(*) FILTER (WHERE n.status = 'cancelled'), coalesce(max(n.finished_at), 0)
+        FROM new_rows n JOIN old_rows o ON o.seq = n.seq
+        WHERE n.batch IS NOT NULL AND n.status <> o.status GROUP BY n.batch ORDER BY n.batch
+        ON CONFLICT (batch, slot) DO UPDATE SET queued = c.queued + EXCLUDED.queued,
+            running = c.running + EXCLUDED.running, succeeded = c.succeeded + EXCLUDED.succeeded,
+            failed = c.failed + EXCLUDED.failed, cancelled = c.cancelled + EXCLUDED.cancelled,
+            last_end = greatest(c.last_end, EXCLUDED.last_end);
+    RETURN NULL;
+END $$;
+CREATE TRIGGER entries_added AFTER INSERT ON jobs REFERENCING NEW TABLE AS new_rows
+    FOR EACH STATEMENT EXECUTE FUNCTION count_entries_added();
+CREATE TRIGGER entries_moved AFTER UPDATE ON jobs REFERENCING OLD TABLE AS old_rows NEW TABLE AS new_rows
+    FOR EACH STATEMENT EXECUTE FUNCTION count_entries_moved();
+
+-- Large texts are pressed by the faster method, where the server was built with it.
+DO $$ BEGIN
+    ALTER TABLE jobs ALTER COLUMN request SET COMPRESSION lz4;
+    ALTER TABLE jobs ALTER COLUMN result SET COMPRESSION lz4;
+EXCEPTION WHEN feature_not_supported OR syntax_error THEN NULL;
+END $$;
+)sql";
+
+constexpr std::array kSteps{kStep1};
+
+[[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
+
+void check_server(Session& session) {
+    const pqxx::row row = session.run_plain(
+        "SELECT current_setting('server_version_num')::int, "
+        "current_setting('server_encoding'), current_database()")[0];
+    if (row[0].as<int>() < 130000)
+        refuse("the server has version " + std::to_string(row[0].as<int>() / 10000) + "; 13 or newer is needed");
+    if (row[1].as<std::string>() != "UTF8")
+        refuse("the database " + row[2].as<std::string>() + " has the encoding " + row[1].as<std::string>() +
+               "; create one with ENCODING 'UTF8'");
+}
+
+void make_schema(Session& session) {
+    if (!session.run_plain("SELECT to_regnamespace('tunewright')")[0][0].is_null()) return;
+    const pqxx::row may = session.run_plain(
+        "SELECT has_database_privilege(current_database(), 'CREATE'), current_database(), current_user")[0];
+    if (!may[0].as<bool>())
+        refuse("user " + may[2].as<std::string>() + " may not create tables in database " + may[1].as<std::string>() +
+               "; let an administrator run CREATE SCHEMA tunewright AUTHORIZATION " + may[2].as<std::string>());
+    session.run_plain("CREATE SCHEMA tunewright");
+}
+
+}  // namespace
+
+void migrate(Session& session) {
+    check_server(session);
+    session.begin();
+    session.run_plain("SET LOCAL statement_timeout TO '5min'");
+    session.run_plain(kLock);
+    make_schema(session);
+    session.run_plain(
+        "CREATE TABLE IF NOT EXISTS schema_steps "
+        "(step integer PRIMARY KEY, made_at timestamptz NOT NULL DEFAULT now())");
+    const int have = session.run_plain("SELECT coalesce(max(step), 0) FROM schema_steps")[0][0].as<int>();
+    if (have > static_cast<int>(kSteps.size()))
+        refuse("it has schema " + std::to_string(have) + " of a newer program; this one knows " +
+               std::to_string(kSteps.size()));
+    for (int step = have; step < static_cast<int>(kSteps.size()); step++) {
+        session.run_plain(kSteps[static_cast<std::size_t>(step)]);
+        session.run_plain("INSERT INTO schema_steps (step) VALUES (" + std::to_string(step + 1) + ")");
+    }
+    session.commit();
+}
+
+}  // namespace tunewright::server::postgres

@@ -1,0 +1,116 @@
+#include "server/store/postgres/session.h"
+
+#include <charconv>
+#include <pqxx/except>
+#include <pqxx/nontransaction>
+#include <pqxx/prepared_statement>
+
+#include "server/store/postgres/text.h"
+
+namespace tunewright::server::postgres {
+namespace {
+
+// A queue's tables grow and shrink faster than the planner's statistics follow: an index is right at every size.
+constexpr const char* kSettings =
+    "SET search_path TO tunewright; SET statement_timeout TO '10s'; SET idle_in_transaction_session_timeout TO '30s'; "
+    "SET enable_seqscan TO off; SET enable_hashjoin TO off; SET enable_mergejoin TO off; SET jit TO off; "
+    "SET synchronous_commit TO on";
+
+Failure::Kind kind_of(const std::string& state) {
+    if (state == "53100") return Failure::Kind::full;
+    if (state == "40001" || state == "40P01" || state == "55P03") return Failure::Kind::conflict;
+    const std::string kind = state.substr(0, 2);
+    // The server ends the connection, or lets nobody in: shutdown, recovery, too many connections.
+    if (state.substr(0, 4) == "57P0" || kind == "08" || state == "53300") return Failure::Kind::broken;
+    return Failure::Kind::refused;
+}
+
+std::string first_line(std::string text) {
+    const std::size_t end = text.find('\n');
+    if (end != std::string::npos) text.resize(end);
+    return text;
+}
+
+}  // namespace
+
+Failure failure_of(const std::exception& error, bool open) {
+    const std::string detail = "PostgreSQL: " + first_line(error.what());
+    const auto* sql = dynamic_cast<const pqxx::sql_error*>(&error);
+    if (sql != nullptr) {
+        const Failure::Kind kind = kind_of(sql->sqlstate());
+        if (kind != Failure::Kind::refused) return {kind, detail};
+    }
+    if (!open || dynamic_cast<const pqxx::broken_connection*>(&error) != nullptr)
+        return {Failure::Kind::broken, detail};
+    if (dynamic_cast<const pqxx::disk_full*>(&error) != nullptr) return {Failure::Kind::full, detail};
+    if (dynamic_cast<const pqxx::transaction_rollback*>(&error) != nullptr) return {Failure::Kind::conflict, detail};
+    return {Failure::Kind::refused, detail};
+}
+
+std::string literal(std::string_view text) {
+    std::string quoted = "'";
+    for (const char c : to_column(text)) {
+        if (c == '\'') quoted += c;
+        quoted += c;
+    }
+    return quoted + "'";
+}
+
+std::unique_ptr<pqxx::connection> connect(const Address& address) {
+    try {
+        auto connection = std::make_unique<pqxx::connection>(address.settings());
+        pqxx::nontransaction(*connection).exec(kSettings);
+        return connection;
+    } catch (const std::exception& error) {
+        throw Failure(Failure::Kind::broken, "PostgreSQL: " + first_line(error.what()));
+    }
+}
+
+Values& Values::text(std::string_view value) { return plain(to_column(value)); }
+
+Values& Values::plain(std::string value) {
+    list.push_back(std::move(value));
+    return *this;
+}
+
+Values& Values::real(double value) {
+    char digits[32];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+    return plain(error == std::errc{} ? std::string(digits, end) : "NaN");
+}
+
+Session::Session(const Address& address) : connection_(connect(address)) {}
+Session::~Session() = default;
+
+template <class Work>
+pqxx::result Session::guarded(Work work) {
+    try {
+        pqxx::nontransaction on(*connection_);
+        return work(on);
+    } catch (const std::exception& error) {
+        throw failure_of(error, connection_->is_open());
+    }
+}
+
+pqxx::result Session::run(const std::string& sql, const Values& values) {
+    auto found = names_.find(sql);
+    if (found == names_.end()) {
+        found = names_.emplace(sql, "s" + std::to_string(names_.size())).first;
+        connection_->prepare(found->second, sql);
+    }
+    return guarded([&](pqxx::nontransaction& on) {
+        return on.exec_prepared(found->second, pqxx::prepare::make_dynamic_params(values.list));
+    });
+}
+
+pqxx::result Session::run_plain(const std::string& sql) {
+    return guarded([&](pqxx::nontransaction& on) { return on.exec(sql); });
+}
+
+std::int64_t Session::begin() { return run_plain("BEGIN; SELECT txid_current()")[0][0].as<std::int64_t>(); }
+
+void Session::commit(const std::string& last) { run_plain(last + "COMMIT"); }
+
+void Session::rollback() { run_plain("ROLLBACK"); }
+
+}  // namespace tunewright::server::postgres

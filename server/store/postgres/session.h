@@ -1,0 +1,80 @@
+// A connection to PostgreSQL with its prepared statements and settings; errors say what is to be done.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <pqxx/connection>
+#include <pqxx/result>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/store/postgres/address.h"
+#include "server/store/store.h"
+
+namespace tunewright::server::postgres {
+
+class Failure : public std::runtime_error {
+public:
+    enum class Kind {
+        broken,    ///< the connection is lost; a new one may do
+        conflict,  ///< another transaction was in the way; once more may do
+        full,      ///< of disk
+        refused,   ///< the statement itself
+        unknown,   ///< whether it was committed: the connection was lost and nobody could be asked
+    };
+    Failure(Kind what, const std::string& detail) : std::runtime_error(detail), kind(what) {}
+    StoreFault fault() const {
+        return {kind == Kind::full ? StoreFault::Kind::full : StoreFault::Kind::unavailable, what()};
+    }
+    Kind kind;
+};
+
+/// Values for $1, $2, ... of a statement, in their order.
+class Values {
+public:
+    Values& text(std::string_view value);  ///< as to_column() makes it
+    Values& plain(std::string value);      ///< as it is: literals of arrays, words of our own
+    Values& number(std::int64_t value) { return plain(std::to_string(value)); }
+    Values& real(double value);
+    std::vector<std::string> list;
+};
+
+class Session {
+public:
+    /// Throws Failure.
+    explicit Session(const Address& address);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// One statement, prepared at its first use. Throws Failure.
+    pqxx::result run(const std::string& sql, const Values& values = {});
+    /// Statements without values, sent in one piece; the result of the last.
+    pqxx::result run_plain(const std::string& sql);
+
+    /// A transaction's number, which txid_status() knows even after the connection is lost.
+    std::int64_t begin();
+    /// `last` goes ahead of the COMMIT in the same message.
+    void commit(const std::string& last = "");
+    void rollback();
+
+private:
+    template <class Work>
+    pqxx::result guarded(Work work);
+
+    std::unique_ptr<pqxx::connection> connection_;
+    std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
+};
+
+/// What an exception of libpqxx means; `open`: the connection still is.
+Failure failure_of(const std::exception& error, bool open);
+
+/// Opens a connection as every part of the store uses it. Throws Failure.
+std::unique_ptr<pqxx::connection> connect(const Address& address);
+
+/// As a literal in a statement.
+std::string literal(std::string_view text);
+
+}  // namespace tunewright::server::postgres

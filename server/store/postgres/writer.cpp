@@ -1,0 +1,296 @@
+#include "server/store/postgres/writer.h"
+
+#include <algorithm>
+
+#include "server/log.h"
+#include "server/store/postgres/changes.h"
+
+namespace tunewright::server::postgres {
+namespace {
+
+constexpr std::size_t kLargestGroup = 200;             // changes of a kind
+constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
+constexpr std::chrono::milliseconds kFirstPause{100};
+constexpr std::chrono::milliseconds kLongestPause{2000};
+constexpr std::chrono::seconds kDoubt{10};
+constexpr int kConflicts = 3;
+
+std::size_t bytes(const Ask<NewJob, Accepted>& ask) { return ask.in.request.size(); }
+std::size_t bytes(const Ask<JobEnd, bool>& ask) { return ask.in.result.size() + ask.in.error.size(); }
+template <class T>
+std::size_t bytes(const T&) {
+    return 0;
+}
+
+/// Moves the first to the end of another list: at most `most`, and about kLargestText of text.
+template <class T>
+void move_some(std::vector<T>& from, std::vector<T>& to, std::size_t most) {
+    std::size_t count = 0;
+    for (std::size_t text = 0; count < std::min(most, from.size()) && text < kLargestText; count++)
+        text += bytes(from[count]);
+    const auto end = from.begin() + static_cast<std::ptrdiff_t>(count);
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(end));
+    from.erase(from.begin(), end);
+}
+
+template <class In, class Out>
+std::vector<const In*> questions(const std::vector<Ask<In, Out>>& asks) {
+    std::vector<const In*> list;
+    for (const auto& ask : asks) list.push_back(&ask.in);
+    return list;
+}
+
+void accept_all(Session& session, std::vector<Ask<NewJob, Accepted>>& asks, Notices& notices) {
+    if (asks.empty()) return;
+    std::vector<Accepted> answers = accept_jobs(session, questions(asks));
+    for (std::size_t i = 0; i < asks.size(); i++) asks[i].out = std::move(answers[i]);
+    notices.queued();
+}
+
+void finish_all(Session& session, std::vector<Ask<JobEnd, bool>>& asks, Notices& notices) {
+    if (asks.empty()) return;
+    const std::vector<bool> answers = finish_jobs(session, questions(asks));
+    for (std::size_t i = 0; i < asks.size(); i++) {
+        asks[i].out = answers[i];
+        if (answers[i]) notices.ended(asks[i].in.id);
+    }
+}
+
+void renew_all(Session& session, std::vector<Ask<RenewCall, std::vector<Renewed>>>& asks, Notices& notices) {
+    for (auto& ask : asks) {
+        ask.out = renew_jobs(session, ask.in.renewals, ask.in.lease);
+        for (std::size_t i = 0; i < ask.out.size(); i++)
+            if (ask.out[i].held && !ask.in.renewals[i].progress.empty()) notices.progress(ask.out[i].id);
+    }
+}
+
+/// Neighbours of one worker are claimed together.
+void claim_all(Session& session, std::vector<Ask<Claim, std::vector<JobRecord>>>& asks) {
+    for (std::size_t first = 0; first < asks.size();) {
+        Claim together = asks[first].in;
+        std::size_t last = first + 1;
+        for (; last < asks.size() && asks[last].in.worker == together.worker && asks[last].in.lease == together.lease;
+             last++)
+            together.most += asks[last].in.most;
+        std::vector<JobRecord> claimed = claim_jobs(session, together);
+        for (; first < last; first++) {
+            asks[first].out.clear();
+            move_some(claimed, asks[first].out, asks[first].in.most);
+        }
+    }
+}
+
+template <class In, class Out>
+void answer(std::vector<Ask<In, Out>>& asks, const std::optional<StoreFault>& fault) {
+    for (auto& ask : asks) fault ? ask.done(*fault) : ask.done(std::move(ask.out));
+}
+
+void answer(Group& group, const std::optional<StoreFault>& fault) {
+    answer(group.accepts, fault);
+    answer(group.ends, fault);
+    answer(group.renewals, fault);
+    for (OtherChange& change : group.others) change.done(fault);
+    answer(group.claims, fault);
+}
+
+/// Calls `each` for every change, in a group of its own.
+template <class T, class Each>
+void one_by_one(std::vector<T>& from, std::vector<T> Group::*place, Each each) {
+    for (T& item : from) {
+        Group alone;
+        (alone.*place).push_back(std::move(item));
+        each(alone);
+    }
+}
+
+}  // namespace
+
+Writer::Writer(Address address, std::string tag, std::unique_ptr<Session> session)
+    : address_(std::move(address)), tag_(std::move(tag)), session_(std::move(session)), thread_([this] { work(); }) {}
+
+Writer::~Writer() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    changed_.notify_all();
+}
+
+void Writer::accept(Ask<NewJob, Accepted> ask) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.accepts.push_back(std::move(ask));
+    }
+    changed_.notify_one();
+}
+
+void Writer::finish(Ask<JobEnd, bool> ask) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.ends.push_back(std::move(ask));
+    }
+    changed_.notify_one();
+}
+
+void Writer::renew(Ask<RenewCall, std::vector<Renewed>> ask) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.renewals.push_back(std::move(ask));
+    }
+    changed_.notify_one();
+}
+
+void Writer::claim(Ask<Claim, std::vector<JobRecord>> ask) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.claims.push_back(std::move(ask));
+    }
+    changed_.notify_one();
+}
+
+void Writer::change(OtherChange change, bool bulky) {
+    {
+        const std::lock_guard lock(mutex_);
+        bulky ? bulky_.push_back(std::move(change)) : waiting_.others.push_back(std::move(change));
+    }
+    changed_.notify_one();
+}
+
+bool Writer::stopping() const {
+    const std::lock_guard lock(mutex_);
+    return stopping_;
+}
+
+Group Writer::next_group() {
+    std::unique_lock lock(mutex_);
+    const auto ready = [this] { return stopping_ || waiting_.size() > 0 || !bulky_.empty(); };
+    if (session_)
+        changed_.wait(lock, ready);
+    else
+        changed_.wait_until(lock, next_try_, ready);
+    Group group;
+    move_some(waiting_.ends, group.ends, kLargestGroup);
+    move_some(waiting_.accepts, group.accepts, kLargestGroup);
+    move_some(waiting_.renewals, group.renewals, kLargestGroup);
+    move_some(waiting_.others, group.others, kLargestGroup);
+    move_some(waiting_.claims, group.claims, kLargestGroup);
+    if (!bulky_.empty()) {
+        group.others.push_back(std::move(bulky_.front()));
+        bulky_.pop_front();
+    }
+    return group;
+}
+
+void Writer::work() {
+    for (;;) {
+        Group group = next_group();
+        if (group.size() > 0) {
+            write(group);
+        } else if (stopping()) {
+            return;
+        } else {
+            healthy_ = session_ || connect();
+        }
+    }
+}
+
+void Writer::write(Group& group) {
+    std::optional<Failure> failure = try_write(group);
+    if (!failure) {
+        healthy_ = true;
+        return answer(group, std::nullopt);
+    }
+    // Somebody's change cannot be made: each alone, so that the others are not lost with it.
+    const bool lost = failure->kind == Failure::Kind::broken || failure->kind == Failure::Kind::unknown;
+    if (group.size() > 1 && !lost) return write_alone(group);
+    if (healthy_.exchange(false) || !lost) log_error("the store cannot write: " + std::string(failure->what()));
+    answer(group, failure->fault());
+}
+
+void Writer::write_alone(Group& group) {
+    const auto each = [this](Group& alone) { write(alone); };
+    one_by_one(group.accepts, &Group::accepts, each);
+    one_by_one(group.ends, &Group::ends, each);
+    one_by_one(group.renewals, &Group::renewals, each);
+    one_by_one(group.others, &Group::others, each);
+    one_by_one(group.claims, &Group::claims, each);
+}
+
+std::optional<Failure> Writer::try_write(Group& group) {
+    const bool had_connection = session_ != nullptr;
+    std::optional<Failure> failure = try_once(group);
+    for (int again = 0; failure && failure->kind == Failure::Kind::conflict && again < kConflicts; again++)
+        failure = try_once(group);
+    // A connection that was lost while nobody used it is noticed now; nothing of the group can have been done.
+    if (failure && failure->kind == Failure::Kind::broken && had_connection) failure = try_once(group);
+    return failure;
+}
+
+std::optional<Failure> Writer::try_once(Group& group) {
+    if (!session_ && !connect()) return Failure(Failure::Kind::broken, "there is no connection to " + address_.shown());
+    std::optional<std::int64_t> in_doubt;
+    try {
+        Notices notices;
+        const std::int64_t transaction = session_->begin();
+        accept_all(*session_, group.accepts, notices);
+        finish_all(*session_, group.ends, notices);
+        renew_all(*session_, group.renewals, notices);
+        for (const OtherChange& change : group.others) change.apply(*session_, notices);
+        claim_all(*session_, group.claims);
+        in_doubt = transaction;
+        session_->commit(notices.statements(tag_));
+        return std::nullopt;
+    } catch (const Failure& failure) {
+        if (failure.kind != Failure::Kind::broken) {
+            try {
+                session_->rollback();
+            } catch (const Failure&) {
+                session_.reset();
+            }
+            return failure;
+        }
+        session_.reset();
+        if (!in_doubt) return failure;
+        const std::optional<bool> committed = was_committed(*in_doubt);
+        if (committed == true) return std::nullopt;
+        if (committed == false) return failure;
+        return Failure(Failure::Kind::unknown,
+                       "the connection was lost during a commit: " + std::string(failure.what()));
+    }
+}
+
+bool Writer::connect() {
+    if (Clock::now() < next_try_) return false;
+    try {
+        session_ = std::make_unique<Session>(address_);
+        if (pause_.count() > 0) log_info("the store is connected to " + address_.shown() + " again");
+        pause_ = std::chrono::milliseconds(0);
+        return true;
+    } catch (const Failure& failure) {
+        if (pause_.count() == 0) log_error("the store has lost " + address_.shown() + ": " + failure.what());
+        pause_ = std::clamp(2 * pause_, kFirstPause, kLongestPause);
+        next_try_ = Clock::now() + pause_;
+        return false;
+    }
+}
+
+std::optional<bool> Writer::was_committed(std::int64_t transaction) {
+    const Clock::time_point end = Clock::now() + kDoubt;
+    while (Clock::now() < end) {
+        try {
+            if (session_ || connect()) {
+                const pqxx::result rows = session_->run("SELECT txid_status($1)", Values().number(transaction));
+                if (rows[0][0].is_null()) return std::nullopt;
+                const std::string status = rows[0][0].c_str();
+                if (status != "in progress") return status == "committed";
+            }
+        } catch (const Failure& failure) {
+            if (failure.kind != Failure::Kind::broken) return std::nullopt;
+            session_.reset();
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return std::nullopt;
+}
+
+}  // namespace tunewright::server::postgres

@@ -1,0 +1,104 @@
+// The one thread that writes. What is asked for while a transaction is being committed goes into the next one together:
+// single jobs' changes of one kind into one statement, and one commit for all.
+//
+// When the connection is lost: changes that cannot have been committed are tried once more on a new connection; a
+// commit whose answer was lost is looked up by its transaction's number. Whatever remains unknown or impossible is
+// answered with StoreFault::unavailable, and a new connection is tried for with growing pauses.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/store/postgres/notices.h"
+#include "server/store/postgres/session.h"
+
+namespace tunewright::server::postgres {
+
+/// A question to the writer with its answer, which may be found twice before it is told.
+template <class In, class Out>
+struct Ask {
+    In in;
+    Done<Out> done;
+    Out out{};
+};
+
+struct RenewCall {
+    std::vector<Renewal> renewals;
+    std::chrono::milliseconds lease{0};
+};
+
+/// Any other change.
+struct OtherChange {
+    std::function<void(Session&, Notices&)> apply;
+    std::function<void(std::optional<StoreFault>)> done;
+};
+
+/// What one transaction takes, in the order in which it is done.
+struct Group {
+    std::vector<Ask<NewJob, Accepted>> accepts;
+    std::vector<Ask<JobEnd, bool>> ends;
+    std::vector<Ask<RenewCall, std::vector<Renewed>>> renewals;
+    std::vector<OtherChange> others;
+    std::vector<Ask<Claim, std::vector<JobRecord>>> claims;
+
+    std::size_t size() const { return accepts.size() + ends.size() + renewals.size() + others.size() + claims.size(); }
+};
+
+class Writer {
+public:
+    Writer(Address address, std::string tag, std::unique_ptr<Session> session);
+    /// Does what was asked for, as far as the database is there, then joins.
+    ~Writer();
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    void accept(Ask<NewJob, Accepted> ask);
+    void finish(Ask<JobEnd, bool> ask);
+    void renew(Ask<RenewCall, std::vector<Renewed>> ask);
+    void claim(Ask<Claim, std::vector<JobRecord>> ask);
+    /// Bulky changes touch many rows: each transaction takes one of them.
+    void change(OtherChange change, bool bulky);
+
+    bool healthy() const { return healthy_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void work();
+    /// Empty when it is time to stop, or to look after the connection.
+    Group next_group();
+    void write(Group& group);
+    void write_alone(Group& group);
+    /// Nothing when the group has been committed.
+    std::optional<Failure> try_write(Group& group);
+    std::optional<Failure> try_once(Group& group);
+    bool connect();
+    /// Of a transaction whose commit was not answered; nothing where that cannot be found out.
+    std::optional<bool> was_committed(std::int64_t transaction);
+    bool stopping() const;
+
+    Address address_;
+    std::string tag_;
+    std::unique_ptr<Session> session_;
+    Clock::time_point next_try_{};
+    std::chrono::milliseconds pause_{0};
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    Group waiting_;
+    std::deque<OtherChange> bulky_;
+    bool stopping_ = false;
+    std::atomic<bool> healthy_ = true;
+    std::jthread thread_;
+};
+
+}  // namespace tunewright::server::postgres

@@ -1,0 +1,31 @@
+// A database of its own for a test, on the cluster that TUNEWRIGHT_TEST_POSTGRES names (tests/server/postgres.py).
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace tunewright::server {
+
+class PostgresDatabase {
+public:
+    /// Nothing where no cluster is named.
+    static std::unique_ptr<PostgresDatabase> make();
+    ~PostgresDatabase();
+    PostgresDatabase(const PostgresDatabase&) = delete;
+    PostgresDatabase& operator=(const PostgresDatabase&) = delete;
+
+    const std::string& url() const { return url_; }
+    /// Runs statements in it; the first column of the first row of the last one, "" if there is none. Throws what
+    /// PostgreSQL says.
+    std::string run(const std::string& sql) const;
+    /// Ends every connection to it.
+    void cut_connections() const;
+
+private:
+    PostgresDatabase(std::string cluster, std::string name);
+    std::string cluster_;
+    std::string name_;
+    std::string url_;
+};
+
+}  // namespace tunewright::server

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "server/store/open_store.h"
+
 namespace tunewright::server {
 namespace {
 
@@ -76,18 +78,10 @@ double parse_duration(const std::string& text) {
     return in_units(text, units, "a time such as 10 (s), 500ms, 5min, 12h or 7d");
 }
 
-std::string parse_store(const std::string& text) {
-    constexpr std::string_view prefix = "sqlite:";
-    if (!text.starts_with(prefix) || text.size() == prefix.size())
-        throw std::invalid_argument("--store is \"" + text +
-                                    "\"; it must be sqlite:PATH, such as sqlite:tunewright.db.");
-    return text.substr(prefix.size());
-}
-
 void check_config(const Config& config) {
     const HostPort address = parse_listen(config.listen);
-    const bool one_process = config.store.starts_with("sqlite:");
-    if (parse_role(config.role) != Role::all && one_process)
+    check_store_address(config.store);
+    if (parse_role(config.role) != Role::all && !is_shared_store(config.store))
         throw std::invalid_argument("--role " + config.role +
                                     " shares its store with other processes, which SQLite cannot: give --store "
                                     "postgresql://..., or --role all.");

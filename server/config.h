@@ -52,8 +52,6 @@ Role parse_role(const std::string& text);
 std::size_t parse_size(const std::string& text);
 /// Seconds of "10", "10s", "500ms", "5min", "12h", "7d".
 double parse_duration(const std::string& text);
-/// The path of "sqlite:PATH". Throws std::invalid_argument with a sentence.
-std::string parse_store(const std::string& text);
 
 /// Throws std::invalid_argument with a sentence where the options do not go together: a port beyond loopback that asks
 /// for no keys, keys without a file, a worker of a store that only one process can use, a shorter longest time-out than

@@ -20,7 +20,7 @@
 #include "server/metrics.h"
 #include "server/routes/routes.h"
 #include "server/store/metered_store.h"
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 
 namespace tunewright::server {
 namespace {
@@ -63,7 +63,7 @@ class Service {
 public:
     explicit Service(const Config& config)
         : config_(config),
-          store_(metered(open_sqlite_store(parse_store(config.store)),
+          store_(metered(open_store(config.store),
                          [this](std::string_view operation, double seconds, bool done) {
                              metrics_.count_store(operation, seconds, done);
                          })),
@@ -228,7 +228,6 @@ int serve(const Config& config) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     try {
         check_config(config);
-        parse_store(config.store);
         start_log(config.log_format, config.log_level);
     } catch (const std::invalid_argument& error) {
         return failed(kBadConfiguration, error.what());

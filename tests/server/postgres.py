@@ -1,4 +1,4 @@
-#!/ usr / bin / python3
+#!/usr/bin/python3
 """A private PostgreSQL from Debian's package, for tests and figures: in a folder and on a port of its own.
 
     tests/server/postgres.py run -- COMMAND ...
@@ -160,13 +160,20 @@ def run(command):
     with Cluster() as cluster:
         child = subprocess.Popen(command, env={**os.environ, "TUNEWRIGHT_TEST_POSTGRES": cluster.url()})
         try:
-return child.wait() finally : if child.poll() is None : child.terminate() child.wait()
+            return child.wait()
+        finally:
+            if child.poll() is None:
+                child.terminate()
+                child.wait()
 
-                                                            def
-                                                            main()
-    : parser = argparse.ArgumentParser(description = __doc__, formatter_class = argparse.RawDescriptionHelpFormatter)
-                   actions = parser.add_subparsers(dest = "action", required = True) runner =
-           actions.add_parser("run", help = "run a command beside a cluster")
-               runner.add_argument("command", nargs = "+") return run(parser.parse_args().command)
 
-                   if __name__ == "__main__" : sys.exit(main())
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    actions = parser.add_subparsers(dest="action", required=True)
+    runner = actions.add_parser("run", help="run a command beside a cluster")
+    runner.add_argument("command", nargs="+")
+    return run(parser.parse_args().command)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

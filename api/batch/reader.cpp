@@ -47,6 +47,8 @@ public:
     virtual std::optional<Problem> finish(std::vector<RawEntry>& entries) = 0;
     /// The name that stands in the body.
     virtual std::string name() const { return {}; }
+    /// False where each request says itself what is asked for.
+    virtual bool takes_options() const { return false; }
 };
 
 class BatchReader::JsonCutter : public Cutter {
@@ -109,6 +111,8 @@ public:
         return problem;
     }
 
+    bool takes_options() const override { return true; }
+
 private:
     Lines::Take taker(std::vector<RawEntry>& entries, std::optional<Problem>& problem) {
         return [&](long number, std::string_view text, std::size_t bytes) {
@@ -152,6 +156,7 @@ public:
     }
 
     std::string name() const override { return chosen_ ? chosen_->name() : std::string(); }
+    bool takes_options() const override { return !chosen_ || chosen_->takes_options(); }
 
 private:
     static constexpr std::size_t kLongestHead = 64 * 1024;
@@ -207,15 +212,24 @@ BatchReader::~BatchReader() = default;
 std::optional<Problem> BatchReader::feed(std::string_view bytes, std::vector<BatchEntry>& entries) {
     std::vector<RawEntry> raw;
     if (auto problem = cutter_->feed(bytes, raw)) return problem;
+    if (auto problem = refuse_options()) return problem;
     return take(std::move(raw), entries);
 }
 
 std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
     std::vector<RawEntry> raw;
     if (auto problem = cutter_->finish(raw)) return problem;
+    if (auto problem = refuse_options()) return problem;
     if (auto problem = take(std::move(raw), entries)) return problem;
     if (count_ == 0) return not_valid("", "The batch has no requests; it needs at least one.");
     return std::nullopt;
+}
+
+std::optional<Problem> BatchReader::refuse_options() const {
+    if (question_.options.empty() || cutter_->takes_options()) return std::nullopt;
+    const std::string& name = question_.options.front().first;
+    return not_valid("/" + pointer_segment(name),
+                     name + " is a parameter for a CSV of loops; requests in JSON say themselves what they ask for.");
 }
 
 std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries) {

@@ -54,6 +54,7 @@ private:
     class LoopsCutter;
     class Finder;
 
+    std::optional<Problem> refuse_options() const;
     std::optional<Problem> take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries);
 
     BatchQuestion question_;

@@ -1,8 +1,7 @@
 #include "api/json/digest.h"
 
-#include <array>
+#include <algorithm>
 #include <bit>
-#include <cstdint>
 
 namespace tunewright::api {
 namespace {
@@ -45,18 +44,33 @@ void compress(State& state, const unsigned char* block) {
 
 }  // namespace
 
-std::string sha256_hex(std::string_view text) {
-    State state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-    const auto* bytes = reinterpret_cast<const unsigned char*>(text.data());
-    const std::size_t whole = text.size() / 64;
-    for (std::size_t i = 0; i < whole; ++i) compress(state, bytes + 64 * i);
+void Sha256::update(std::string_view piece) {
+    std::size_t kept = length_ % rest_.size();
+    length_ += piece.size();
+    while (!piece.empty()) {
+        if (kept == 0 && piece.size() >= rest_.size()) {
+            compress(state_, reinterpret_cast<const unsigned char*>(piece.data()));
+            piece.remove_prefix(rest_.size());
+            continue;
+        }
+        const std::size_t taken = std::min(rest_.size() - kept, piece.size());
+        std::copy_n(piece.data(), taken, rest_.begin() + static_cast<std::ptrdiff_t>(kept));
+        piece.remove_prefix(taken);
+        kept += taken;
+        if (kept < rest_.size()) return;
+        compress(state_, rest_.data());
+        kept = 0;
+    }
+}
 
+std::string Sha256::hex() const {
+    std::array<std::uint32_t, 8> state = state_;
     std::array<unsigned char, 128> tail{};
-    const std::size_t rest = text.size() % 64;
-    for (std::size_t i = 0; i < rest; ++i) tail[i] = bytes[64 * whole + i];
-    tail[rest] = 0x80;
-    const std::size_t blocks = rest < 56 ? 1 : 2;
-    const std::uint64_t bits = std::uint64_t{text.size()} * 8;
+    const std::size_t kept = length_ % rest_.size();
+    std::copy_n(rest_.begin(), kept, tail.begin());
+    tail[kept] = 0x80;
+    const std::size_t blocks = kept < 56 ? 1 : 2;
+    const std::uint64_t bits = length_ * 8;
     for (std::size_t i = 0; i < 8; ++i) tail[64 * blocks - 1 - i] = static_cast<unsigned char>(bits >> (8 * i));
     for (std::size_t i = 0; i < blocks; ++i) compress(state, tail.data() + 64 * i);
 
@@ -66,6 +80,12 @@ std::string sha256_hex(std::string_view text) {
         for (int shift = 28; shift >= 0; shift -= 4) out += kHex[word >> shift & 15];
     }
     return out;
+}
+
+std::string sha256_hex(std::string_view text) {
+    Sha256 digest;
+    digest.update(text);
+    return digest.hex();
 }
 
 }  // namespace tunewright::api

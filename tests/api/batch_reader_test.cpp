@@ -138,6 +138,14 @@ TEST(BatchReader, TellsFormsApartByTheFirstBytes) {
     EXPECT_EQ(read(open, std::string(70000, ' ') + "{\"jobs\": [" + request + "]}").entries.size(), 1u);
 }
 
+TEST(BatchReader, OptionsBelongToLoopsAlone) {
+    BatchQuestion question;
+    question.options = {{"Ms", "1.6"}};
+    EXPECT_EQ(read(question, "K,T,L\n1,2,3\n").entries.size(), 1u);
+    EXPECT_THAT(refusal(question, "{\"plant\": 1}\n"), HasSubstr("422 Ms is a parameter for a CSV of loops"));
+    EXPECT_THAT(refusal(question, "{\"jobs\": [{}]}"), HasSubstr("422 Ms is a parameter for a CSV of loops"));
+}
+
 TEST(BatchReader, RefusesABrokenArrayAsAWhole) {
     const BatchQuestion json = form(BatchForm::json);
     EXPECT_EQ(refusal(json, ""), "400 The body is empty. Send {\"jobs\": [request, request, ...]}.");

@@ -1,0 +1,27 @@
+// Results of a batch as lines of text, one entry after the other: NDJSON, or CSV for spreadsheets.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tunewright::api {
+
+/// One job of a batch as it stands.
+struct ResultRow {
+    std::int64_t index = 0;
+    std::string_view id, name, status;  ///< "" where it has no name
+    std::string_view result, error;     ///< JSON; "" if none
+};
+
+/// {index, id, name, status, result or error} and \n.
+void append_ndjson(const ResultRow& row, std::string& out);
+
+/// The line of headings.
+std::string csv_headings();
+
+/// One line for each controller of the result; one where there is none: an error, or a job that has not ended. What
+/// is missing, infinite or of another form is an empty cell; numbers are in full.
+void append_csv(const ResultRow& row, std::string& out);
+
+}  // namespace tunewright::api

@@ -1,0 +1,29 @@
+// CSV text as spreadsheets and programs read it alike (RFC 4180).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tunewright::api {
+
+/// Cells are set side by side with commas; a cell is quoted where it must be. A text that a spreadsheet would take for
+/// a formula (it begins with = + - @ or a tab) gets an apostrophe in front.
+class CsvWriter {
+public:
+    CsvWriter& text(std::string_view value);  ///< UTF-8
+    CsvWriter& integer(long long value);
+    CsvWriter& number(double value);        ///< shortest text that reads back as the same double; not finite: empty
+    CsvWriter& trace_number(double value);  ///< six significant digits, as in traces
+    CsvWriter& empty() { return cell({}); }
+    void end_line();
+
+    std::string take() { return std::move(out_); }
+
+private:
+    CsvWriter& cell(std::string_view written);
+
+    std::string out_;
+    bool first_ = true;
+};
+
+}  // namespace tunewright::api

@@ -1,0 +1,86 @@
+// Many jobs posted at once: their way into the store while they arrive, and what is asked of them together.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/batch/reader.h"
+#include "server/executor.h"
+#include "server/jobs/service.h"
+#include "server/jobs/timer.h"
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+/// A body that is to become a batch.
+struct BatchOrder {
+    api::BatchQuestion question;
+    std::string asked;  ///< what else tells two bodies apart, such as the parameters of the call
+    std::string idempotency_key;
+    std::string owner;  ///< as in NewBatch
+    std::string flow;
+};
+
+struct BatchReceipt {
+    enum class Kind {
+        created,
+        existing,    ///< the same body came before under this key
+        conflict,    ///< another body came before under this key
+        refused,     ///< `problem` says why
+        queue_full,  ///< of entries
+        draining,
+        cancelled,     ///< by somebody, while it was being received
+        abandoned,     ///< by its client
+        store_failed,  ///< `fault` says why
+    };
+    Kind kind = Kind::store_failed;
+    std::string id;  ///< of created and existing
+    api::Problem problem;
+    StoreFault fault;
+};
+
+/// One batch on its way in. Its entries may run while others are still coming; a batch that does not come to its end
+/// leaves nothing behind.
+class BatchReceiver {
+public:
+    virtual ~BatchReceiver() = default;
+    /// The next bytes. `more` is called once, from any thread, when further ones are welcome; never after the receipt.
+    virtual void feed(std::string bytes, std::function<void()> more) = 0;
+    /// All bytes have come.
+    virtual void finish() = 0;
+    /// No more bytes will come.
+    virtual void abandon() = 0;
+};
+
+class Batches {
+public:
+    /// All must outlive it. What takes long runs on `lane`.
+    Batches(JobStore& store, JobService& jobs, Timer& timer, Executor& lane, std::function<UnixMs()> now);
+
+    /// `done` runs once, from any thread: when the whole batch is durable, or as soon as it is refused.
+    std::shared_ptr<BatchReceiver> receive(BatchOrder order, std::function<void(BatchReceipt)> done);
+
+    /// Reads throw StoreError.
+    std::optional<BatchSummary> find(const std::string& id) { return store_.find_batch(id); }
+    BatchPage list(const std::optional<std::string>& owner, int limit, std::optional<std::int64_t> before_seq) {
+        return store_.list_batches(owner, limit, before_seq);
+    }
+    std::vector<BatchRow> rows(const std::string& id, std::int64_t from, std::size_t limit) {
+        return store_.batch_rows(id, from, limit);
+    }
+    /// Waiting jobs are cancelled, running ones stop soon after. False where there is no such batch.
+    void cancel(const std::string& id, Done<bool> done);
+    void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove_batch(id, std::move(done)); }
+
+private:
+    JobStore& store_;
+    JobService& jobs_;
+    Timer& timer_;
+    Executor& lane_;
+    std::function<UnixMs()> now_;
+};
+
+}  // namespace tunewright::server

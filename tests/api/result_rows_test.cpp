@@ -1,0 +1,185 @@
+// Results as rows and columns of text.
+#include <gmock/gmock.h>
+
+#include "api/batch/rows.h"
+#include "api/csv/traces.h"
+#include "api/csv/writer.h"
+#include "api/json/digest.h"
+#include "support.h"
+
+namespace tunewright::api {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> split_lines(const std::string& text) {
+    std::vector<std::string> lines;
+    std::size_t start = 0;
+    for (std::size_t end = text.find("\r\n"); end != text.npos; end = text.find("\r\n", start)) {
+        lines.push_back(text.substr(start, end - start));
+        start = end + 2;
+    }
+    EXPECT_EQ(start, text.size()) << "every line ends in CR LF";
+    return lines;
+}
+
+std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> out{""};
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (c == ',' && !quoted)
+            out.emplace_back();
+        else
+            out.back() += c;
+    }
+    return out;
+}
+
+/// The cell of a line of append_csv under a heading.
+std::string under(const std::string& heading, const std::string& line) {
+    const std::vector<std::string> headings = cells(split_lines(csv_headings()).front()), row = cells(line);
+    EXPECT_EQ(headings.size(), row.size()) << line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        if (headings[i] == heading) return row[i];
+    return "no such column";
+}
+
+std::string result_of(const std::string& members) { return run_job(request_with(members), {}).result_json; }
+
+TEST(ResultRows, AsNdjsonHoldResultAndErrorAsTheyAre) {
+    std::string out;
+    append_ndjson({0, "id0", "a \"b\"", "succeeded", "{\"controllers\":[]}", ""}, out);
+    append_ndjson({1, "id1", "", "failed", "", "{\"detail\":\"x\"}"}, out);
+    append_ndjson({2, "id2", "", "queued", "", ""}, out);
+    EXPECT_EQ(out,
+              "{\"index\":0,\"id\":\"id0\",\"name\":\"a "
+              "\\\"b\\\"\",\"status\":\"succeeded\",\"result\":{\"controllers\":[]}}\n"
+              "{\"index\":1,\"id\":\"id1\",\"name\":null,\"status\":\"failed\",\"error\":{\"detail\":\"x\"}}\n"
+              "{\"index\":2,\"id\":\"id2\",\"name\":null,\"status\":\"queued\"}\n");
+}
+
+TEST(ResultRows, AsCsvHaveOneLineForEachController) {
+    const std::string result = result_of(
+        R"("tune": [{"method": "simc"}, {"method": "robust"}], "baseline": {"form": "parallel", "Kp": 1, "Ki": 0.1, "Kd": 0.5}, "evaluate": {"points": 0})");
+    const Json value = Json::parse(result);
+    std::string out;
+    append_csv({7, "id7", "TIC-101", "succeeded", result, ""}, out);
+    const std::vector<std::string> lines = split_lines(out);
+    ASSERT_EQ(lines.size(), value["controllers"].size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const Json& entry = value["controllers"][i];
+        EXPECT_EQ(under("index", lines[i]), "7");
+        EXPECT_EQ(under("name", lines[i]), "TIC-101");
+        EXPECT_EQ(under("method", lines[i]), entry["method"].get<std::string>());
+        EXPECT_EQ(std::stod(under("Kp", lines[i])), entry["controller"]["Kp"].get<double>());
+        EXPECT_EQ(std::stod(under("Ms", lines[i])), entry["robustness"]["Ms"].get<double>());
+        EXPECT_EQ(std::stod(under("load_IAE", lines[i])), entry["performance"]["load"]["IAE"].get<double>());
+        EXPECT_EQ(std::stod(under("settling_time", lines[i])),
+                  entry["performance"]["setpoint"]["settling_time"].get<double>());
+        EXPECT_EQ(under("warnings", lines[i]), std::to_string(entry["warnings"].size()));
+        EXPECT_EQ(under("error", lines[i]), "");
+    }
+    EXPECT_EQ(under("Ti", lines[0]), "10");
+    EXPECT_EQ(under("Tf", lines[0]), "");
+    EXPECT_EQ(std::stod(under("Tf", lines[1])), value["controllers"][1]["controller"]["filter"]["Tf"].get<double>());
+    EXPECT_EQ(under("form", lines.back()), "parallel");
+    EXPECT_EQ(under("Ti", lines.back()), "");
+    EXPECT_EQ(under("Kd", lines.back()), "0.5");
+}
+
+TEST(ResultRows, AsCsvLeaveCellsEmptyWhereThereIsNoNumber) {
+    std::string out;
+    append_csv({0, "id", "x", "succeeded",
+                R"({"controllers": [{"method": "P", "controller": {"form": "ideal", "Kp": 1, "Ti": null},
+                "robustness": {"gain_margin": null}}, {"method": "imc", "error": {"detail": "no, \"never\""}}]})",
+                ""},
+               out);
+    const std::vector<std::string> lines = split_lines(out);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(under("Ti", lines[0]), "");
+    EXPECT_EQ(under("gain_margin", lines[0]), "");
+    EXPECT_THAT(lines[1], HasSubstr(R"(,"no, ""never""")"));
+    out.clear();
+    append_csv({1, "id", "", "failed", "", R"({"detail": "K is 0"})"}, out);
+    append_csv({2, "id", "", "queued", "", ""}, out);
+    EXPECT_EQ(under("error", split_lines(out)[0]), "K is 0");
+    EXPECT_EQ(under("status", split_lines(out)[1]), "queued");
+    EXPECT_EQ(under("Kp", split_lines(out)[1]), "");
+}
+
+TEST(ResultRows, NoNameBecomesAFormula) {
+    for (const std::string name : {"=1+1", "+1", "-1", "@A1", "\tx", "\rx"}) {
+        std::string out;
+        append_csv({0, "id", name, "queued", "", ""}, out);
+        EXPECT_THAT(out, HasSubstr("\"'" + name + "\""));
+    }
+    std::string plain;
+    append_csv({0, "id", "TIC=1", "queued", "", ""}, plain);
+    EXPECT_THAT(plain, HasSubstr(",TIC=1,"));
+}
+
+TEST(TracesCsv, SharesTheTimesThatAreTheSame) {
+    const std::string members =
+        R"("units": {"time": "min", "y": "degC"}, "tune": [{"method": "simc"}, {"method": "robust"}, {"method": "robust", "Ms": 1.6}],
+        "evaluate": {"points": 3, "horizon": 40})";
+    const std::string result = result_of(members);
+    const auto text = traces_csv(result, Traces::responses);
+    ASSERT_TRUE(text);
+    const std::vector<std::string> lines = split_lines(*text);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_THAT(cells(lines[0]),
+                ElementsAre("t [min]", "simc setpoint y [degC]", "simc setpoint u", "simc load y [degC]", "simc load u",
+                            "robust setpoint y [degC]", "robust setpoint u", "robust load y [degC]", "robust load u",
+                            "robust (2) setpoint y [degC]", "robust (2) setpoint u", "robust (2) load y [degC]",
+                            "robust (2) load u"));
+    const Json value = Json::parse(result);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(std::stod(cells(lines[i + 1])[0]), 20.0 * static_cast<double>(i));
+        EXPECT_EQ(std::stod(cells(lines[i + 1])[8]),
+                  value["controllers"][1]["responses"]["load"]["u"][i].get<double>());
+    }
+}
+
+TEST(TracesCsv, PutsOtherTimesBeside) {
+    const std::string result = R"({"controllers": [
+        {"method": "a", "responses": {"setpoint": {"t": [0, 1], "y": [0, 2], "u": [1, null]}}},
+        {"method": "b", "error": {}},
+        {"method": "b", "responses": {"load": {"t": [0, 1, 2], "y": [0, 3, 4], "u": [0, 5, 6]}}}]})";
+    EXPECT_THAT(split_lines(traces_csv(result, Traces::responses).value_or("")),
+                ElementsAre("a t [s],a setpoint y,a setpoint u,b (2) t [s],b (2) load y,b (2) load u", "0,0,1,0,0,0",
+                            "1,2,,1,3,5", ",,,2,4,6"));
+}
+
+TEST(TracesCsv, OfFrequenciesAndOfAModel) {
+    const std::string frequency =
+        traces_csv(result_of(R"("tune": [{"method": "simc"}], "evaluate": {"points": 5})"), Traces::frequency)
+            .value_or("");
+    EXPECT_THAT(frequency, testing::StartsWith(
+                               "omega [rad/s],simc L re,simc L im,simc L phase [deg],simc |S|,simc |T|,simc |CS|\r\n"));
+    EXPECT_EQ(traces_csv(R"({"model": {"fit": {"t": [0], "u": [1], "y": [2], "y_model": [3]}}})", Traces::model),
+              "t [s],u,y,y_model\r\n0,1,2,3\r\n");
+}
+
+TEST(TracesCsv, AreNothingWithoutPoints) {
+    const std::string result = result_of(R"("tune": [{"method": "simc"}], "evaluate": {"points": 0})");
+    for (const Traces traces : {Traces::responses, Traces::frequency, Traces::model})
+        EXPECT_FALSE(traces_csv(result, traces));
+}
+
+// FIPS 180-4's own example of two blocks.
+TEST(Sha256, IsTheSameForEveryCut) {
+    const std::string text = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+    EXPECT_EQ(sha256_hex(text), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    const std::string longer(200, 'x');
+    for (std::size_t cut = 0; cut <= longer.size(); ++cut) {
+        Sha256 digest;
+        digest.update(longer.substr(0, cut));
+        digest.update(longer.substr(cut));
+        EXPECT_EQ(digest.hex(), sha256_hex(longer));
+    }
+}
+
+}  // namespace
+}  // namespace tunewright::api

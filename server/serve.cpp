@@ -15,6 +15,7 @@
 #include "server/http/router.h"
 #include "server/http/server.h"
 #include "server/http/static_files.h"
+#include "server/jobs/batches.h"
 #include "server/jobs/service.h"
 #include "server/log.h"
 #include "server/metrics.h"
@@ -29,6 +30,9 @@ constexpr int kBadConfiguration = 2;
 constexpr int kPortFailed = 3;
 constexpr int kStoreFailed = 4;
 constexpr std::size_t kHttpThreads = 4;
+// Batches come and go without keeping others from being answered.
+constexpr std::size_t kBatchThreads = 2;
+constexpr int kBatchNiceness = 5;
 
 UnixMs wall_clock() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -69,6 +73,8 @@ public:
                          })),
           jobs_(*store_, timer_, settings(config)),
           lane_(core_count()),
+          batch_lane_(kBatchThreads, kBatchNiceness),
+          batches_(*store_, jobs_, timer_, batch_lane_, wall_clock),
           pool_(kHttpThreads),
           router_(pool_),
           page_(config.web.empty() ? default_web_folder() : config.web),
@@ -104,6 +110,7 @@ public:
         server_.stop();
         loop_.join();
         lane_.stop();
+        batch_lane_.stop();
         pool_.stop();
         timer_.stop();
         if (idle) store_.reset();
@@ -165,6 +172,9 @@ private:
     void add_public_routes() {
         add_job_routes(router_, jobs_, pool_, {config_.job_timeout_s, config_.max_timeout_s});
         add_event_routes(router_, jobs_, timer_);
+        add_trace_routes(router_, jobs_);
+        add_batch_routes(router_, batches_, jobs_, timer_, pool_, batch_lane_,
+                         {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
         add_description_routes(router_);
         router_.otherwise([this](const http::Request& request) { return page_.find(request); });
@@ -191,6 +201,8 @@ private:
     std::unique_ptr<JobStore> store_;
     JobService jobs_;
     Executor lane_;
+    Executor batch_lane_;
+    Batches batches_;
     Executor pool_;
     http::Router router_;
     http::StaticFiles page_;

@@ -39,15 +39,6 @@ std::size_t sequence(std::string_view text, std::size_t at) {
     return length;
 }
 
-bool is_utf8(std::string_view text) {
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t length = sequence(text, at);
-        if (length == 0) return false;
-        at += length;
-    }
-    return true;
-}
-
 std::string from_utf16(std::string_view bytes, bool big_endian) {
     std::string out;
     out.reserve(bytes.size());
@@ -94,6 +85,15 @@ bool zeros_at(std::string_view bytes, std::size_t parity) {
 }
 
 }  // namespace
+
+bool is_utf8(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = sequence(text, at);
+        if (length == 0) return false;
+        at += length;
+    }
+    return true;
+}
 
 std::string_view utf8_text(std::string_view bytes, std::string& storage) {
     if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);

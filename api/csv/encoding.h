@@ -11,4 +11,6 @@ namespace tunewright::api {
 /// be changed; `storage` holds the text otherwise.
 std::string_view utf8_text(std::string_view bytes, std::string& storage);
 
+bool is_utf8(std::string_view text);
+
 }  // namespace tunewright::api

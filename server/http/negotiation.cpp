@@ -83,9 +83,13 @@ std::optional<double> quality(std::string_view list, std::string_view name) {
     return of_rest;
 }
 
-bool sends_json(const Request& request) {
+std::string media_type(const Request& request) {
     const std::string_view header = request.header("Content-Type");
-    const std::string type = lower(trim(header.substr(0, header.find(';'))));
+    return lower(trim(header.substr(0, header.find(';'))));
+}
+
+bool sends_json(const Request& request) {
+    const std::string type = media_type(request);
     return type.empty() || type == "application/json" || type == "application/x-www-form-urlencoded" ||
            type.ends_with("+json");
 }

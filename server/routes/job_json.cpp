@@ -16,6 +16,7 @@ std::string links(const JobSummary& job) {
     JsonObject object;
     object.text("self", self);
     if (!has_ended(job.status)) object.text("cancel", self + "/cancel");
+    if (!job.batch.empty()) object.text("batch", "/v1/batches/" + job.batch);
     return std::move(object).str();
 }
 
@@ -27,6 +28,7 @@ JsonObject head_of(const JobSummary& job) {
     object.text("id", job.id);
     job.name.empty() ? object.null("name") : object.text("name", job.name);
     object.text("status", to_string(job.status));
+    if (!job.batch.empty()) object.text("batch", job.batch).number("index", job.index);
     return object;
 }
 

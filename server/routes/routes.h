@@ -5,6 +5,7 @@
 
 #include "server/executor.h"
 #include "server/http/router.h"
+#include "server/jobs/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
 #include "server/metrics.h"
@@ -16,6 +17,18 @@ void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, cons
 
 /// /v1/jobs/{id}/events: progress as server-sent events. `timer` beats their hearts.
 void add_event_routes(http::Router& router, JobService& jobs, Timer& timer);
+
+/// /v1/jobs/{id}/result.csv
+void add_trace_routes(http::Router& router, JobService& jobs);
+
+struct BatchLimits {
+    api::JobLimits job;
+    std::size_t longest_entry = 0;  ///< bytes of one request of a batch
+};
+
+/// /v1/batches and what is below it. Bodies are read and results are written on `lane`.
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Timer& timer, Executor& pool,
+                      Executor& lane, const BatchLimits& limits);
 
 /// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or until `closing`.
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);

@@ -1,0 +1,306 @@
+#include <charconv>
+#include <memory>
+
+#include "api/csv/encoding.h"
+#include "api/json/parse.h"
+#include "server/http/body_source.h"
+#include "server/http/negotiation.h"
+#include "server/http/problems.h"
+#include "server/routes/batch_json.h"
+#include "server/routes/batch_results.h"
+#include "server/routes/job_access.h"
+#include "server/routes/request_checks.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::BodySource;
+using http::BodyStream;
+using http::Call;
+using http::problem_response;
+using http::Reply;
+using http::Response;
+
+constexpr int kLargestPage = 200;
+constexpr std::size_t kLongestKey = 200;
+constexpr std::size_t kLongestName = 200;
+
+Response no_such_batch(const std::string& id) {
+    return problem_response(404, "There is no batch " + id.substr(0, 64) + "; it may have been deleted.");
+}
+
+bool may_see(const http::Request& request, const BatchSummary& batch) {
+    return !request.owner || *request.owner == batch.owner;
+}
+
+/// The batch of the call, as `answer` shows it.
+template <class Answer>
+Response about_batch(Batches& batches, const http::Request& request, const std::string& id, const Answer& answer) {
+    return guarded([&] {
+        const std::optional<BatchSummary> batch = batches.find(id);
+        if (!batch || !may_see(request, *batch)) return no_such_batch(id);
+        return answer(*batch);
+    });
+}
+
+Response batch_response(Batches& batches, const http::Request& request, const std::string& id, int status) {
+    return about_batch(batches, request, id,
+                       [&](const BatchSummary& batch) { return http::json_response(batch_json(batch), status); });
+}
+
+std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
+    Response found = batch_response(batches, call.request, call.path.at("id"), 200);
+    if (found.status == 200) return std::nullopt;
+    return found;
+}
+
+api::Problem bad_parameters(const char* of) {
+    return http::problem(422, std::string("The parameters of the ") + of + " are not valid.");
+}
+
+void refuse_parameter(api::Problem& problem, const std::string& name, const std::string& value,
+                      const std::string& rule) {
+    // What is no UTF-8 is shown as if it were Windows-1252: an answer is always text.
+    std::string name_storage, value_storage;
+    const std::string shown_name(api::utf8_text(name, name_storage));
+    problem.errors.push_back({"/" + api::pointer_segment(shown_name),
+                              shown_name + " is \"" +
+                                  std::string(api::utf8_text(std::string_view(value).substr(0, 64), value_storage)) +
+                                  "\"; " + rule});
+}
+
+template <class Number>
+bool read_whole(const std::string& text, Number least, Number most, Number& target) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target);
+    return error == std::errc{} && end == text.data() + text.size() && target >= least && target <= most;
+}
+
+// ---- POST /v1/batches ------------------------------------------------------------------------------------------
+
+/// The form that the media type names; nothing and no refusal where the body's first bytes shall tell.
+std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
+    const std::string type = http::media_type(request);
+    if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")
+        return std::nullopt;
+    if (type == "application/json" || type.ends_with("+json")) {
+        form = api::BatchForm::json;
+    } else if (type == "application/x-ndjson" || type == "application/ndjson" || type == "application/jsonl" ||
+               type == "application/x-jsonlines") {
+        form = api::BatchForm::ndjson;
+    } else if (type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values") {
+        form = api::BatchForm::csv;
+    } else {
+        return problem_response(415,
+                                "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (a "
+                                "request a line) or text/csv (a loop a line).");
+    }
+    return std::nullopt;
+}
+
+/// Reads head and parameters of the call.
+std::optional<Response> read_order(const http::Request& request, const BatchLimits& limits, BatchOrder& order) {
+    if (auto refusal = refuse_form(request)) return refusal;
+    if (auto refusal = read_form(request, order.question.form)) return refusal;
+    order.idempotency_key = request.header("Idempotency-Key");
+    if (order.idempotency_key.size() > kLongestKey)
+        return problem_response(422, "The Idempotency-Key has " + std::to_string(order.idempotency_key.size()) +
+                                         " characters; at most 200 are accepted.");
+    for (const auto& [name, value] : request.query) {
+        if (!api::is_utf8(name) || !api::is_utf8(value))
+            return problem_response(422, "The parameters of the call are no UTF-8 text.");
+        order.asked.append(name).append("=").append(value).append("\n");
+        if (name == "name")
+            order.question.name = value;
+        else
+            order.question.options.emplace_back(name, value);
+    }
+    if (order.question.name.size() > kLongestName)
+        return problem_response(
+            422, "name has " + std::to_string(order.question.name.size()) + " characters; at most 200 are accepted.");
+    order.owner = request.owner.value_or("");
+    order.flow = request.client;
+    order.question.limits = limits.job;
+    order.question.longest_entry = limits.longest_entry;
+    return std::nullopt;
+}
+
+Response receipt_response(Batches& batches, const http::Request& request, const BatchReceipt& receipt) {
+    switch (receipt.kind) {
+        case BatchReceipt::Kind::created:
+        case BatchReceipt::Kind::existing: {
+            Response response = batch_response(batches, request, receipt.id, 202);
+            if (response.status == 202) response.set("Location", "/v1/batches/" + receipt.id);
+            return response;
+        }
+        case BatchReceipt::Kind::conflict:
+            return problem_response(409, "This Idempotency-Key was used before with another batch. Use a new key.");
+        case BatchReceipt::Kind::refused: return http::problem_response(receipt.problem);
+        case BatchReceipt::Kind::queue_full:
+            return problem_response(429, "The queue of batches' jobs is full. Try again when some have ended.");
+        case BatchReceipt::Kind::draining:
+            return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
+        case BatchReceipt::Kind::cancelled:
+            return problem_response(409, "The batch was cancelled while it was being received; nothing of it is kept.");
+        case BatchReceipt::Kind::abandoned: return problem_response(400, "The body did not come to its end.");
+        case BatchReceipt::Kind::store_failed: break;
+    }
+    return store_failed(receipt.fault);
+}
+
+/// Hands the body's pieces over, each when the one before has been worked on.
+void pass_on(const std::shared_ptr<BodySource>& source, const std::shared_ptr<BatchReceiver>& receiver) {
+    source->read([source, receiver](BodySource::Piece piece) {
+        switch (piece.state) {
+            case BodySource::State::more:
+                return receiver->feed(std::move(piece.bytes), [source, receiver] { pass_on(source, receiver); });
+            case BodySource::State::end: return receiver->finish();
+            case BodySource::State::refused:
+            case BodySource::State::gone: return receiver->abandon();
+        }
+    });
+}
+
+void post_batch(Batches& batches, Executor& pool, const BatchLimits& limits, const Call& call, const Reply& reply) {
+    BatchOrder order;
+    if (auto refusal = read_order(call.request, limits, order)) return reply(*std::move(refusal));
+    const auto done = [&batches, &pool, reply, owner = call.request.owner](BatchReceipt receipt) {
+        pool.post([&batches, reply, owner, receipt = std::move(receipt)] {
+            http::Request asker;
+            asker.owner = owner;
+            reply(receipt_response(batches, asker, receipt));
+        });
+    };
+    pass_on(call.request.source, batches.receive(std::move(order), done));
+}
+
+// ---- everything else -------------------------------------------------------------------------------------------
+
+Response get_batch(Batches& batches, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    Response response = batch_response(batches, call.request, call.path.at("id"), 200);
+    if (response.status == 200) http::apply_entity_tag(call.request, response, http::entity_tag(response.body));
+    return response.set("Cache-Control", "no-cache");
+}
+
+Response list_batches(Batches& batches, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    api::Problem problem = bad_parameters("list");
+    int limit = 50;
+    std::optional<std::int64_t> before;
+    for (const auto& [name, value] : call.request.query) {
+        if (name == "limit") {
+            if (!read_whole(value, 1, kLargestPage, limit))
+                refuse_parameter(problem, name, value, "it must be a whole number from 1 to 200.");
+        } else if (name == "cursor") {
+            if (!read_whole<std::int64_t>(value, 1, INT64_MAX, before.emplace()))
+                refuse_parameter(problem, name, value, "it must come from the next link of an earlier page.");
+        } else {
+            refuse_parameter(problem, name, value, "the list knows only limit and cursor.");
+        }
+    }
+    if (!problem.errors.empty()) return http::problem_response(problem);
+    return guarded(
+        [&] { return http::json_response(batch_page_json(batches.list(call.request.owner, limit, before), limit)); });
+}
+
+/// What the call asks of the results; a refusal where that is not possible.
+std::optional<Response> read_results_question(const http::Request& request, ResultsQuestion& question) {
+    api::Problem problem = bad_parameters("results");
+    std::string format;
+    for (const auto& [name, value] : request.query) {
+        if (name == "format") {
+            format = value;
+            if (format != "ndjson" && format != "csv")
+                refuse_parameter(problem, name, value, "it must be ndjson or csv.");
+        } else if (name == "follow") {
+            question.follow = value == "true";
+            if (value != "true" && value != "false")
+                refuse_parameter(problem, name, value, "it must be true or false.");
+        } else if (name == "from") {
+            if (!read_whole<std::int64_t>(value, 0, INT64_MAX, question.from))
+                refuse_parameter(problem, name, value, "it must be the index of a request, a whole number >= 0.");
+        } else {
+            refuse_parameter(problem, name, value, "the results know only format, follow and from.");
+        }
+    }
+    if (!problem.errors.empty()) return http::problem_response(problem);
+    const bool ndjson = http::accepts(request, "application/x-ndjson"), csv = http::accepts(request, "text/csv");
+    question.csv = format.empty() ? !ndjson : format == "csv";
+    if (format.empty() && !ndjson && !csv)
+        return problem_response(406,
+                                "The results are application/x-ndjson or text/csv, neither of which the Accept field "
+                                "allows.");
+    return std::nullopt;
+}
+
+Response get_results(Batches& batches, JobService& jobs, Timer& timer, Executor& lane, const Call& call) {
+    ResultsQuestion question;
+    question.batch = call.path.at("id");
+    if (auto refusal = read_results_question(call.request, question)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
+    Response response;
+    if (question.csv) {
+        response.set("Content-Type", "text/csv; charset=utf-8; header=present");
+        response.set("Content-Disposition", "attachment; filename=\"batch-" + question.batch + ".csv\"");
+    } else {
+        response.set("Content-Type", "application/x-ndjson");
+    }
+    if (call.request.method == "HEAD") return response;
+    response.stream = std::make_shared<BodyStream>();
+    send_results(std::move(question), response.stream, batches, jobs, timer, lane);
+    return response;
+}
+
+void cancel_batch(Batches& batches, Executor& pool, const Call& call, const Reply& reply) {
+    if (auto refusal = refuse_form(call.request)) return reply(*std::move(refusal));
+    if (auto refusal = refuse_stranger(batches, call)) return reply(*std::move(refusal));
+    const std::string& id = call.path.at("id");
+    batches.cancel(id, [&batches, &pool, id, owner = call.request.owner, reply](const Outcome<bool>& outcome) {
+        pool.post([&batches, id, owner, reply, outcome] {
+            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
+            http::Request asker;
+            asker.owner = owner;
+            reply(batch_response(batches, asker, id, 202));
+        });
+    });
+}
+
+void delete_batch(Batches& batches, const Call& call, const Reply& reply) {
+    if (auto refusal = refuse_form(call.request)) return reply(*std::move(refusal));
+    if (auto refusal = refuse_stranger(batches, call)) return reply(*std::move(refusal));
+    const std::string& id = call.path.at("id");
+    batches.remove(id, [id, reply](const Outcome<RemoveEffect>& outcome) {
+        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
+        Response response;
+        response.status = 204;
+        switch (std::get<RemoveEffect>(outcome)) {
+            case RemoveEffect::not_ended:
+                return reply(problem_response(
+                    409, "The batch has not ended. Cancel it first: POST /v1/batches/" + id + "/cancel."));
+            case RemoveEffect::none:
+            case RemoveEffect::in_batch: return reply(no_such_batch(id));
+            case RemoveEffect::removed: break;
+        }
+        reply(std::move(response));
+    });
+}
+
+}  // namespace
+
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Timer& timer, Executor& pool,
+                      Executor& lane, const BatchLimits& limits) {
+    router.streamed("POST", "/v1/batches", [&batches, &pool, limits](const Call& call, const Reply& reply) {
+        post_batch(batches, pool, limits, call, reply);
+    });
+    router.pooled("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, call); });
+    router.pooled("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
+    router.deferred("DELETE", "/v1/batches/{id}",
+                    [&](const Call& call, const Reply& reply) { delete_batch(batches, call, reply); });
+    router.pooled("GET", "/v1/batches/{id}/results",
+                  [&](const Call& call) { return get_results(batches, jobs, timer, lane, call); });
+    router.deferred("POST", "/v1/batches/{id}/cancel",
+                    [&](const Call& call, const Reply& reply) { cancel_batch(batches, pool, call, reply); });
+}
+
+}  // namespace tunewright::server

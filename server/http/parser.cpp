@@ -19,6 +19,12 @@ public:
     bool is_readable() const override { return !rest_.empty(); }
     bool is_writable() const override { return true; }
     ssize_t read(char* to, size_t size) override {
+        // The library reads byte by byte.
+        if (size == 1 && !rest_.empty()) {
+            *to = rest_.front();
+            rest_.remove_prefix(1);
+            return 1;
+        }
         const size_t n = std::min(size, rest_.size());
         std::memcpy(to, rest_.data(), n);
         rest_.remove_prefix(n);
@@ -104,12 +110,13 @@ public:
         MemoryStream stream(head);
         std::optional<Request> parsed;
         bool closed = false;
-        process_request(stream, false, closed, [&](httplib::Request& raw) {
+        // "Close" makes the least of the answer that the library insists on writing, and that is dropped.
+        process_request(stream, true, closed, [&](httplib::Request& raw) {
             parsed.emplace();
             parsed->method = std::move(raw.method);
             parsed->target = std::move(raw.target);
             for (auto& [name, value] : raw.params) parsed->query.emplace(name, std::move(value));
-            for (auto& [name, value] : raw.headers) parsed->headers.emplace(name, std::move(value));
+            while (!raw.headers.empty()) parsed->headers.insert(raw.headers.extract(raw.headers.begin()));
             parsed->segments = split_path(parsed->path());
         });
         return parsed;

@@ -43,12 +43,12 @@ class Cluster:
     """A server that listens on 127.0.0.1 alone and asks for a password. PostgreSQL refuses to run as root: then it
     runs as the user that Debian's package made."""
 
-    def __init__(self, **settings):
+    def __init__(self, where=None, **settings):
         self.bin = programs()
         self.settings = settings
         self.password = secrets.token_hex(8)
         self.identity = {}
-        self.folder = tempfile.mkdtemp(prefix="tunewright-postgres-")
+        self.folder = tempfile.mkdtemp(prefix="tunewright-postgres-", dir=where)
         if os.getuid() == 0:
             user = pwd.getpwnam("postgres")
             self.identity = {"user": user.pw_uid, "group": user.pw_gid, "extra_groups": []}

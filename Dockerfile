@@ -34,7 +34,8 @@ COPY --from=page /src/build/web /opt/tunewright/web
 USER 10001
 VOLUME /var/lib/tunewright
 EXPOSE 8080
-ENV TUNEWRIGHT_LISTEN=0.0.0.0:8080 TUNEWRIGHT_STORE=sqlite:/var/lib/tunewright/jobs.db
+# The network in here is the container's own: who reaches it is decided by what is published. TUNEWRIGHT_AUTH=keys asks for more.
+ENV TUNEWRIGHT_LISTEN=0.0.0.0:8080 TUNEWRIGHT_ALLOW_ANONYMOUS=true TUNEWRIGHT_STORE=sqlite:/var/lib/tunewright/jobs.db
 HEALTHCHECK --interval=10s --timeout=3s --start-period=5s CMD ["/opt/tunewright/bin/tunewright", "health"]
 ENTRYPOINT ["/opt/tunewright/bin/tunewright"]
 CMD ["serve"]

@@ -155,7 +155,7 @@ def prepared(service):
     """Ids of jobs in several states, and of a batch."""
     done = service.post_job(QUICK, wait=30)["id"]
     failed = service.post_job({"record": {"t": [0, 1, 2], "u": [1, 1, 1], "y": [2, 2, 2]}}, wait=30)["id"]
-    cancelled = service.post_job(LONG)["id"]
+    cancelled = service.post_job({**LONG, "timeout_s": 1})["id"]
     service.post("/v1/jobs/%s/cancel" % cancelled, "")
     return {"jobs": [done, failed, cancelled, "0123456789abcdefghjkmnpqrs"],
             "batches": [new_batch(service), new_batch(service), "0123456789abcdefghjkmnpqrs"]}

@@ -1,5 +1,6 @@
 """HTTP itself: methods, media types, sizes, and clients that mean harm or are merely slow."""
 
+import gzip
 import http.client
 import json
 import re
@@ -131,6 +132,29 @@ class HttpTest(unittest.TestCase):
         received = self.service.raw(one % b"healthz" + one % b"nothing" +
                                     b"GET /readyz HTTP/1.1\r\nConnection: close\r\n" + HOST + b"\r\n")
         self.assertEqual(statuses(received), [200, 404, 200])
+
+    def test_answers_are_compressed_for_those_who_take_it(self):
+        job = "/v1/jobs/" + self.service.post_job({**QUICK, "evaluate": {}}, wait=30)["id"]
+        for path in ("/openapi.json", "/v1/methods", job):
+            with self.subTest(path):
+                plain = self.service.get(path)
+                packed = self.service.get(path, {"Accept-Encoding": "br, gzip;q=0.8"})
+                self.assertEqual(packed.headers["Content-Encoding"], "gzip")
+                self.assertEqual(gzip.decompress(packed.body), plain.body)
+                self.assertLess(len(packed.body), len(plain.body) / 2)
+                self.assertIsNone(plain.headers["Content-Encoding"])
+                for answer in (plain, packed):
+                    self.assertIn("Accept-Encoding", answer.headers.get_all("Vary"))
+                    self.assertNotEqual(answer.headers["ETag"], None)
+                self.assertEqual(packed.headers["ETag"], "W/" + plain.headers["ETag"])
+                for tag in (plain.headers["ETag"], packed.headers["ETag"]):
+                    for encoding in ("identity", "gzip"):
+                        again = self.service.get(path, {"If-None-Match": tag, "Accept-Encoding": encoding})
+                        self.assertEqual((again.status, again.body), (304, b""))
+                head = self.service.call("HEAD", path, headers={"Accept-Encoding": "gzip"})
+                self.assertEqual(head.headers["Content-Length"], packed.headers["Content-Length"])
+                refused = self.service.get(path, {"Accept-Encoding": "gzip;q=0"})
+                self.assertIsNone(refused.headers["Content-Encoding"])
 
     def test_a_client_that_waits_for_100_gets_it(self):
         body = json.dumps(QUICK).encode()

@@ -120,6 +120,10 @@ void Outgoing::end_stream() {
     std::exchange(stream_, nullptr)->close(true);
 }
 
+std::size_t Outgoing::pending() const {
+    return stream_ ? stream_->waiting() : head_.size() + body_.size() - std::min(sent_, head_.size() + body_.size());
+}
+
 void Outgoing::abandon() {
     if (stream_) std::exchange(stream_, nullptr)->close(true);
 }

@@ -46,6 +46,9 @@ public:
     /// The same for an answer that never became one under way.
     static void abandon(const std::shared_ptr<BodyStream>& stream, bool tell);
 
+    /// Bytes that are held for this client: of the answer, and of its stream.
+    std::size_t pending() const;
+
     /// Bytes of this answer that the socket has taken.
     std::size_t progress() const { return progress_; }
 

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <stdexcept>
@@ -235,7 +236,32 @@ void Server::sweep() {
         else
             drop(id);
     }
+    shed_unsent();
     if (listener_open_ && !accepting_ && connections_.size() < limits_.connections) resume_accepting();
+}
+
+void Server::shed_unsent() {
+    struct Writing {
+        SteadyTime since;
+        Id id;
+        std::size_t pending;
+    };
+    std::vector<Writing> all;
+    std::size_t unsent = 0;
+    for (const auto& [id, connection] : connections_) {
+        if (connection->state != Connection::State::writing) continue;
+        all.push_back({connection->since, id, connection->out.pending()});
+        unsent += all.back().pending;
+    }
+    if (unsent <= limits_.unsent) return;
+    std::ranges::sort(all, {}, &Writing::since);
+    for (const Writing& one : all) {
+        if (unsent <= limits_.unsent) return;
+        // An open stream on which nothing waits is old, but costs nothing.
+        if (one.pending == 0) continue;
+        unsent -= one.pending;
+        drop(one.id);
+    }
 }
 
 }  // namespace tunewright::server::http

@@ -23,6 +23,7 @@ struct Limits {
     std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
     std::size_t buffered = 128 * 1024 * 1024;        ///< bytes of unfinished requests of all clients together
+    std::size_t unsent = 256 * 1024 * 1024;          ///< bytes of answers that clients do not take; the oldest go first
     std::size_t connections = 4000;                  ///< beyond it the longest idle one is closed
     std::chrono::milliseconds idle{60'000};          ///< between two requests
     std::chrono::milliseconds head{10'000};          ///< from the first byte of a request to the end of its head
@@ -70,6 +71,7 @@ private:
     void on_event(Id id, std::uint32_t events);
     void collect();
     void sweep();
+    void shed_unsent();
     void begin_stop();
     void finish();
     bool busy() const;

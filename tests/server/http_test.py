@@ -156,6 +156,25 @@ class HttpTest(unittest.TestCase):
                 refused = self.service.get(path, {"Accept-Encoding": "gzip;q=0"})
                 self.assertIsNone(refused.headers["Content-Encoding"])
 
+    def test_a_batch_may_come_in_chunks_and_its_results_go_out_compressed(self):
+        lines = b"".join(json.dumps({"name": "r%d" % i, **QUICK}).encode() + b"\n" for i in range(50))
+        connection = http.client.HTTPConnection("127.0.0.1", self.service.port, timeout=60)
+        self.addCleanup(connection.close)
+        connection.request("POST", "/v1/batches", (lines[k:k + 777] for k in range(0, len(lines), 777)),
+                           {"Content-Type": "application/x-ndjson", "Transfer-Encoding": "chunked"},
+                           encode_chunked=True)
+        answer = connection.getresponse()
+        batch = json.loads(answer.read())
+        self.assertEqual((answer.status, batch["total"]), (202, 50))
+        # On the same connection: nothing of the body is left in it.
+        results = answer.headers["Location"] + "/results"
+        connection.request("GET", results + "?follow=true", headers={"Accept-Encoding": "gzip"})
+        answer = connection.getresponse()
+        self.assertEqual(answer.headers["Content-Encoding"], "gzip")
+        rows = gzip.decompress(answer.read())
+        self.assertEqual([json.loads(row)["name"] for row in rows.splitlines()], ["r%d" % i for i in range(50)])
+        self.assertEqual(self.service.get(results).body, rows)
+
     def test_a_client_that_waits_for_100_gets_it(self):
         body = json.dumps(QUICK).encode()
         connection = socket.create_connection(("127.0.0.1", self.service.port), timeout=20)

@@ -1,6 +1,6 @@
 // Brings jobs from the store to the workers of this process. One claim is under way at a time, for as many jobs as
-// workers are idle; only where many wait and the latest were short a few more are claimed ahead, so that no worker waits
-// for the store between them, and nobody hoards heavy ones.
+// workers are idle; only where many wait and the latest were short a few more are claimed ahead, so that no worker
+// waits for the store between them, and nobody hoards heavy ones.
 //
 // Arrivals are counted: a worker that finds nothing sleeps only if nothing has arrived since the store was asked. In a
 // store that others use too the count is raised every second as well: hints may be lost, the tables are the truth.

@@ -1,10 +1,11 @@
 #include "server/jobs/followers.h"
 
+#include <algorithm>
+
 namespace tunewright::server {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{100};
-constexpr std::chrono::milliseconds kPoll{500};
 constexpr std::chrono::hours kNothing{1};
 
 std::shared_ptr<const JobView> view_of(const JobState& state) {
@@ -23,8 +24,8 @@ std::shared_ptr<const JobView> view_of(const HeldJob& held) {
 
 }  // namespace
 
-Followers::Followers(JobStore& store, const HeldJobs& held, Outage& outage)
-    : store_(store), held_(held), outage_(outage) {
+Followers::Followers(JobStore& store, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll)
+    : store_(store), held_(held), outage_(outage), poll_(poll) {
     pulse_ = std::make_unique<Pulse>([this] { return beat(); });
 }
 
@@ -104,13 +105,13 @@ std::chrono::milliseconds Followers::beat() {
     }
     for (const Message& message : messages) message.told(message.news);
     const std::lock_guard lock(mutex_);
-    return followed_.empty() ? std::chrono::milliseconds(kNothing) : kLook;
+    return followed_.empty() ? std::chrono::milliseconds(kNothing) : std::min(kLook, poll_);
 }
 
 void Followers::look_here(std::vector<Message>& messages, std::vector<std::string>& elsewhere) {
     const auto now = Clock::now();
     const bool poll = now >= next_poll_;
-    if (poll) next_poll_ = now + kPoll;
+    if (poll) next_poll_ = now + poll_;
     const std::lock_guard lock(mutex_);
     for (auto& [id, followed] : followed_) {
         const std::shared_ptr<HeldJob> held = held_.find(id);

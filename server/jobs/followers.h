@@ -1,5 +1,6 @@
 // Who follows a job is told how it stands and then of each change until its end, wherever it runs. One thread serves
-// everybody: it looks at what runs here ten times a second, and asks the store for all others at once. Knows no HTTP.
+// everybody: it looks at what runs here ten times a second, and asks the store for all others at
+// once, every `poll` and when it is told of a change. Knows no HTTP.
 #pragma once
 
 #include <chrono>
@@ -38,7 +39,7 @@ public:
     using Told = std::function<void(const JobNews&)>;
 
     /// All must outlive the followers.
-    Followers(JobStore& store, const HeldJobs& held, Outage& outage);
+    Followers(JobStore& store, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll);
 
     /// `told` hears how the job stands at once, then of changes, at most about ten a second.
     Key follow(const std::string& id, Told told);
@@ -82,6 +83,7 @@ private:
     JobStore& store_;
     const HeldJobs& held_;
     Outage& outage_;
+    std::chrono::milliseconds poll_;
     mutable std::mutex mutex_;
     std::map<std::string, Followed> followed_;
     std::map<Key, std::string> ids_;

@@ -1,14 +1,14 @@
 #include "server/jobs/leases.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "api/service.h"
 
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kShared{500};  // others learn of progress, and cancel, that quickly
-constexpr std::chrono::milliseconds kYoung{250};   // most jobs have ended by then and need no renewal
+constexpr std::chrono::milliseconds kYoung{250};  // most jobs have ended by then and need no renewal
 
 }  // namespace
 
@@ -17,12 +17,13 @@ Leases::Leases(JobStore& store, HeldJobs& held, Outage& outage, LeaseSettings se
 
 std::chrono::milliseconds Leases::interval() const {
     const auto third = std::max(settings_.lease / 3, std::chrono::milliseconds(1));
-    return store_.shared() ? std::min(kShared, third) : third;
+    return store_.shared() ? std::min(settings_.poll, third) : third;
 }
 
-void Leases::renew() {
+void Leases::renew() { renew(HeldJob::Clock::now() - std::min(kYoung, settings_.lease / 6)); }
+
+void Leases::renew(HeldJob::Clock::time_point young) {
     if (renewing_.exchange(true)) return;
-    const auto young = HeldJob::Clock::now() - std::min(kYoung, settings_.lease / 6);
     std::vector<Renewal> renewals;
     std::vector<std::shared_ptr<HeldJob>> asked;
     std::map<std::string, std::pair<int, unsigned>> told;
@@ -67,7 +68,17 @@ void Leases::renewed(const std::vector<std::shared_ptr<HeldJob>>& asked, const s
     }
 }
 
+bool Leases::clock_jumped() {
+    const UnixMs wall = settings_.now();
+    const auto steady = HeldJob::Clock::now();
+    const std::chrono::milliseconds by_wall(wall - std::exchange(last_wall_, wall));
+    const auto by_steady = steady - std::exchange(last_steady_, steady);
+    return by_wall - by_steady > settings_.lease / 4;
+}
+
 void Leases::reclaim() {
+    // The machine slept, or its clock was set: leases of the living would seem to be over.
+    if (clock_jumped()) return renew(HeldJob::Clock::now());
     if (reclaiming_.exchange(true)) return;
     store_.reclaim(settings_.now(), settings_.most_attempts, settings_.given_up, [this](const auto& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {

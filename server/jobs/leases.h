@@ -17,6 +17,7 @@ namespace tunewright::server {
 
 struct LeaseSettings {
     std::chrono::milliseconds lease{10'000};
+    std::chrono::milliseconds poll{500};  ///< others learn of progress, and this process of cancels, that quickly
     int most_attempts = 10;
     std::string given_up;  ///< problem of a job that was interrupted that often
     std::function<UnixMs()> now;
@@ -33,9 +34,13 @@ public:
     std::chrono::milliseconds interval() const;
     /// Renews what is due; the latest progress goes along. Nothing while an earlier renewal is under way.
     void renew();
+    /// Not where the wall clock has jumped since the last call: then leases are renewed first.
     void reclaim();
 
 private:
+    bool clock_jumped();
+    void renew(HeldJob::Clock::time_point young);
+
     void renewed(const std::vector<std::shared_ptr<HeldJob>>& asked, const std::vector<Renewed>& answers);
 
     JobStore& store_;
@@ -44,6 +49,8 @@ private:
     LeaseSettings settings_;
     std::atomic<bool> renewing_ = false;
     std::atomic<bool> reclaiming_ = false;
+    UnixMs last_wall_ = 0;  ///< these and told_ of the caller's thread alone
+    HeldJob::Clock::time_point last_steady_{};
     std::atomic<bool> resend_ = false;
     std::map<std::string, std::pair<int, unsigned>> told_;  ///< attempt and revision of the progress last sent
 };

@@ -2,7 +2,9 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "server/jobs/problems.h"
@@ -37,11 +39,12 @@ JobService::JobService(JobStore& store, Timer& timer, JobSettings settings)
       settings_(named(std::move(settings))),
       depth_(settings_.queue_limit, settings_.entry_limit),
       waits_(timer),
-      followers_(store, held_, outage_),
+      followers_(store, held_, outage_, settings_.poll),
       claims_(store, held_, outage_, claim_settings()),
       ends_(store, outage_, end_listener()),
       leases_(store, held_, outage_, lease_settings()),
-      workers_(claims_, ends_, timer, worker_settings()) {}
+      workers_(claims_, ends_, timer, worker_settings()),
+      sweeper_(store, settings_.retention, settings_.now) {}
 
 JobService::~JobService() { drain(std::chrono::seconds(0)); }
 
@@ -100,6 +103,13 @@ void JobService::submit(Order order, std::function<void(Submission)> done, std::
         claims_.arrived();
     };
     store_.accept(std::move(job), accepted);
+}
+
+int JobService::seconds_until_room() const {
+    // A hundredth of the queue: who is told to come back finds room for more than one.
+    const double jobs = std::max(1.0, 0.01 * static_cast<double>(settings_.queue_limit));
+    const double at_once = std::max(1.0, static_cast<double>(settings_.workers));
+    return static_cast<int>(std::clamp(std::ceil(jobs * claims_.pace() / at_once), 1.0, 60.0));
 }
 
 std::optional<JobView> JobService::find(const std::string& id) {
@@ -176,7 +186,8 @@ Ends::Listener JobService::end_listener() {
     made.done = [this](const Ended& end, bool kept) { ended(end, kept); };
     made.released = [this](const std::shared_ptr<HeldJob>& held) {
         held_.forget(held);
-        followers_.changed(held->job.id);
+        // It waits again, or has been cancelled where somebody asked for that meanwhile.
+        look_again();
         claims_.arrived();
     };
     made.unsaved = [this](std::size_t bytes) { claims_.unsaved(bytes); };
@@ -186,6 +197,7 @@ Ends::Listener JobService::end_listener() {
 LeaseSettings JobService::lease_settings() {
     LeaseSettings made;
     made.lease = settings_.lease;
+    made.poll = settings_.poll;
     made.most_attempts = settings_.most_attempts;
     made.given_up = given_up_problem(settings_.most_attempts);
     made.now = settings_.now;

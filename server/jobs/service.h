@@ -20,6 +20,7 @@
 #include "server/jobs/leases.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
+#include "server/jobs/sweeper.h"
 #include "server/jobs/timer.h"
 #include "server/jobs/waits.h"
 #include "server/jobs/workers.h"
@@ -40,6 +41,8 @@ struct JobSettings {
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
     int most_attempts = 10;               ///< a job that was interrupted that often is given up
     std::chrono::milliseconds lease{10'000};
+    /// How often the store is looked at for what other processes have done, notices or none.
+    std::chrono::milliseconds poll{500};
     std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: kept for ever
     std::string version;
     /// Computes a job: api::run_job, or a test's own.
@@ -112,6 +115,9 @@ public:
     /// Whoever waits is told. True where every worker has stopped within two seconds more.
     bool drain(std::chrono::duration<double> grace);
 
+    /// Seconds after which a full queue has room again, from the pace of the latest jobs: 1 to 60.
+    int seconds_until_room() const;
+
     bool draining() const { return draining_; }
     /// Jobs accepted and not yet running, those being accepted included.
     std::size_t queued() const { return depth_.now().single + depth_.now().entries; }
@@ -148,10 +154,12 @@ private:
     Leases leases_;
     Workers workers_;
     std::atomic<bool> look_again_ = false;
+    Sweeper sweeper_;
+    HeldJob::Clock::time_point next_renewal_{};  ///< this and the next of the tending thread
     HeldJob::Clock::time_point next_upkeep_{};
-    HeldJob::Clock::time_point next_depth_{};
-    std::unique_ptr<Pulse> tending_;  ///< renews, reclaims, retries: queues writes, so it is never held up
-    std::unique_ptr<Pulse> looking_;  ///< reads the store, which may take long
+    HeldJob::Clock::time_point next_depth_{};  ///< of the looking thread
+    std::unique_ptr<Pulse> tending_;           ///< renews, reclaims, retries: queues writes, so it is never held up
+    std::unique_ptr<Pulse> looking_;           ///< reads the store, which may take long
 };
 
 /// 128 random bits from the system, as 26 letters and digits.

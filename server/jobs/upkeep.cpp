@@ -7,8 +7,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::seconds kUpkeep{1};
-constexpr std::chrono::milliseconds kLook{500};
+constexpr int kPollsPerUpkeep = 2;
+constexpr std::chrono::milliseconds kShortest{1};
 constexpr std::chrono::milliseconds kUnbegun{250};  // then others may have what no worker here has begun
 
 }  // namespace
@@ -24,29 +24,33 @@ void JobService::hear(const StoreNotice& notice) {
 
 std::chrono::milliseconds JobService::tend() {
     const auto now = HeldJob::Clock::now();
-    leases_.renew();
-    if (store_.shared())
-        for (const auto& held : claims_.withdraw(now - kUnbegun)) ends_.release(held);
+    if (now >= next_renewal_) {
+        next_renewal_ = now + leases_.interval();
+        leases_.renew();
+        if (store_.shared())
+            for (const auto& held : claims_.withdraw(now - kUnbegun)) ends_.release(held);
+    }
     if (now >= next_upkeep_) {
-        next_upkeep_ = now + kUpkeep;
+        next_upkeep_ = now + kPollsPerUpkeep * settings_.poll;
         leases_.reclaim();
         ends_.retry();
         claims_.retry();
         if (store_.shared()) claims_.arrived();
     }
-    return std::min<std::chrono::milliseconds>(leases_.interval(), kUpkeep);
+    const auto next = std::min(next_renewal_, next_upkeep_) - HeldJob::Clock::now();
+    return std::clamp(std::chrono::ceil<std::chrono::milliseconds>(next), kShortest, sweeper_.sweep());
 }
 
 std::chrono::milliseconds JobService::look() {
     const auto now = HeldJob::Clock::now();
     try {
         if (now >= next_depth_) {
-            next_depth_ = now + kUpkeep;
+            next_depth_ = now + kPollsPerUpkeep * settings_.poll;
             depth_.refresh(store_);
         }
         std::vector<std::string> ids;
         if (look_again_.exchange(false) || store_.shared()) ids = waits_.ids();
-        if (ids.empty()) return kLook;
+        if (ids.empty()) return settings_.poll;
         std::set<std::string> going;
         for (const JobState& state : store_.states(ids))
             if (!has_ended(state.status)) going.insert(state.id);
@@ -56,7 +60,7 @@ std::chrono::milliseconds JobService::look() {
         outage_.failed("it cannot be read", {error.kind, error.what()});
         look_again_ = true;
     }
-    return kLook;
+    return settings_.poll;
 }
 
 }  // namespace tunewright::server

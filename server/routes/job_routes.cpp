@@ -28,7 +28,7 @@ Response job_response(JobService& jobs, const http::Request& request, const std:
     });
 }
 
-Response submitted(const Submission& submission) {
+Response submitted(const JobService& jobs, const Submission& submission) {
     switch (submission.kind) {
         case Submission::Kind::created: {
             Response response = http::json_response(job_json({submission.job, std::nullopt}), 202);
@@ -36,8 +36,14 @@ Response submitted(const Submission& submission) {
         }
         case Submission::Kind::conflict:
             return problem_response(409, "This Idempotency-Key was used before with another request. Use a new key.");
-        case Submission::Kind::queue_full:
-            return problem_response(429, "The queue of jobs is full. Try again after a moment.");
+        case Submission::Kind::queue_full: {
+            const std::string seconds = std::to_string(jobs.seconds_until_room());
+            Response response =
+                problem_response(429, "The queue of jobs is full. Try again in " + seconds + " s (Retry-After).");
+            for (auto& [name, value] : response.headers)
+                if (name == "Retry-After") value = seconds;
+            return response;
+        }
         case Submission::Kind::draining:
             return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
         case Submission::Kind::existing:
@@ -92,7 +98,7 @@ void post_job(JobService& jobs, Executor& pool, const api::JobLimits& limits, co
         *id = submission.job.id;
         if (submission.kind == Submission::Kind::created && wait.count() > 0) return;
         pool.post([&jobs, reply, id, wait, ended, submission = std::move(submission)] {
-            if (submission.kind != Submission::Kind::existing) return reply(submitted(submission));
+            if (submission.kind != Submission::Kind::existing) return reply(submitted(jobs, submission));
             if (wait.count() > 0) return wait_for(jobs, *id, wait, reply, ended);
             reply(waited(jobs, *id, std::nullopt));
         });
@@ -100,10 +106,35 @@ void post_job(JobService& jobs, Executor& pool, const api::JobLimits& limits, co
     jobs.submit(std::move(order), done, ended);
 }
 
+/// Of a job that has ended nothing changes any more, so that its tag needs no look at its result.
+std::string entity_tag_of(const JobSummary& job, const std::string& body) {
+    if (!has_ended(job.status)) return http::entity_tag(body);
+    std::string tag = "\"" + job.id + "-" + std::to_string(job.attempts) + "-";
+    return tag.append(std::to_string(job.finished_at.value_or(0))).append("-" TUNEWRIGHT_VERSION "\"");
+}
+
+/// 304 for who has an ended job already, without reading its request and result.
+std::optional<Response> unchanged(JobService& jobs, const Call& call) {
+    if (!call.request.has_header("If-None-Match")) return std::nullopt;
+    const std::optional<JobState> state = jobs.state(call.path.at("id"));
+    if (!state || !has_ended(state->status) || !may_see(call.request, *state)) return std::nullopt;
+    Response response;
+    http::apply_entity_tag(call.request, response, entity_tag_of(*state, ""));
+    if (response.status != 304) return std::nullopt;
+    return response;
+}
+
 Response get_job(JobService& jobs, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
-    Response response = job_response(jobs, call.request, call.path.at("id"), 200);
-    if (response.status == 200) http::apply_entity_tag(call.request, response, http::entity_tag(response.body));
+    const std::string& id = call.path.at("id");
+    Response response = guarded([&] {
+        if (auto same = unchanged(jobs, call)) return *std::move(same);
+        const std::optional<JobView> view = jobs.find(id);
+        if (!view || !may_see(call.request, view->job)) return no_such_job(id);
+        Response found = http::json_response(job_json(*view));
+        http::apply_entity_tag(call.request, found, entity_tag_of(view->job, found.body));
+        return found;
+    });
     // It may be kept if it is asked for again each time.
     return response.set("Cache-Control", "no-cache");
 }

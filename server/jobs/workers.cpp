@@ -47,7 +47,8 @@ void Workers::run(const std::shared_ptr<HeldJob>& held) {
     api::JobOutcome outcome = compute(held);
     timer_.cancel(deadline);
     const double seconds = (monotonic_ms() - started) / 1e3;
-    claims_.took(seconds);
+    // One that was stopped says nothing of how long jobs take.
+    if (outcome.status != Status::cancelled) claims_.took(seconds);
     end(held, std::move(outcome), seconds);
 }
 

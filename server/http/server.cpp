@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -135,23 +136,39 @@ void Server::resume_accepting() {
     accepting_ = true;
 }
 
+/// Closes the longest idle connection, or else ends the oldest event stream: its client comes back by itself.
 bool Server::make_room() {
-    if (connections_.size() < limits_.connections) return true;
     Id oldest = 0;
+    bool oldest_idle = false;
     SteadyTime since = SteadyTime::max();
     for (const auto& [id, connection] : connections_) {
-        if (connection->idle() && connection->since < since) {
-            oldest = id;
-            since = connection->since;
-        }
+        const bool idle = connection->idle();
+        const bool events = connection->state == Connection::State::writing && connection->out.endless();
+        if ((!idle && !events) || (oldest_idle && !idle)) continue;
+        if (idle == oldest_idle && connection->since >= since) continue;
+        oldest = id;
+        oldest_idle = idle;
+        since = connection->since;
     }
-    if (oldest != 0) drop(oldest);
-    return oldest != 0;
+    if (oldest == 0) return false;
+    Connection& connection = *connections_.at(oldest);
+    connection.out.end_stream();
+    if (!oldest_idle) connection.send();
+    drop(oldest);
+    return true;
+}
+
+bool Server::somebody_knocks() const {
+    pollfd knock{listener_, POLLIN, 0};
+    return ::poll(&knock, 1, 0) > 0;
 }
 
 void Server::accept_all() {
     for (;;) {
-        if (!make_room()) return pause_accepting();
+        if (connections_.size() >= limits_.connections) {
+            if (!somebody_knocks()) return;
+            if (!make_room()) return pause_accepting();
+        }
         sockaddr_storage address{};
         socklen_t size = sizeof address;
         const int fd = ::accept4(listener_, reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -237,7 +254,7 @@ void Server::sweep() {
             drop(id);
     }
     shed_unsent();
-    if (listener_open_ && !accepting_ && connections_.size() < limits_.connections) resume_accepting();
+    if (listener_open_ && !accepting_) resume_accepting();
 }
 
 void Server::shed_unsent() {

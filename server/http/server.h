@@ -24,9 +24,9 @@ struct Limits {
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
     std::size_t buffered = 128 * 1024 * 1024;        ///< bytes of unfinished requests of all clients together
     std::size_t unsent = 256 * 1024 * 1024;          ///< bytes of answers that clients do not take; the oldest go first
-    std::size_t connections = 4000;                  ///< beyond it the longest idle one is closed
-    std::chrono::milliseconds idle{60'000};          ///< between two requests
-    std::chrono::milliseconds head{10'000};          ///< from the first byte of a request to the end of its head
+    std::size_t connections = 4000;          ///< beyond it the longest idle one is closed, or the oldest event stream
+    std::chrono::milliseconds idle{60'000};  ///< between two requests
+    std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its head
     std::chrono::milliseconds body_time{30'000};
     std::size_t pace_bytes = 16 * 1024;           ///< of a body that is read as it arrives there must come so much
     std::chrono::milliseconds pace_time{10'000};  ///< in each such time in which it is waited for
@@ -66,6 +66,7 @@ private:
     // The loop (server.cpp).
     void accept_all();
     bool make_room();
+    bool somebody_knocks() const;
     void pause_accepting();
     void resume_accepting();
     void on_event(Id id, std::uint32_t events);

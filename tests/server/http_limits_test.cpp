@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <mutex>
+#include <vector>
 
 #include "loopback.h"
 #include "server/http/body_stream.h"
@@ -48,6 +50,48 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
     Client other(server);
     other.send(get("/small"));
     EXPECT_THAT(other.read_to("small"), EndsWith("small"));
+}
+
+TEST(Room, IsMadeByTheLongestIdleConnectionThenByTheOldestEventStream) {
+    std::mutex mutex;
+    std::vector<std::shared_ptr<BodyStream>> streams;
+    Limits limits;
+    limits.connections = 3;
+    Loopback server(
+        [&](const Request& request, const Reply& reply) {
+            Response response;
+            if (request.target == "/events") {
+                const std::lock_guard lock(mutex);
+                streams.push_back(std::make_shared<BodyStream>());
+                response.stream = streams.back();
+                response.set("Content-Type", "text/event-stream");
+            } else {
+                response.body = "done";
+            }
+            reply(std::move(response));
+        },
+        limits);
+    const auto open = [&](const std::string& target, std::string_view end) {
+        auto client = std::make_unique<Client>(server);
+        client->send(get(target));
+        EXPECT_THAT(client->read_to(end), EndsWith(std::string(end)));
+        return client;
+    };
+    const auto first = open("/events", "\r\n\r\n");
+    const auto second = open("/events", "\r\n\r\n");
+    const auto idle = open("/", "done");
+    const auto third = open("/events", "\r\n\r\n");
+    EXPECT_EQ(idle->read_all(), "");
+    const auto other = open("/", "done");
+    EXPECT_EQ(first->read_all(), "0\r\n\r\n");
+    {
+        const std::lock_guard lock(mutex);
+        EXPECT_FALSE(streams[0]->write("x"));
+        EXPECT_TRUE(streams[1]->write("x"));
+        EXPECT_TRUE(streams[2]->write("x"));
+    }
+    EXPECT_EQ(second->read_to("x\r\n"), "1\r\nx\r\n");
+    EXPECT_EQ(third->read_to("x\r\n"), "1\r\nx\r\n");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ INTENDED = (503, 507)
 REFUSED = (408, 411, 414, 417, 431, 505)
 METHODS = ("get", "put", "post", "delete", "patch")
 # Short limits: the fuzz is after answers, not after designs.
-OPTIONS = ("--queue-limit", "100", "--drain-timeout", "0", "--job-timeout", "1", "--max-timeout", "1")
+OPTIONS = ("--queue-limit", "100", "--drain-timeout", "0", "--job-timeout", "200ms", "--max-timeout", "200ms")
 
 
 def not_a_number(word):
@@ -155,7 +155,7 @@ def prepared(service):
     """Ids of jobs in several states, and of a batch."""
     done = service.post_job(QUICK, wait=30)["id"]
     failed = service.post_job({"record": {"t": [0, 1, 2], "u": [1, 1, 1], "y": [2, 2, 2]}}, wait=30)["id"]
-    cancelled = service.post_job({**LONG, "timeout_s": 1})["id"]
+    cancelled = service.post_job({**LONG, "timeout_s": 0.2})["id"]
     service.post("/v1/jobs/%s/cancel" % cancelled, "")
     return {"jobs": [done, failed, cancelled, "0123456789abcdefghjkmnpqrs"],
             "batches": [new_batch(service), new_batch(service), "0123456789abcdefghjkmnpqrs"]}

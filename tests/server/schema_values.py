@@ -18,6 +18,14 @@ class Values:
         self.known = {}
 
     def of(self, schema, depth=0):
+        """The strategy of a schema, the same object each time: hypothesis spends most of its time on new ones."""
+        key = (id(schema), min(depth, 4))
+        if key not in self.known:
+            # The schema is kept too, so that nothing else gets its id.
+            self.known[key] = (schema, self.made(schema, depth))
+        return self.known[key][1]
+
+    def made(self, schema, depth):
         if not isinstance(schema, dict):
             return st.none()
         if "$ref" in schema:
@@ -38,13 +46,10 @@ class Values:
         return st.one_of(made, made, st.sampled_from(given)) if given else made
 
     def reference(self, name, depth):
-        key = (name, min(depth, 4))
-        if key not in self.known:
-            schema = self.document
-            for part in name.split("/")[1:]:
-                schema = schema[part]
-            self.known[key] = st.deferred(lambda: self.of(schema, depth + 1))
-        return self.known[key]
+        schema = self.document
+        for part in name.split("/")[1:]:
+            schema = schema[part]
+        return st.deferred(lambda: self.of(schema, depth + 1))
 
     def one_of(self, schema, several, depth):
         beside = {key: value for key, value in schema.items() if key != several}

@@ -9,7 +9,7 @@ void IncomingBody::read(std::function<void(Piece)> take) {
     {
         const std::lock_guard lock(mutex_);
         over = over_;
-        if (over == State::more) take_ = std::move(take);
+        if (over == State::more) take_.swap(take);
     }
     if (over == State::more) {
         if (!mailbox_->nudge(address_)) finish(State::gone);

@@ -1,6 +1,6 @@
 // store_cycles STORE [JOBS]: what a store can do, as jobs a second.
 //   accept    64 requests in flight, each answered when it is durable
-//   work      two workers that claim one job, end it durably with a result of 10 kB, and go on
+//   work      two workers that claim eight jobs, end each durably with a result of 10 kB, and go on
 //   together  both at the same time, until every job has ended
 //   entries   a batch of that many entries in groups of 300
 #include <atomic>
@@ -90,11 +90,11 @@ public:
         for (int i = 0; i < kWorkers; i++)
             workers.emplace_back([&] {
                 Gate one(1);
-                Gate ends(8);
+                Gate ends(32);
                 while (left > 0) {
                     std::vector<JobRecord> claimed;
                     one.enter();
-                    store_.claim({"bench", now(), std::chrono::seconds(60), 1},
+                    store_.claim({"bench", now(), std::chrono::seconds(60), 8},
                                  [&](Outcome<std::vector<JobRecord>> outcome) {
                                      claimed = value(std::move(outcome));
                                      one.leave();
@@ -112,7 +112,7 @@ public:
                         });
                     }
                 }
-                ends.wait_for_all(8);
+                ends.wait_for_all(32);
             });
     }
 

@@ -107,7 +107,10 @@ pqxx::result Session::run_plain(const std::string& sql) {
     return guarded([&](pqxx::nontransaction& on) { return on.exec(sql); });
 }
 
-std::int64_t Session::begin() { return run_plain("BEGIN; SELECT txid_current()")[0][0].as<std::int64_t>(); }
+std::int64_t Session::begin(bool durable) {
+    const std::string manner = durable ? "" : "SET LOCAL synchronous_commit TO off; ";
+    return run_plain("BEGIN; " + manner + "SELECT txid_current()")[0][0].as<std::int64_t>();
+}
 
 void Session::commit(const std::string& last) { run_plain(last + "COMMIT"); }
 

@@ -54,8 +54,9 @@ public:
     /// Statements without values, sent in one piece; the result of the last.
     pqxx::result run_plain(const std::string& sql);
 
-    /// A transaction's number, which txid_status() knows even after the connection is lost.
-    std::int64_t begin();
+    /// A transaction's number, which txid_status() knows even after the connection is lost. One that is not durable may
+    /// be undone by a crash of the server, after its commit was answered.
+    std::int64_t begin(bool durable = true);
     /// `last` goes ahead of the COMMIT in the same message.
     void commit(const std::string& last = "");
     void rollback();

@@ -231,7 +231,7 @@ std::optional<Failure> Writer::try_once(Group& group) {
     std::optional<std::int64_t> in_doubt;
     try {
         Notices notices;
-        const std::int64_t transaction = session_->begin();
+        const std::int64_t transaction = session_->begin(group.durable());
         accept_all(*session_, group.accepts, notices);
         finish_all(*session_, group.ends, notices);
         renew_all(*session_, group.renewals, notices);

@@ -51,6 +51,9 @@ struct Group {
     std::vector<Ask<Claim, std::vector<JobRecord>>> claims;
 
     std::size_t size() const { return accepts.size() + ends.size() + renewals.size() + others.size() + claims.size(); }
+    /// Claims and leases alone do not wait for the disk: where a crash of the server undoes them, the jobs are queued
+    /// again, which is where they belong then. Whoever ends such a job first, ends it.
+    bool durable() const { return !(accepts.empty() && ends.empty() && others.empty()); }
 };
 
 class Writer {

@@ -44,4 +44,9 @@ void PostgresDatabase::cut_connections() const {
     run_at(cluster_, "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = '" + name_ + "'");
 }
 
+void PostgresDatabase::allow_connections(bool allowed) const {
+    run_at(cluster_, "ALTER DATABASE " + name_ + " WITH ALLOW_CONNECTIONS " + (allowed ? "true" : "false"));
+    if (!allowed) cut_connections();
+}
+
 }  // namespace tunewright::server

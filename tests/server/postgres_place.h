@@ -20,6 +20,8 @@ public:
     std::string run(const std::string& sql) const;
     /// Ends every connection to it.
     void cut_connections() const;
+    /// Whether anybody may connect to it; false ends every connection too.
+    void allow_connections(bool allowed) const;
 
 private:
     PostgresDatabase(std::string cluster, std::string name);

@@ -33,7 +33,9 @@ Listener::Listener(Address address, std::string own_tag)
     : address_(std::move(address)),
       own_tag_(std::move(own_tag)),
       wake_(::eventfd(0, EFD_CLOEXEC)),
-      thread_([this] { work(); }) {}
+      thread_([this] { work(); }) {
+    first_try_.wait();
+}
 
 Listener::~Listener() {
     stopping_ = true;
@@ -59,6 +61,11 @@ bool Listener::pause(int milliseconds) {
     return !stopping_;
 }
 
+void Listener::tried() {
+    if (!tried_) first_try_.count_down();
+    tried_ = true;
+}
+
 void Listener::work() {
     int pause_ms = 0;
     while (!stopping_) {
@@ -66,25 +73,28 @@ void Listener::work() {
             listen();
         } catch (const std::exception&) {  // whoever writes logs what is wrong
             pause_ms = connected_.exchange(false) ? kFirstPauseMs : std::min(2 * pause_ms, kLongestPauseMs);
+            tried();
             if (!pause(pause_ms)) return;
         }
     }
 }
 
 void Listener::listen() {
-    const std::unique_ptr<pqxx::connection> connection = connect(address_);
-    const Receiver receiver(*connection, [this](const std::string& payload) {
+    const std::unique_ptr<Link> link = connect(address_);
+    pqxx::connection& connection = link->connection;
+    const Receiver receiver(connection, [this](const std::string& payload) {
         read_payload(payload, own_tag_, [this](const StoreNotice& notice) { tell(notice); });
     });
+    tried();
     if (!connected_.exchange(true)) {
         tell({StoreNotice::Kind::queued, ""});
         tell({StoreNotice::Kind::ended, ""});
     }
     while (!stopping_) {
-        std::array<pollfd, 2> waited{{{connection->sock(), POLLIN, 0}, {wake_, POLLIN, 0}}};
+        std::array<pollfd, 2> waited{{{connection.sock(), POLLIN, 0}, {wake_, POLLIN, 0}}};
         ::poll(waited.data(), waited.size(), -1);
-        connection->get_notifs();
-        if (!connection->is_open()) throw Failure(Failure::Kind::broken, "the connection was closed");
+        connection.get_notifs();
+        if (!connection.is_open()) throw Failure(Failure::Kind::broken, "the connection was closed");
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <latch>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,7 +16,7 @@ namespace tunewright::server::postgres {
 
 class Listener {
 public:
-    /// Notices with this tag are our own and not told.
+    /// Listens already when it returns, if the database is there. Notices with this tag are our own and not told.
     Listener(Address address, std::string own_tag);
     ~Listener();
     Listener(const Listener&) = delete;
@@ -27,6 +28,8 @@ public:
 private:
     void work();
     void listen();
+    /// The first try to listen is over, one way or the other.
+    void tried();
     /// False when it is time to stop.
     bool pause(int milliseconds);
     void tell(const StoreNotice& notice);
@@ -38,6 +41,8 @@ private:
     std::atomic<bool> connected_ = true;
     std::mutex mutex_;
     std::function<void(const StoreNotice&)> told_;
+    std::latch first_try_{1};
+    bool tried_ = false;
     std::jthread thread_;
 };
 

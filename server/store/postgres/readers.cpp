@@ -1,11 +1,13 @@
 #include "server/store/postgres/readers.h"
 
+#include <thread>
+
 namespace tunewright::server::postgres {
 namespace {
 
 constexpr std::size_t kPlaces = 4;
 constexpr std::chrono::seconds kPatience{5};
-constexpr std::chrono::milliseconds kPause{200};  // between two tries to connect
+constexpr std::chrono::milliseconds kPause{100};  // after a try to connect that failed
 
 }  // namespace
 
@@ -22,11 +24,12 @@ std::unique_ptr<Session> Readers::take(bool& fresh) {
 }
 
 std::unique_ptr<Session> Readers::open() {
+    std::chrono::steady_clock::time_point earliest;
     {
         const std::lock_guard lock(mutex_);
-        if (std::chrono::steady_clock::now() < next_try_)
-            throw Failure(Failure::Kind::broken, "there is no connection to " + address_.shown());
+        earliest = next_try_;
     }
+    std::this_thread::sleep_until(earliest);
     try {
         return std::make_unique<Session>(address_);
     } catch (const Failure&) {

@@ -56,11 +56,11 @@ std::string literal(std::string_view text) {
     return quoted + "'";
 }
 
-std::unique_ptr<pqxx::connection> connect(const Address& address) {
+std::unique_ptr<Link> connect(const Address& address) {
     try {
-        auto connection = std::make_unique<pqxx::connection>(address.settings());
-        pqxx::nontransaction(*connection).exec(kSettings);
-        return connection;
+        auto link = std::make_unique<Link>(address);
+        pqxx::nontransaction(link->connection).exec(kSettings);
+        return link;
     } catch (const std::exception& error) {
         throw Failure(Failure::Kind::broken, "PostgreSQL: " + first_line(error.what()));
     }
@@ -79,16 +79,16 @@ Values& Values::real(double value) {
     return plain(error == std::errc{} ? std::string(digits, end) : "NaN");
 }
 
-Session::Session(const Address& address) : connection_(connect(address)) {}
+Session::Session(const Address& address) : link_(connect(address)) {}
 Session::~Session() = default;
 
 template <class Work>
 pqxx::result Session::guarded(Work work) {
     try {
-        pqxx::nontransaction on(*connection_);
+        pqxx::nontransaction on(link_->connection);
         return work(on);
     } catch (const std::exception& error) {
-        throw failure_of(error, connection_->is_open());
+        throw failure_of(error, link_->connection.is_open());
     }
 }
 
@@ -96,7 +96,7 @@ pqxx::result Session::run(const std::string& sql, const Values& values) {
     auto found = names_.find(sql);
     if (found == names_.end()) {
         found = names_.emplace(sql, "s" + std::to_string(names_.size())).first;
-        connection_->prepare(found->second, sql);
+        link_->connection.prepare(found->second, sql);
     }
     return guarded([&](pqxx::nontransaction& on) {
         return on.exec_prepared(found->second, pqxx::prepare::make_dynamic_params(values.list));

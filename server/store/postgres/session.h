@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <pqxx/connection>
+#include <pqxx/errorhandler>
 #include <pqxx/result>
 #include <stdexcept>
 #include <string>
@@ -41,6 +42,16 @@ public:
     std::vector<std::string> list;
 };
 
+/// An open connection that keeps the server's remarks to itself: what matters comes as an error.
+struct Link {
+    explicit Link(const Address& address) : connection(address.settings()), quiet(connection) {}
+    pqxx::connection connection;
+    pqxx::quiet_errorhandler quiet;
+};
+
+/// Opens a connection with the settings that every part of the store uses. Throws Failure.
+std::unique_ptr<Link> connect(const Address& address);
+
 class Session {
 public:
     /// Throws Failure.
@@ -65,15 +76,12 @@ private:
     template <class Work>
     pqxx::result guarded(Work work);
 
-    std::unique_ptr<pqxx::connection> connection_;
+    std::unique_ptr<Link> link_;
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 
 /// What an exception of libpqxx means; `open`: the connection still is.
 Failure failure_of(const std::exception& error, bool open);
-
-/// Opens a connection as every part of the store uses it. Throws Failure.
-std::unique_ptr<pqxx::connection> connect(const Address& address);
 
 /// As a literal in a statement.
 std::string literal(std::string_view text);

@@ -13,7 +13,7 @@ constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
 constexpr std::chrono::milliseconds kFirstPause{100};
 constexpr std::chrono::milliseconds kLongestPause{2000};
 constexpr std::chrono::seconds kDoubt{10};
-constexpr int kConflicts = 3;
+constexpr int kTriesMore = 4;  // of a group that was in another's way, or whose connection was lost
 
 std::size_t bytes(const Ask<NewJob, Accepted>& ask) { return ask.in.request.size(); }
 std::size_t bytes(const Ask<JobEnd, bool>& ask) { return ask.in.result.size() + ask.in.error.size(); }
@@ -219,10 +219,13 @@ void Writer::write_alone(Group& group) {
 std::optional<Failure> Writer::try_write(Group& group) {
     const bool had_connection = session_ != nullptr;
     std::optional<Failure> failure = try_once(group);
-    for (int again = 0; failure && failure->kind == Failure::Kind::conflict && again < kConflicts; again++)
+    for (int again = 0; failure && again < kTriesMore; again++) {
+        // A connection that was lost while nobody used it is noticed now; nothing of the group can have been done.
+        const bool may_do = failure->kind == Failure::Kind::conflict ||
+                            (failure->kind == Failure::Kind::broken && (had_connection || session_ != nullptr));
+        if (!may_do || (!session_ && !connect())) break;
         failure = try_once(group);
-    // A connection that was lost while nobody used it is noticed now; nothing of the group can have been done.
-    if (failure && failure->kind == Failure::Kind::broken && had_connection) failure = try_once(group);
+    }
     return failure;
 }
 

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
 
 #include "server/log.h"
 #include "server/store/sqlite/connection.h"
@@ -12,13 +13,19 @@ namespace {
 
 /// Keeps the time that one transaction holds the others up, and the log it writes, within bounds.
 constexpr std::size_t kLargestGroup = 256;
+constexpr std::chrono::milliseconds kProbePause{500};
 
 }  // namespace
 
-StoreFault fault_of(const std::exception& error) {
+StoreFault fault_of(const std::exception& error, int system_error) {
     StoreFault fault{StoreFault::Kind::unavailable, error.what()};
     const auto* sqlite = dynamic_cast<const SQLite::Exception*>(&error);
-    if (sqlite != nullptr && (sqlite->getErrorCode() & 0xff) == SQLITE_FULL) fault.kind = StoreFault::Kind::full;
+    if (sqlite == nullptr) return fault;
+    // A file that cannot grow is told in several ways: SQLite says "full" of some limits, "I/O error" of others.
+    const int code = sqlite->getErrorCode() & 0xff;
+    const bool cannot_grow = system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
+    if (code == SQLITE_FULL || (code == SQLITE_IOERR && cannot_grow))
+        fault = {StoreFault::Kind::full, "the disk is full (" + fault.detail + ")"};
     return fault;
 }
 
@@ -42,7 +49,11 @@ void SqliteWriter::submit(Change change) {
 
 std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return stopping_ || !waiting_.empty() || !bulky_.empty(); });
+    const auto ready = [this] { return stopping_ || !waiting_.empty() || !bulky_.empty(); };
+    if (healthy_)
+        changed_.wait(lock, ready);
+    else
+        changed_.wait_for(lock, kProbePause, ready);
     std::vector<Change> group;
     while (!waiting_.empty() && group.size() < kLargestGroup) {
         group.push_back(std::move(waiting_.front()));
@@ -56,8 +67,30 @@ std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
 }
 
 void SqliteWriter::work() {
-    // Empty only when it is asked to stop and nothing is left.
-    for (std::vector<Change> group = next_group(); !group.empty(); group = next_group()) write_group(group);
+    for (;;) {
+        std::vector<Change> group = next_group();
+        if (!group.empty()) {
+            write_group(group);
+        } else if (stopping()) {
+            return;
+        } else {
+            probe();
+        }
+    }
+}
+
+bool SqliteWriter::stopping() {
+    const std::lock_guard lock(mutex_);
+    return stopping_;
+}
+
+void SqliteWriter::probe() {
+    // Writes a page, and leaves everything as it is.
+    std::vector<Change> nothing(1);
+    nothing[0].apply = [](Connection& store) {
+        store.database().exec("PRAGMA user_version = " + std::to_string(store.number("PRAGMA user_version")));
+    };
+    healthy_ = !try_commit(nothing, 0, 1);
 }
 
 void SqliteWriter::write_group(std::vector<Change>& group) {
@@ -78,6 +111,7 @@ void SqliteWriter::write_group(std::vector<Change>& group) {
 std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
     const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    errno = 0;  // SQLite's own record of it does not outlive the rollback
     try {
         const bool durable = std::any_of(begin, end, [](const Change& change) { return change.durable; });
         if (durable != waits_for_disk_) {
@@ -89,7 +123,7 @@ std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, s
         transaction.commit();
         return std::nullopt;
     } catch (const std::exception& error) {
-        return fault_of(error);
+        return fault_of(error, errno);
     }
 }
 

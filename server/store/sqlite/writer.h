@@ -44,6 +44,10 @@ public:
 
 private:
     void work();
+    /// While nothing can be written and nobody asks: whether it can be again.
+    void probe();
+    bool stopping();
+    /// Empty when it is time to stop or to probe.
     std::vector<Change> next_group();
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
@@ -59,7 +63,7 @@ private:
     std::jthread thread_;
 };
 
-/// What an SQLite error means to us.
-StoreFault fault_of(const std::exception& error);
+/// What an SQLite error means to us; `system_error` is the errno of the call that failed, if that is known.
+StoreFault fault_of(const std::exception& error, int system_error = 0);
 
 }  // namespace tunewright::server

@@ -1,0 +1,27 @@
+// The store's file, past the store: for what the database itself holds and refuses.
+#pragma once
+
+#include <sqlite3.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace tunewright::server {
+
+/// Runs statements; the first column of the last row, "" if there is none. Throws what SQLite says.
+inline std::string run_sqlite(const std::string& file, const std::string& sql) {
+    sqlite3* opened = nullptr;
+    const int open = sqlite3_open(file.c_str(), &opened);
+    const std::unique_ptr<sqlite3, int (*)(sqlite3*)> database(opened, &sqlite3_close);
+    std::string found;
+    const auto keep = [](void* into, int, char** values, char**) {
+        *static_cast<std::string*>(into) = values[0] != nullptr ? values[0] : "";
+        return 0;
+    };
+    if (open != SQLITE_OK || sqlite3_exec(opened, sql.c_str(), keep, &found, nullptr) != SQLITE_OK)
+        throw std::runtime_error(sqlite3_errmsg(opened));
+    return found;
+}
+
+}  // namespace tunewright::server

@@ -37,11 +37,14 @@ std::string new_tag() {
 class PostgresStore : public JobStore {
 public:
     PostgresStore(const Address& address, const std::string& tag, std::unique_ptr<Session> session)
-        : readers_(address), listener_(address, tag), writer_(address, tag, std::move(session)) {}
+        : readers_(address),
+          listener_(address, tag),
+          writer_(address, tag, std::move(session)),
+          bulk_(address, tag, nullptr) {}
 
     bool shared() const override { return true; }
     void watch(std::function<void(const StoreNotice&)> told) override { listener_.watch(std::move(told)); }
-    bool healthy() const override { return writer_.healthy() && listener_.connected(); }
+    bool healthy() const override { return writer_.healthy() && bulk_.healthy() && listener_.connected(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         std::promise<Outcome<Recovery>> promise;
@@ -151,7 +154,7 @@ private:
         change.done = [value, done = std::move(done)](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(std::move(*value));
         };
-        writer_.change(std::move(change), manner == kBulky);
+        (manner == kBulky ? bulk_ : writer_).change(std::move(change));
     }
 
     void delete_batch(std::int64_t batch, std::function<void(std::optional<StoreFault>)> done);
@@ -160,7 +163,10 @@ private:
 
     Readers readers_;
     Listener listener_;
-    Writer writer_;  ///< first to go: it ends what was asked for
+    // The first to go: they end what was asked for. What touches many rows has a connection of its own, so that jobs
+    // which somebody waits for never wait behind a batch.
+    Writer writer_;
+    Writer bulk_;
 };
 
 void PostgresStore::reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) {

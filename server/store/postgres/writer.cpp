@@ -9,6 +9,7 @@ namespace tunewright::server::postgres {
 namespace {
 
 constexpr std::size_t kLargestGroup = 200;             // changes of a kind
+constexpr std::size_t kOtherChanges = 16;              // a statement each, or more
 constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
 constexpr std::chrono::milliseconds kFirstPause{100};
 constexpr std::chrono::milliseconds kLongestPause{2000};
@@ -148,10 +149,10 @@ void Writer::claim(Ask<Claim, std::vector<JobRecord>> ask) {
     changed_.notify_one();
 }
 
-void Writer::change(OtherChange change, bool bulky) {
+void Writer::change(OtherChange change) {
     {
         const std::lock_guard lock(mutex_);
-        bulky ? bulky_.push_back(std::move(change)) : waiting_.others.push_back(std::move(change));
+        waiting_.others.push_back(std::move(change));
     }
     changed_.notify_one();
 }
@@ -163,7 +164,7 @@ bool Writer::stopping() const {
 
 Group Writer::next_group() {
     std::unique_lock lock(mutex_);
-    const auto ready = [this] { return stopping_ || waiting_.size() > 0 || !bulky_.empty(); };
+    const auto ready = [this] { return stopping_ || waiting_.size() > 0; };
     if (session_)
         changed_.wait(lock, ready);
     else
@@ -172,12 +173,8 @@ Group Writer::next_group() {
     move_some(waiting_.ends, group.ends, kLargestGroup);
     move_some(waiting_.accepts, group.accepts, kLargestGroup);
     move_some(waiting_.renewals, group.renewals, kLargestGroup);
-    move_some(waiting_.others, group.others, kLargestGroup);
+    move_some(waiting_.others, group.others, kOtherChanges);
     move_some(waiting_.claims, group.claims, kLargestGroup);
-    if (!bulky_.empty()) {
-        group.others.push_back(std::move(bulky_.front()));
-        bulky_.pop_front();
-    }
     return group;
 }
 

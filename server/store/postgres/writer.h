@@ -1,5 +1,5 @@
-// The one thread that writes. What is asked for while a transaction is being committed goes into the next one together:
-// single jobs' changes of one kind into one statement, and one commit for all.
+// A thread that writes, on a connection of its own. What is asked for while a transaction is being committed goes into
+// the next one together: single jobs' changes of one kind into one statement, and one commit for all.
 //
 // When the connection is lost: changes that cannot have been committed are tried once more on a new connection; a
 // commit whose answer was lost is looked up by its transaction's number. Whatever remains unknown or impossible is
@@ -9,7 +9,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -58,6 +57,7 @@ struct Group {
 
 class Writer {
 public:
+    /// Connects by itself where it is given no session.
     Writer(Address address, std::string tag, std::unique_ptr<Session> session);
     /// Does what was asked for, as far as the database is there, then joins.
     ~Writer();
@@ -68,8 +68,7 @@ public:
     void finish(Ask<JobEnd, bool> ask);
     void renew(Ask<RenewCall, std::vector<Renewed>> ask);
     void claim(Ask<Claim, std::vector<JobRecord>> ask);
-    /// Bulky changes touch many rows: each transaction takes one of them.
-    void change(OtherChange change, bool bulky);
+    void change(OtherChange change);
 
     bool healthy() const { return healthy_; }
 
@@ -98,7 +97,6 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     Group waiting_;
-    std::deque<OtherChange> bulky_;
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::jthread thread_;

@@ -12,12 +12,18 @@ BodyStream::~BodyStream() = default;
 bool BodyStream::write(std::string piece) {
     if (piece.empty()) return !gone();
     const std::lock_guard packing(packing_);
-    return put(packer_ ? packer_->piece(piece) : std::move(piece), false);
+    return put(packer_ ? packer_->piece(piece) : std::move(piece), Last::no);
 }
 
 void BodyStream::end() {
     const std::lock_guard packing(packing_);
-    put(packer_ ? packer_->end() : std::string{}, true);
+    put(packer_ ? packer_->end() : std::string{}, Last::end);
+    packer_.reset();
+}
+
+void BodyStream::break_off() {
+    const std::lock_guard packing(packing_);
+    put({}, Last::broken);
     packer_.reset();
 }
 
@@ -32,7 +38,7 @@ void BodyStream::compress() {
 }
 
 /// False where the client has gone.
-bool BodyStream::put(std::string piece, bool last) {
+bool BodyStream::put(std::string piece, Last last) {
     std::function<void()> wake;
     {
         const std::lock_guard lock(mutex_);
@@ -42,7 +48,8 @@ bool BodyStream::put(std::string piece, bool last) {
             written_ = std::move(piece);
         else
             written_.append(piece);
-        ended_ = last;
+        ended_ = last != Last::no;
+        broken_ = last == Last::broken;
         if (!std::exchange(woken_, true)) wake = wake_;
     }
     if (wake) wake();
@@ -86,7 +93,7 @@ BodyStream::Written BodyStream::take() {
     const std::lock_guard lock(mutex_);
     woken_ = false;
     sending_ = written_.size();
-    return {std::exchange(written_, {}), ended_};
+    return {std::exchange(written_, {}), ended_, broken_};
 }
 
 void BodyStream::taken() {

@@ -27,6 +27,9 @@ public:
     bool write(std::string piece);
     /// No more comes. What was written before is still sent.
     void end();
+    /// No more comes, though more should have: what was written is sent, then the connection is closed without the
+    /// end of the body, so that the client knows that something is missing.
+    void break_off();
     /// Bytes written that the client has not taken yet.
     std::size_t waiting() const;
     bool gone() const;
@@ -48,6 +51,7 @@ private:
     struct Written {
         std::string bytes;
         bool ended = false;
+        bool broken = false;
     };
 
     // The side of the event loop.
@@ -57,7 +61,8 @@ private:
     void ask();
     void close(bool tell);
 
-    bool put(std::string piece, bool last);
+    enum class Last { no, end, broken };
+    bool put(std::string piece, Last last);
 
     std::mutex packing_;  ///< of packer_, which takes longer than the loop may be held up; taken before mutex_
     std::unique_ptr<GzipStream> packer_;
@@ -65,6 +70,7 @@ private:
     std::string written_;      ///< not yet taken by the loop
     std::size_t sending_ = 0;  ///< taken by the loop, not yet by the client
     bool ended_ = false;
+    bool broken_ = false;
     bool gone_ = false;
     bool asks_ = false;   ///< there was room since `more` was called
     bool woken_ = false;  ///< the loop knows and has not looked yet

@@ -37,6 +37,7 @@ void Outgoing::start(Response response, bool keep_alive, bool chunks, const std:
     body_.clear();
     tail_size_ = sent_ = progress_ = 0;
     last_ = true;
+    broken_ = false;
     stream_ = std::move(response.stream);
     if (stream_ && response.body_omitted) {
         abandon();
@@ -55,10 +56,13 @@ bool Outgoing::next_piece() {
     BodyStream::Written written = stream_->take();
     if (written.bytes.empty() && !written.ended) return false;
     last_ = written.ended;
+    broken_ = written.broken;
     std::string_view tail;
     if (chunks_) {
+        const bool whole = last_ && !broken_;
         if (!written.bytes.empty()) head_.append(size_line(written.bytes.size()));
-        tail = written.bytes.empty() ? kEndOfBody : last_ ? kEndOfChunkAndBody : kEndOfChunk;
+        if (!written.bytes.empty()) tail = whole ? kEndOfChunkAndBody : kEndOfChunk;
+        if (written.bytes.empty() && whole) tail = kEndOfBody;
     }
     body_ = std::move(written.bytes);
     tail_ = tail.data();
@@ -98,6 +102,7 @@ Io Outgoing::send(int fd) {
     const Io io = send_parts(fd);
     if (io != Io::done) return io;
     if (stream_) stream_->taken();
+    if (broken_) return Io::gone;
     if (last_) {
         if (stream_) std::exchange(stream_, nullptr)->close(false);
         return Io::done;

@@ -65,7 +65,8 @@ private:
     std::shared_ptr<BodyStream> stream_;
     bool chunks_ = true;
     bool endless_ = false;
-    bool last_ = true;  ///< nothing follows what is being sent
+    bool last_ = true;     ///< nothing follows what is being sent
+    bool broken_ = false;  ///< the producer has broken off: nothing marks the end of the body
 };
 
 }  // namespace tunewright::server::http

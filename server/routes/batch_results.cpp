@@ -51,8 +51,8 @@ private:
         try {
             waits = page();
         } catch (const StoreError& error) {
-            log_error(std::string("results of a batch end early: ") + error.what());
-            stream_->end();
+            log_error(std::string("results of a batch are broken off: ") + error.what());
+            stream_->break_off();
         }
         // What still waits stays busy: nothing else may go on before.
         if (!waits) idle();
@@ -86,23 +86,26 @@ private:
         }
         if (taken < rows.size()) return wait_for(rows[taken].id);
         if (rows.size() == most) return false;
-        if (question_.follow && !all_came()) return pause();
+        if (question_.follow && !all_came()) return jobs_.draining() ? break_off() : pause();
         stream_->end();
         return false;
     }
 
     bool all_came() {
         const auto batch = batches_.find(question_.batch);
-        return !batch || (batch->sealed && next_ >= static_cast<std::int64_t>(batch->total)) || jobs_.draining();
+        return !batch || (batch->sealed && next_ >= static_cast<std::int64_t>(batch->total));
     }
 
     bool wait_for(const std::string& job) {
-        if (jobs_.draining()) {
-            stream_->end();
-            return false;
-        }
+        if (jobs_.draining()) return break_off();
         jobs_.wait(job, kPatience, [self = shared_from_this()] { self->go_on(); });
         return true;
+    }
+
+    /// The service stops and rows are missing: the client is to see that.
+    bool break_off() {
+        stream_->break_off();
+        return false;
     }
 
     bool pause() {

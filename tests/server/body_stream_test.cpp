@@ -49,6 +49,17 @@ TEST(BodyStream, SendsEachPieceAsAChunkAndKeepsTheConnection) {
     EXPECT_THAT(client.read_all(), EndsWith("\r\n\r\nplain"));
 }
 
+TEST(BodyStream, BrokenOffSendsWhatThereWasAndNoEnd) {
+    const auto stream = std::make_shared<BodyStream>();
+    Loopback server(streaming(stream));
+    Client client(server);
+    client.send(get("/stream"));
+    client.read_to("\r\n\r\n");
+    stream->write("half");
+    stream->break_off();
+    EXPECT_EQ(client.read_all(), "4\r\nhalf\r\n");
+}
+
 TEST(BodyStream, IsSentWholeWhereAllWasWrittenBeforeTheAnswer) {
     const auto stream = std::make_shared<BodyStream>();
     stream->write("one");

@@ -1,10 +1,24 @@
-// The states of a job and the only ways between them.
+// The states of a job and the only ways between them. The stores hold to them by constraints as well; docs/jobs.md
+// tells them to users.
 //
 //               claim                 succeed, fail, cancel
 //   [queued] ----------> [running] -------------------------> [succeeded] [failed] [cancelled]
 //      |  ^                  |
-//      |  +------------------+  release: the service stops, or was killed: the job runs again
+//      |  +------------------+  release
 //      +--> [cancelled]  cancel
+//
+// Who moves a job, and what a crash does to it:
+//
+//   queued     A worker of any process claims it (claims.h): attempts count one more, a lease begins. Whoever asks
+//              for its cancellation ends it at once. A crash changes nothing.
+//   running    The worker that has it, named by its attempts, ends it (ends.h), or releases it when its process stops
+//              (service.cpp, drain). A cancellation is only noted; the worker learns of it and ends the job. When its
+//              process has died, nobody renews the lease (leases.h): once it is over any process releases the job
+//              (reclaim; on a store of one process the next start does, recover), ends it as cancelled where that was
+//              asked for, and as failed from `most_attempts` attempts on. Whoever then comes with the old attempts is
+//              told that the job is not his, and drops what he has.
+//   succeeded, failed, cancelled
+//              Nothing moves it any more. Its owner deletes it, or the sweeper once its retention is over.
 #pragma once
 
 #include <optional>

@@ -38,11 +38,11 @@ void Claims::arrived() {
     ask(lock);
 }
 
-void Claims::took(double seconds) {
+void Claims::took(double seconds, bool whole) {
     const std::lock_guard lock(mutex_);
-    const double smooth = measured_ ? (1 - kForgetting) * pace_ + kForgetting * seconds : seconds;
-    pace_ = std::max(seconds, smooth);
-    measured_ = true;
+    // One that was stopped would have taken longer: of its time only a lower bound is known.
+    if (whole || seconds > pace_) pace_ = std::max(seconds, (1 - kForgetting) * pace_ + kForgetting * seconds);
+    streak_ = pace_ < kShortJob ? streak_ + 1 : 0;
 }
 
 void Claims::unsaved(std::size_t bytes) {
@@ -65,8 +65,8 @@ double Claims::pace() const {
 bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->job.batch.empty(); }
 
 std::size_t Claims::ahead() const {
-    if (!more_ || !measured_ || pace_ >= kShortJob || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
-    return std::min(kMostAhead, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4)));
+    if (!more_ || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
+    return std::min({kMostAhead, streak_, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4))});
 }
 
 std::size_t Claims::wanted() const {
@@ -110,6 +110,8 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
     if (failed_) arrivals_++;  // so that retry() asks again
     if (jobs != nullptr) {
         more_ = jobs->size() >= asked;
+        // Jobs of another kind may come when these are done.
+        if (!more_) streak_ /= 2;
         for (JobRecord& job : *jobs) {
             // Registered on the store's thread: a cancel that the store sees later finds the job here.
             std::shared_ptr<HeldJob> held = held_.add(std::move(job));

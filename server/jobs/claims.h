@@ -41,8 +41,8 @@ public:
     std::shared_ptr<HeldJob> take(const std::stop_token& stop);
     /// Something has been queued, perhaps by another process.
     void arrived();
-    /// A computation took so long.
-    void took(double seconds);
+    /// A computation took so long; not `whole`: it was stopped then.
+    void took(double seconds, bool whole = true);
     /// So many bytes of results wait for the store.
     void unsaved(std::size_t bytes);
     /// Claims again after a failure.
@@ -83,7 +83,7 @@ private:
     std::size_t unsaved_ = 0;
     HeldJob::Clock::time_point last_take_{};
     double pace_ = 0;
-    bool measured_ = false;
+    std::size_t streak_ = 0;  ///< short jobs in a row; counts less each time that the queue has been emptied
 };
 
 }  // namespace tunewright::server

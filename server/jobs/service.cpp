@@ -99,8 +99,11 @@ void JobService::submit(Order order, std::function<void(Submission)> done, std::
         submission.job.request = std::move(*request);
         // Before a worker of this process can know of the job, so that its end is not missed.
         if (wait.count() > 0) waits_.add(submission.job.id, wait, ended);
+        const std::string id = submission.job.id;
         done(std::move(submission));
         claims_.arrived();
+        // Those that wait have been told already that the service stops, and this one was not among them.
+        if (draining_) waits_.tell(id);
     };
     store_.accept(std::move(job), accepted);
 }

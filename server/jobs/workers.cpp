@@ -47,8 +47,7 @@ void Workers::run(const std::shared_ptr<HeldJob>& held) {
     api::JobOutcome outcome = compute(held);
     timer_.cancel(deadline);
     const double seconds = (monotonic_ms() - started) / 1e3;
-    // One that was stopped says nothing of how long jobs take.
-    if (outcome.status != Status::cancelled) claims_.took(seconds);
+    claims_.took(seconds, outcome.status != Status::cancelled);
     end(held, std::move(outcome), seconds);
 }
 

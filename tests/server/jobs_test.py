@@ -107,6 +107,25 @@ class JobTest(unittest.TestCase):
         self.assertEqual((answer.status, answer.body, answer.headers["ETag"]), (304, b"", tag))
         self.assertEqual(self.service.get("/v1/jobs/" + job["id"], {"If-None-Match": '"other"'}).status, 200)
 
+    def test_the_tag_of_a_job_changes_when_the_job_does(self):
+        job_id = self.service.post_job(LONG)["id"]
+        self.service.wait_for(job_id, ("running",))
+        tag = self.service.get("/v1/jobs/" + job_id).headers["ETag"]
+        self.service.post("/v1/jobs/%s/cancel" % job_id, "")
+        self.service.wait_for(job_id)
+        answer = self.service.get("/v1/jobs/" + job_id, {"If-None-Match": tag})
+        self.assertEqual((answer.status, answer.json["status"]), (200, "cancelled"))
+        self.assertNotEqual(answer.headers["ETag"], tag)
+
+    def test_a_cancelled_search_keeps_its_best_design_marked_as_such(self):
+        job_id = self.service.post_job(LONG)["id"]
+        while not (self.service.job(job_id)["progress"] or {}).get("best"):
+            time.sleep(0.01)
+        self.service.post("/v1/jobs/%s/cancel" % job_id, "")
+        job = self.service.wait_for(job_id)
+        self.assertEqual((job["status"], job["partial"]), ("cancelled", True))
+        self.assertIn("controller", job["result"]["controllers"][0])
+
     def test_an_idempotency_key_gives_the_same_job(self):
         key = {"Idempotency-Key": "key-%d" % time.monotonic_ns()}
         first = self.service.post("/v1/jobs", QUICK, key)
@@ -148,6 +167,13 @@ class ListTest(unittest.TestCase):
         self.assertEqual([len(page) for page in pages], [10, 10, 5])
         self.assertEqual([job["id"] for page in pages for job in page], self.ids[::-1])
 
+    def test_pages_do_not_move_when_jobs_are_added(self):
+        first = self.service.get("/v1/jobs?limit=10").json
+        added = self.service.post_job(QUICK, wait=30)["id"]
+        second = self.service.get(first["next"]).json
+        self.assertEqual([job["id"] for job in first["jobs"] + second["jobs"]], self.ids[::-1][:20])
+        self.assertEqual(self.service.call("DELETE", "/v1/jobs/" + added).status, 204)
+
     def test_a_list_leaves_out_requests_and_results(self):
         for job in self.pages("/v1/jobs")[0]:
             self.assertFalse({"request", "result", "error"} & set(job))
@@ -172,10 +198,27 @@ class QueueTest(unittest.TestCase):
             waiting = [service.post_job(LONG)["id"] for _ in range(2)]
             answer = service.post("/v1/jobs", LONG)
             self.assertEqual((answer.status, answer.media_type), (429, "application/problem+json"))
-            self.assertGreaterEqual(int(answer.headers["Retry-After"]), 1)
+            self.assertIn(int(answer.headers["Retry-After"]), range(1, 61))
+            self.assertEqual(len(answer.headers.get_all("Retry-After")), 1)
             # A queued job is cancelled at once and makes room.
             self.assertEqual(service.post("/v1/jobs/%s/cancel" % waiting[0], "").json["status"], "cancelled")
             self.assertEqual(service.post("/v1/jobs", LONG).status, 202)
+
+    def test_a_single_job_overtakes_the_entries_of_a_batch(self):
+        with Service("--workers", "1", "--drain-timeout", "0") as service:
+            entry = dict(LONG, timeout_s=1)
+            batch = service.post("/v1/batches", {"jobs": [entry] * 5}).json["id"]
+            job = service.post_job(QUICK, wait=50)
+            self.assertEqual(job["status"], "succeeded")
+            waiting = service.get("/v1/jobs?status=queued&batch=" + batch).json["jobs"]
+            self.assertGreaterEqual(len(waiting), 2)
+            self.assertEqual(service.get("/v1/jobs?status=queued").json["jobs"], [])
+
+    def test_ended_jobs_are_deleted_when_their_retention_is_over(self):
+        with Service("--retention", "1s") as service:
+            job_id = service.post_job(QUICK, wait=30)["id"]
+            while service.get("/v1/jobs/" + job_id).status != 404:
+                time.sleep(0.05)
 
     def test_a_thousand_jobs_of_eight_clients_all_end_and_health_stays_quick(self):
         with Service("--workers", "2") as service:

@@ -69,7 +69,7 @@ struct Order {
 
 class JobService {
 public:
-    /// Both must outlive the service.
+    /// Both outlive its work; when it goes the timer has been stopped and the store has gone or has answered each call.
     JobService(JobStore& store, Timer& timer, JobSettings settings);
     /// Stops as drain() does, without grace.
     ~JobService();

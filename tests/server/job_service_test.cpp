@@ -65,6 +65,8 @@ protected:
             return compute(request, control);
         };
         settings.now = [this] { return ++now_; };
+        // The store may be about to tell the one before of something: it goes after the store.
+        if (service_) earlier_.push_back(std::move(service_));
         service_ = std::make_unique<JobService>(*store_, timer_, settings);
         service_->start();
     }
@@ -103,6 +105,7 @@ protected:
     Timer timer_;
     std::unique_ptr<JobStore> store_;
     std::unique_ptr<JobService> service_;
+    std::vector<std::unique_ptr<JobService>> earlier_;
 };
 
 TEST_F(JobServiceTest, AJobIsComputedAndItsResultKept) {

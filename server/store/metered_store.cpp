@@ -59,10 +59,8 @@ public:
     void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
         store_->add_entries(std::move(batch), std::move(entries), now, timed("add_entries", std::move(done)));
     }
-    void seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                    Done<Sealed> done) override {
-        store_->seal_batch(std::move(batch), std::move(request_hash), std::move(idempotency_key),
-                           timed("seal_batch", std::move(done)));
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override {
+        store_->seal_batch(std::move(seal), timed("seal_batch", std::move(done)));
     }
     void drop_batch(std::string batch, Done<bool> done) override {
         store_->drop_batch(std::move(batch), timed("drop_batch", std::move(done)));

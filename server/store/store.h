@@ -196,6 +196,14 @@ struct BatchRow {
     std::string error;
 };
 
+/// The end of a batch's way in.
+struct BatchSeal {
+    std::string batch;
+    std::string request_hash;
+    std::string idempotency_key;  ///< "" if none; each owner has keys of his own
+    std::string name;             ///< where it was known only after the batch was opened; "" leaves the name
+};
+
 struct Sealed {
     enum class Kind { none, sealed, existing, conflict };  ///< existing, conflict: the batch itself has been dropped
     Kind kind = Kind::none;
@@ -267,8 +275,7 @@ public:
     /// False where the batch is not there, sealed or cancelled.
     virtual void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) = 0;
     /// With a known key ("" if none): the earlier batch, or a conflict where its hash was another; this one is dropped.
-    virtual void seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                            Done<Sealed> done) = 0;
+    virtual void seal_batch(BatchSeal seal, Done<Sealed> done) = 0;
     /// The batch and its jobs are gone, whatever their state; a worker that has one learns it from renew().
     virtual void drop_batch(std::string batch, Done<bool> done) = 0;
     virtual std::optional<BatchSummary> find_batch(const std::string& id) = 0;

@@ -104,8 +104,8 @@ public:
     void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
         store_.add_entries(std::move(batch), std::move(entries), now, done);
     }
-    void seal_batch(std::string batch, std::string hash, std::string key, Done<Sealed> done) override {
-        store_.seal_batch(std::move(batch), std::move(hash), std::move(key), done);
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override {
+        store_.seal_batch(std::move(seal), std::move(done));
     }
     void drop_batch(std::string batch, Done<bool> done) override { store_.drop_batch(std::move(batch), done); }
     std::optional<BatchSummary> find_batch(const std::string& id) override { return store_.find_batch(id); }

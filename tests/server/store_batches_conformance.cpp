@@ -39,6 +39,12 @@ TEST_P(StoreConformance, ABatchIsReceivedPieceByPieceAndItsEntriesAreJobs) {
     EXPECT_FALSE(store_->find_batch("y"));
 }
 
+TEST_P(StoreConformance, ANameThatComesLateIsTheBatchs) {
+    open_batch("x");
+    EXPECT_EQ(seal("x", "", "hash", "late").kind, Sealed::Kind::sealed);
+    EXPECT_EQ(batch("x").name, "late");
+}
+
 TEST_P(StoreConformance, ASealedBatchTakesNoMore) {
     make_batch("x", 1);
     EXPECT_FALSE(add_waiting("x", 1, 1));

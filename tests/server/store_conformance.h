@@ -142,8 +142,9 @@ protected:
         for (std::int64_t i = first; i < first + count; i++) entries.push_back(entry(batch, i));
         return add_entries(batch, std::move(entries));
     }
-    Sealed seal(const std::string& batch, const std::string& key = "", const std::string& hash = "hash") {
-        return completed<Sealed>([&](auto done) { store_->seal_batch(batch, hash, key, done); });
+    Sealed seal(const std::string& batch, const std::string& key = "", const std::string& hash = "hash",
+                const std::string& name = "") {
+        return completed<Sealed>([&](auto done) { store_->seal_batch({batch, hash, key, name}, done); });
     }
     bool drop(const std::string& batch) {
         return completed<bool>([&](auto done) { store_->drop_batch(batch, done); });

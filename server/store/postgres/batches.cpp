@@ -64,22 +64,21 @@ bool add_entries(Session& session, const std::string& id, const std::vector<NewE
     return true;
 }
 
-SealedBatch seal_batch(Session& session, const std::string& id, const std::string& request_hash,
-                       const std::string& idempotency_key) {
+SealedBatch seal_batch(Session& session, const BatchSeal& seal) {
     const pqxx::result rows = session.run(
         "SELECT seq, owner FROM batches WHERE id = $1 AND state = 'receiving' AND NOT cancel_requested "
         "FOR UPDATE",
-        Values().text(id));
+        Values().text(seal.batch));
     if (rows.empty()) return {};
     const std::int64_t seq = rows[0][0].as<std::int64_t>();
     const std::string owner = rows[0][1].c_str();
-    if (!idempotency_key.empty()) {
+    if (!seal.idempotency_key.empty()) {
         // Two replicas that seal with one key at the same time come here one after the other.
         session.run("SELECT pg_advisory_xact_lock(hashtextextended($1 || ' ' || $2, 0))",
-                    Values().plain(owner).text(idempotency_key));
+                    Values().plain(owner).text(seal.idempotency_key));
         const pqxx::result earlier =
             session.run("SELECT id, request_hash = $3 FROM batches WHERE owner = $1 AND idempotency_key = $2",
-                        Values().plain(owner).text(idempotency_key).text(request_hash));
+                        Values().plain(owner).text(seal.idempotency_key).text(seal.request_hash));
         if (!earlier.empty()) {
             const bool same = earlier[0][1].as<bool>();
             leave(session, seq);
@@ -87,10 +86,11 @@ SealedBatch seal_batch(Session& session, const std::string& id, const std::strin
         }
     }
     session.run(
-        "UPDATE batches SET state = 'sealed', request_hash = $2, idempotency_key = nullif($3, '') "
+        "UPDATE batches SET state = 'sealed', request_hash = $2, idempotency_key = nullif($3, ''), "
+        "name = coalesce(nullif($4, ''), name) "
         "WHERE seq = $1",
-        Values().number(seq).text(request_hash).text(idempotency_key));
-    return {{Sealed::Kind::sealed, id}, std::nullopt};
+        Values().number(seq).text(seal.request_hash).text(seal.idempotency_key).text(seal.name));
+    return {{Sealed::Kind::sealed, seal.batch}, std::nullopt};
 }
 
 std::optional<std::int64_t> leave_batch(Session& session, const std::string& id) {

@@ -33,8 +33,7 @@ struct SealedBatch {
     Sealed answer;
     std::optional<std::int64_t> leaving;
 };
-SealedBatch seal_batch(Session& session, const std::string& id, const std::string& request_hash,
-                       const std::string& idempotency_key);
+SealedBatch seal_batch(Session& session, const BatchSeal& seal);
 /// From now on it is not seen any more; delete_entries() does the rest. Its seq, or nothing where there is none.
 std::optional<std::int64_t> leave_batch(Session& session, const std::string& id);
 /// One slice of a leaving batch, at the end the batch itself. How many jobs went: 0 when nothing is left.

@@ -115,8 +115,7 @@ public:
         };
         write<bool>(kBulky, work, std::move(done));
     }
-    void seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                    Done<Sealed> done) override;
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override;
     void drop_batch(std::string batch, Done<bool> done) override;
     void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override;
     void remove_batch(std::string id, Done<RemoveEffect> done) override;
@@ -201,11 +200,9 @@ void PostgresStore::delete_batch(std::int64_t batch, std::function<void(std::opt
     });
 }
 
-void PostgresStore::seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                               Done<Sealed> done) {
-    const auto work = [batch = std::move(batch), request_hash = std::move(request_hash),
-                       idempotency_key = std::move(idempotency_key)](Session& session, Notices&) {
-        return postgres::seal_batch(session, batch, request_hash, idempotency_key);
+void PostgresStore::seal_batch(BatchSeal seal, Done<Sealed> done) {
+    const auto work = [seal = std::move(seal)](Session& session, Notices&) {
+        return postgres::seal_batch(session, seal);
     };
     write<SealedBatch>(kBulky, work, [this, done = std::move(done)](Outcome<SealedBatch> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);

@@ -74,28 +74,30 @@ bool add_entries(Connection& store, const std::string& id, const std::vector<New
     return true;
 }
 
-SealedBatch seal_batch(Connection& store, const std::string& id, const std::string& request_hash,
-                       const std::string& idempotency_key) {
-    const std::optional<Receiving> batch = find_receiving(store, id);
+SealedBatch seal_batch(Connection& store, const BatchSeal& seal) {
+    const std::optional<Receiving> batch = find_receiving(store, seal.batch);
     if (!batch) return {};
-    if (!idempotency_key.empty()) {
+    if (!seal.idempotency_key.empty()) {
         Connection::Use row = store.use(
             "SELECT b.id, b.request_hash FROM batch_keys k JOIN batches b ON b.seq = k.batch "
             "WHERE k.owner = ?1 AND k.key = ?2");
-        if (row.with(batch->owner, idempotency_key).next()) {
-            const bool same = row.text(1) == request_hash;
+        if (row.with(batch->owner, seal.idempotency_key).next()) {
+            const bool same = row.text(1) == seal.request_hash;
             leave(store, batch->seq);
             return {{same ? Sealed::Kind::existing : Sealed::Kind::conflict, same ? row.text(0) : ""}, batch->seq};
         }
     }
-    store.use("UPDATE batches SET state = 'sealed', request_hash = ?2 WHERE seq = ?1")
-        .with(batch->seq, request_hash)
+    store
+        .use(
+            "UPDATE batches SET state = 'sealed', request_hash = ?2, name = coalesce(nullif(?3, ''), name) WHERE seq = "
+            "?1")
+        .with(batch->seq, seal.request_hash, seal.name)
         .run();
-    if (!idempotency_key.empty())
+    if (!seal.idempotency_key.empty())
         store.use("INSERT INTO batch_keys (owner, key, batch) VALUES (?1, ?2, ?3)")
-            .with(batch->owner, idempotency_key, batch->seq)
+            .with(batch->owner, seal.idempotency_key, batch->seq)
             .run();
-    return {{Sealed::Kind::sealed, id}, std::nullopt};
+    return {{Sealed::Kind::sealed, seal.batch}, std::nullopt};
 }
 
 std::optional<std::int64_t> leave_batch(Connection& store, const std::string& id) {

@@ -19,8 +19,7 @@ struct SealedBatch {
     Sealed answer;
     std::optional<std::int64_t> leaving;
 };
-SealedBatch seal_batch(Connection& store, const std::string& id, const std::string& request_hash,
-                       const std::string& idempotency_key);
+SealedBatch seal_batch(Connection& store, const BatchSeal& seal);
 
 /// From now on it is not seen any more; delete_entries() does the rest. Its seq, or nothing where there is none.
 std::optional<std::int64_t> leave_batch(Connection& store, const std::string& id);

@@ -55,7 +55,9 @@ public:
         writer_ = std::make_unique<SqliteWriter>(connection_);
     }
 
-    ~SqliteStore() override { writer_.reset(); }
+    ~SqliteStore() override {
+        if (writer_) writer_->stop();
+    }
 
     bool shared() const override { return false; }
     void watch(std::function<void(const StoreNotice&)>) override {}
@@ -123,8 +125,7 @@ public:
         };
         write<bool>(kBulky, work, std::move(done));
     }
-    void seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                    Done<Sealed> done) override;
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override;
     void drop_batch(std::string batch, Done<bool> done) override;
     void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override;
     void remove_batch(std::string id, Done<RemoveEffect> done) override;
@@ -248,12 +249,8 @@ void SqliteStore::delete_batch(std::int64_t batch, std::function<void(std::optio
     });
 }
 
-void SqliteStore::seal_batch(std::string batch, std::string request_hash, std::string idempotency_key,
-                             Done<Sealed> done) {
-    const auto work = [batch = std::move(batch), request_hash = std::move(request_hash),
-                       idempotency_key = std::move(idempotency_key)](Connection& store) {
-        return server::seal_batch(store, batch, request_hash, idempotency_key);
-    };
+void SqliteStore::seal_batch(BatchSeal seal, Done<Sealed> done) {
+    const auto work = [seal = std::move(seal)](Connection& store) { return server::seal_batch(store, seal); };
     write<SealedBatch>(kBulky, work, [this, done = std::move(done)](Outcome<SealedBatch> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
         auto& sealed = std::get<SealedBatch>(outcome);

@@ -31,12 +31,15 @@ StoreFault fault_of(const std::exception& error, int system_error) {
 
 SqliteWriter::SqliteWriter(Connection& connection) : connection_(connection), thread_([this] { work(); }) {}
 
-SqliteWriter::~SqliteWriter() {
+SqliteWriter::~SqliteWriter() { stop(); }
+
+void SqliteWriter::stop() {
     {
         const std::lock_guard lock(mutex_);
         stopping_ = true;
     }
     changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
 }
 
 void SqliteWriter::submit(Change change) {

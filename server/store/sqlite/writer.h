@@ -40,6 +40,9 @@ public:
     SqliteWriter& operator=(const SqliteWriter&) = delete;
 
     void submit(Change change);
+    /// The same as the destructor, while whoever owns it can still be asked for more: what is reported at the end may
+    /// ask for further changes.
+    void stop();
     bool healthy() const { return healthy_; }
 
 private:

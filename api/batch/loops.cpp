@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "api/contract/request.h"
 #include "api/csv/heading.h"
 #include "api/csv/table.h"
 #include "api/describe/suggest.h"
 #include "api/json/parse.h"
 #include "api/json/writer.h"
 #include "api/service.h"
+#include "engine/plan.h"
 
 namespace tunewright::api {
 namespace {
@@ -91,7 +91,7 @@ Loops::Loops(const LoopOptions& options) {
     Writer tail;
     tail.begin_object();
     if (!tune_.empty()) {
-        if (!tune_.contains("method")) tune_["method"] = JobRequest{}.tune.front().method;
+        if (!tune_.contains("method")) tune_["method"] = MethodRequest{}.method;
         tail.key("tune");
         tail.raw(Json::array({tune_}).dump());
     }

@@ -211,18 +211,24 @@ BatchReader::~BatchReader() = default;
 
 std::optional<Problem> BatchReader::feed(std::string_view bytes, std::vector<BatchEntry>& entries) {
     std::vector<RawEntry> raw;
-    if (auto problem = cutter_->feed(bytes, raw)) return problem;
-    if (auto problem = refuse_options()) return problem;
-    return take(std::move(raw), entries);
+    auto found = cutter_->feed(bytes, raw);
+    return judge(std::move(found), std::move(raw), entries);
 }
 
 std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
     std::vector<RawEntry> raw;
-    if (auto problem = cutter_->finish(raw)) return problem;
-    if (auto problem = refuse_options()) return problem;
-    if (auto problem = take(std::move(raw), entries)) return problem;
+    auto found = cutter_->finish(raw);
+    if (auto problem = judge(std::move(found), std::move(raw), entries)) return problem;
     if (count_ == 0) return not_valid("", "The batch has no requests; it needs at least one.");
     return std::nullopt;
+}
+
+// What is wrong first is told, however the bytes were cut.
+std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
+                                          std::vector<BatchEntry>& entries) {
+    if (auto problem = refuse_options()) return problem;
+    if (auto problem = take(std::move(raw), entries)) return problem;
+    return found;
 }
 
 std::optional<Problem> BatchReader::refuse_options() const {

@@ -54,6 +54,8 @@ private:
     class LoopsCutter;
     class Finder;
 
+    std::optional<Problem> judge(std::optional<Problem> found, std::vector<RawEntry> raw,
+                                 std::vector<BatchEntry>& entries);
     std::optional<Problem> refuse_options() const;
     std::optional<Problem> take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries);
 

@@ -51,6 +51,7 @@ bool StoringReceiver::find_earlier() {
 }
 
 void StoringReceiver::read(const std::string& bytes, const std::function<void()>& more) {
+    if (over()) return;
     if (jobs_.draining()) return fail(BatchReceipt::Kind::draining);
     if (!find_earlier()) return;
     digest_.update(bytes);
@@ -73,13 +74,6 @@ void StoringReceiver::read_end() {
     if (problem) return end({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
     take(std::move(entries));
     send();
-    if (opened_name_ != reader_.name()) {
-        api::Problem late{422, "invalid-request", "The batch is not valid", {}, {}, {}};
-        late.detail = "name stands behind more than " + std::to_string(kGroup) +
-                      " requests; put it before jobs, or send it as ?name=.";
-        late.errors.push_back({"/name", late.detail});
-        return end({BatchReceipt::Kind::refused, {}, std::move(late), {}});
-    }
     when_few_are_out(0, [self = shared_from_this()] { self->seal(); });
 }
 
@@ -102,10 +96,11 @@ void StoringReceiver::take(std::vector<api::BatchEntry> entries) {
 }
 
 void StoringReceiver::send() {
-    if (group_.empty()) return;
+    std::vector<NewEntry> group = std::exchange(group_, {});
+    if (group.empty() || over()) return;
     open();
     const auto waiting = static_cast<std::size_t>(
-        std::ranges::count_if(group_, [](const NewEntry& entry) { return entry.error.empty(); }));
+        std::ranges::count_if(group, [](const NewEntry& entry) { return entry.error.empty(); }));
     if (waiting > 0 && !jobs_.room_for_entries(waiting)) return fail(BatchReceipt::Kind::queue_full);
     {
         const std::lock_guard lock(mutex_);
@@ -113,8 +108,13 @@ void StoringReceiver::send() {
         ++out_;
     }
     store_.add_entries(
-        id_, std::exchange(group_, {}), now_(),
+        id_, std::move(group), now_(),
         [self = shared_from_this(), waiting](const Outcome<bool>& outcome) { self->sent(outcome, waiting > 0); });
+}
+
+bool StoringReceiver::over() {
+    const std::lock_guard lock(mutex_);
+    return !done_;
 }
 
 void StoringReceiver::open() {
@@ -123,8 +123,7 @@ void StoringReceiver::open() {
         if (!done_ || std::exchange(opened_, true)) return;
         ++out_;
     }
-    opened_name_ = reader_.name();
-    store_.open_batch({id_, opened_name_, order_.owner, order_.flow, now_()},
+    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_()},
                       [self = shared_from_this()](const Outcome<bool>& outcome) { self->sent(outcome, false); });
     sign_of_life();
 }
@@ -158,7 +157,7 @@ void StoringReceiver::sent(const Outcome<bool>& outcome, bool waiting) {
 
 void StoringReceiver::seal() {
     lane_.post([self = shared_from_this()] {
-        self->store_.seal_batch(self->id_, self->digest_.hex(), self->order_.idempotency_key,
+        self->store_.seal_batch({self->id_, self->digest_.hex(), self->order_.idempotency_key, self->reader_.name()},
                                 [self](const Outcome<Sealed>& outcome) { self->sealed(outcome); });
     });
 }
@@ -208,8 +207,9 @@ void StoringReceiver::end(BatchReceipt receipt) {
         drop = opened_ && receipt.kind != BatchReceipt::Kind::created && receipt.kind != BatchReceipt::Kind::existing &&
                receipt.kind != BatchReceipt::Kind::conflict;
     }
-    if (drop) store_.drop_batch(id_, [](const Outcome<bool>&) {});
-    done(std::move(receipt));
+    if (!drop) return done(std::move(receipt));
+    // Told when nothing of it is kept; a store that cannot drop it now does so later, for it hears of it no more.
+    store_.drop_batch(id_, [done, receipt](const Outcome<bool>&) { done(receipt); });
 }
 
 }  // namespace tunewright::server

@@ -27,6 +27,7 @@ private:
     void take(std::vector<api::BatchEntry> entries);
     void send();
     void open();
+    bool over();
     void when_few_are_out(std::size_t few, std::function<void()> then);
 
     // From any thread.
@@ -50,7 +51,6 @@ private:
     api::Sha256 digest_;
     std::vector<NewEntry> group_;
     std::int64_t next_index_ = 0;
-    std::string opened_name_;
     std::optional<bool> earlier_;  ///< whether a batch has this key already
 
     std::mutex mutex_;

@@ -178,6 +178,13 @@ TEST(BatchReader, RefusesAnotherShapeWithTheCure) {
     EXPECT_THAT(refusal({}, ""), HasSubstr("422 The batch has no requests"));
 }
 
+TEST(BatchReader, TellsWhatIsWrongFirst) {
+    BatchQuestion question = form(BatchForm::json);
+    question.most_entries = 2;
+    EXPECT_THAT(refusal(question, "{\"jobs\": [{}, {}, {}, {]}"), HasSubstr("more than 2 requests"));
+    EXPECT_THAT(refusal(question, "{\"jobs\": [{}, {}, {]}"), HasSubstr("400 The body is not JSON"));
+}
+
 TEST(BatchReader, TakesNoMoreRequestsThanAllowed) {
     BatchQuestion question = form(BatchForm::ndjson);
     question.most_entries = 3;
@@ -211,6 +218,15 @@ TEST(BatchReader, ReadsLoopsByTheirHeadings) {
                               "tune": [{"method": "robust", "Ms": 1.6, "controller": "PI"}], "evaluate": {"points": 0}})"));
     EXPECT_EQ(out.entries[1].name, "FIC \"A\"; 2");
     EXPECT_EQ(request_of(out.entries[1])["plant"], Json::parse(R"({"type": "fopdt", "K": -0.4, "T": 1.25, "L": 0.5})"));
+}
+
+TEST(BatchReader, ReadsTheLoopsOfTheDocuments) {
+    const Outcome out =
+        read(loops({{"method", "robust"}, {"Ms", "1.6"}, {"controller", "PI"}}), data_file("../../docs/loops.csv"));
+    ASSERT_FALSE(out.problem);
+    ASSERT_EQ(out.entries.size(), 5u);
+    for (const BatchEntry& entry : out.entries)
+        EXPECT_TRUE(std::holds_alternative<PreparedJob>(entry.job)) << entry.name;
 }
 
 TEST(BatchReader, ReadsLoopsAsProgramsWriteThem) {

@@ -34,9 +34,26 @@ TEST(OpenApi, HasEveryPathAndOneOperationIdEach) {
     const Json document = Json::parse(openapi_json());
     EXPECT_EQ(document["openapi"], "3.1.0");
     EXPECT_EQ(document["info"]["version"], TUNEWRIGHT_VERSION);
-    for (const char* path : {"/v1/jobs", "/v1/jobs/{id}", "/v1/jobs/{id}/events", "/v1/jobs/{id}/cancel",
-                             "/v1/evaluate", "/v1/identify", "/v1/experiments/relay", "/v1/methods", "/v1/methods/{id}",
-                             "/v1/examples", "/openapi.json", "/healthz", "/readyz", "/metrics", "/"}) {
+    for (const char* path : {"/v1/jobs",
+                             "/v1/jobs/{id}",
+                             "/v1/jobs/{id}/events",
+                             "/v1/jobs/{id}/cancel",
+                             "/v1/jobs/{id}/result.csv",
+                             "/v1/batches",
+                             "/v1/batches/{id}",
+                             "/v1/batches/{id}/results",
+                             "/v1/batches/{id}/cancel",
+                             "/v1/evaluate",
+                             "/v1/identify",
+                             "/v1/experiments/relay",
+                             "/v1/methods",
+                             "/v1/methods/{id}",
+                             "/v1/examples",
+                             "/openapi.json",
+                             "/healthz",
+                             "/readyz",
+                             "/metrics",
+                             "/"}) {
         EXPECT_TRUE(document["paths"].contains(path)) << path;
     }
     std::set<std::string> ids;

@@ -60,6 +60,17 @@ TEST(ResultRows, AsNdjsonHoldResultAndErrorAsTheyAre) {
               "{\"index\":2,\"id\":\"id2\",\"name\":null,\"status\":\"queued\"}\n");
 }
 
+TEST(ResultRows, AsNdjsonFitTheDocument) {
+    const std::string result = result_of(R"("tune": [{"method": "simc"}], "evaluate": {"points": 0})");
+    const std::string error = to_json({422, "invalid-request", "Not valid", "K is 0.", {}, {}});
+    for (const ResultRow& row : {ResultRow{0, "id", "a", "succeeded", result, ""},
+                                 ResultRow{1, "id", "", "failed", "", error}, ResultRow{2, "id", "", "queued", "", ""}}) {
+        std::string line;
+        append_ndjson(row, line);
+        EXPECT_EQ(schema_faults(Json::parse(line), "BatchRow"), std::vector<std::string>{}) << line;
+    }
+}
+
 TEST(ResultRows, AsCsvHaveOneLineForEachController) {
     const std::string result = result_of(
         R"("tune": [{"method": "simc"}, {"method": "robust"}], "baseline": {"form": "parallel", "Kp": 1, "Ki": 0.1, "Kd": 0.5}, "evaluate": {"points": 0})");
@@ -107,6 +118,15 @@ TEST(ResultRows, AsCsvLeaveCellsEmptyWhereThereIsNoNumber) {
     EXPECT_EQ(under("error", split_lines(out)[0]), "K is 0");
     EXPECT_EQ(under("status", split_lines(out)[1]), "queued");
     EXPECT_EQ(under("Kp", split_lines(out)[1]), "");
+}
+
+TEST(ResultRows, ColumnsAreThoseOfTheDocument) {
+    const Json document = Json::parse(openapi_json());
+    const std::string described = document["paths"]["/v1/batches/{id}/results"]["get"]["description"];
+    std::string listed;
+    for (const std::string& heading : cells(split_lines(csv_headings()).front()))
+        listed += (listed.empty() ? "" : ", ") + heading + (heading == "warnings" ? " (how many)" : "");
+    EXPECT_THAT(described, HasSubstr("columns " + listed + "."));
 }
 
 TEST(ResultRows, NoNameBecomesAFormula) {

@@ -202,6 +202,16 @@ class BatchesTest(unittest.TestCase):
         table = self.service.get("/v1/batches/%s/results?format=csv" % batch).body.decode().splitlines()
         self.assertEqual(len(table), 10_001)
 
+    def test_the_134_plants_get_robust_controllers(self):
+        plants = amigo_batch()
+        self.assertEqual(len(plants), 134)
+        body = {"jobs": [{"plant": plant, "tune": [{"method": "robust", "Ms": 1.4, "Mt": 1.4}]} for plant in plants]}
+        rows = rows_of(self.follow(self.post(body, {"Content-Type": "application/json"})))
+        self.assertEqual([row["status"] for row in rows], ["succeeded"] * 134)
+        for row in rows:
+            robustness = row["result"]["controllers"][0]["robustness"]
+            self.assertLessEqual(max(robustness["Ms"], robustness["Mt"]), 1.4 * (1 + 1e-6), row["index"])
+
     def test_results_of_the_moment_do_not_wait(self):
         batch = self.post(json.dumps(LONG) + "\n" + lines(1))
         rows = rows_of(self.service.get("/v1/batches/%s/results" % batch))
@@ -323,6 +333,29 @@ class BatchesTest(unittest.TestCase):
         self.assertEqual(self.service.post_job(QUICK, wait=30)["status"], "succeeded")
         for reader in readers:
             reader.close()
+
+
+def amigo_batch():
+    """The 134 plants of Hagglund and Astrom (2004), as in bench/batch.h."""
+    def lags(times, gain=1):
+        product = gain
+        for T in times:
+            product /= T
+        return {"type": "zpk", "K": product, "zeros": [], "poles": [-1 / T for T in times]}
+
+    first = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.3, 1.5, 2, 4, 6, 8, 10, 20, 50, 100, 200, 500, 1000]
+    dead = [0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
+    plants = [{"type": "fopdt", "K": 1, "T": T, "L": 1} for T in first]
+    plants += [{"type": "sopdt", "K": 1, "T1": T, "T2": T, "L": 1} for T in [0.01] + first[:-1]]
+    plants += [lags([1, T, T]) for T in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 2.0, 5.0, 10.0)]
+    plants += [lags([1.0] * n) for n in (3, 4, 5, 6, 7, 8)]
+    plants += [lags([1, 0.1 * i, (0.1 * i) ** 2, (0.1 * i) ** 3]) for i in range(1, 10)]
+    plants += [{"type": "ipdt", "K": 1, "L": L, "T": 1 - L} for L in (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0)]
+    plants += [{"type": "sopdt", "K": T, "T1": T, "T2": 1 - L, "L": L} for T in (1.0, 2.0, 5.0, 10.0) for L in dead]
+    plants += [{"type": "zpk", "K": -0.1 * i, "zeros": [10 / i], "poles": [-1, -1, -1]} for i in range(1, 12)]
+    plants += [{"type": "zpk", "K": 100 / i ** 2, "zeros": [], "poles": [-1, [-7 / i, 10 / i * 0.51 ** 0.5], [-7 / i, -10 / i * 0.51 ** 0.5]]}
+               for i in range(1, 11)]
+    return plants
 
 
 class OwnersTest(unittest.TestCase):

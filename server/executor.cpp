@@ -10,7 +10,7 @@ void be_nice(int niceness) {
     if (niceness > 0) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
 }
 
-Executor::Executor(std::size_t threads, int niceness) {
+Executor::Executor(std::size_t threads, int niceness) : working_(threads) {
     for (std::size_t i = 0; i < threads; i++) threads_.emplace_back([this, niceness] { work(niceness); });
 }
 
@@ -23,6 +23,17 @@ void Executor::stop() {
     }
     changed_.notify_all();
     threads_.clear();
+}
+
+bool Executor::stop_within(std::chrono::duration<double> patience) {
+    {
+        std::unique_lock lock(mutex_);
+        stopping_ = true;
+        changed_.notify_all();
+        if (!ended_.wait_for(lock, patience, [this] { return working_ == 0; })) return false;
+    }
+    threads_.clear();
+    return true;
 }
 
 void Executor::post(std::function<void()> task) { post_within(static_cast<std::size_t>(-1), std::move(task)); }
@@ -39,6 +50,13 @@ bool Executor::post_within(std::size_t most, std::function<void()> task) {
 
 void Executor::work(int niceness) {
     be_nice(niceness);
+    run_tasks();
+    const std::lock_guard lock(mutex_);
+    working_--;
+    ended_.notify_all();
+}
+
+void Executor::run_tasks() {
     for (;;) {
         std::function<void()> task;
         {

@@ -1,6 +1,7 @@
 // A fixed set of threads that run what is posted, in order.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -20,6 +21,9 @@ public:
 
     /// Runs what is queued, then joins; what is posted later is dropped.
     void stop();
+    /// The same where that is done in time. False where a task goes on for longer: it is left running, and the process
+    /// must end without destroying this.
+    bool stop_within(std::chrono::duration<double> patience);
 
     /// The task must not throw.
     void post(std::function<void()> task);
@@ -28,9 +32,12 @@ public:
 
 private:
     void work(int niceness);
+    void run_tasks();
 
     std::mutex mutex_;
     std::condition_variable changed_;
+    std::condition_variable ended_;
+    std::size_t working_ = 0;  ///< threads that have not ended
     std::deque<std::function<void()>> tasks_;
     bool stopping_ = false;
     std::vector<std::jthread> threads_;

@@ -30,6 +30,7 @@ constexpr int kBadConfiguration = 2;
 constexpr int kPortFailed = 3;
 constexpr int kStoreFailed = 4;
 constexpr std::size_t kHttpThreads = 4;
+constexpr std::chrono::seconds kStopPatience{2};  // for synchronous computations, which have been asked to stop
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
@@ -67,10 +68,9 @@ class Service {
 public:
     explicit Service(const Config& config)
         : config_(config),
-          store_(metered(open_store(config.store),
-                         [this](std::string_view operation, double seconds, bool done) {
-                             metrics_.count_store(operation, seconds, done);
-                         })),
+          store_(
+              metered(open_store(config.store), [this](std::string_view operation, double seconds,
+                                                       bool done) { metrics_.count_store(operation, seconds, done); })),
           jobs_(*store_, timer_, settings(config)),
           lane_(core_count()),
           batch_lane_(kBatchThreads, kBatchNiceness),
@@ -109,12 +109,12 @@ public:
         const bool idle = jobs_.drain(std::chrono::duration<double>(config_.drain_timeout_s));
         server_.stop();
         loop_.join();
-        lane_.stop();
+        const bool free = lane_.stop_within(kStopPatience);
         batch_lane_.stop();
         pool_.stop();
         timer_.stop();
-        if (idle) store_.reset();
-        return idle;
+        if (idle && free) store_.reset();
+        return idle && free;
     }
 
 private:

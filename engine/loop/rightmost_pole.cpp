@@ -61,7 +61,9 @@ Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {
         const DelaySystem closed = close_without_delay(system);
         poles = eigenvalues(closed.F, closed.n);
     }
-    if (poles.empty()) return Error{ErrorKind::numerical_failure, "", "The loop has no states, so it has no poles."};
+    if (poles.empty())
+        return Error{ErrorKind::numerical_failure, "",
+                     "The loop has no poles that can be computed: it has no states, or its numbers are out of range."};
     return *std::max_element(poles.begin(), poles.end(), [](auto a, auto b) { return a.real() < b.real(); });
 }
 

@@ -17,15 +17,19 @@ using Complex = std::complex<double>;
 Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Matrix>(values.data(), n, n); }
 
 // Diagonal similarity by powers of two that makes row and column norms alike (Osborne 1960; Parlett and Reinsch 1969).
+// A few sweeps do in practice; numbers at the ends of the range may go on for ever.
 void balance(Matrix& A) {
+    constexpr int kMostSweeps = 100;
     const auto n = A.rows();
-    for (bool changed = true; changed;) {
+    bool changed = true;
+    for (int sweep = 0; changed && sweep < kMostSweeps; ++sweep) {
         changed = false;
         for (Eigen::Index i = 0; i < n; ++i) {
             double row = A.row(i).cwiseAbs().sum() - std::abs(A(i, i));
             double column = A.col(i).cwiseAbs().sum() - std::abs(A(i, i));
             if (row == 0 || column == 0) continue;
             const double sum = row + column;
+            if (!std::isfinite(4 * sum)) return;
             double factor = 1;
             for (; column < row / 2; column *= 4) factor *= 2;
             for (; column >= row * 2; column /= 4) factor /= 2;
@@ -97,6 +101,7 @@ std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows) {
 std::vector<Complex> eigenvalues(std::span<const double> matrix, int n) {
     if (n == 0) return {};
     Matrix A = as_matrix(matrix, n);
+    if (!A.allFinite()) return {};
     balance(A);
     return paired(Eigen::EigenSolver<Matrix>(A, false).eigenvalues());
 }

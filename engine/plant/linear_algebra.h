@@ -13,6 +13,7 @@ namespace tunewright {
 std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);
 
 /// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
+/// None where an entry is not finite.
 std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
 
 /// Of a real symmetric matrix: vectors[k] has length one and belongs to values[k], in ascending order.

@@ -26,6 +26,7 @@ std::string cure_for(const Json& value) {
 
 std::string broken_rule(double value, const NumberRule& rule) {
     if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
+    if (value != 0 && std::abs(value) < kSmallestNumber) return "0 or at least 1e-30 in size; choose another unit";
     const bool low =
         (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
     const bool high =
@@ -166,6 +167,9 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRu
                 const std::size_t before = reader.count();
                 for (std::size_t i = 0; i < value.size() && reader.count() < before + kFaultsListed; ++i) {
                     const Reader::At at(reader, i);
+                    // Among numbers of a matrix or a record one that small is the rounding of 0.
+                    const bool rounding = value[i].is_number() && std::abs(value[i].get<double>()) < kSmallestNumber;
+                    if (rounding && !rule.exclusive_minimum) continue;
                     if (const auto read = read_number(value[i], rule, reader)) target[i] = *read;
                 }
             },

@@ -81,6 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "gain 0 cannot be controlled"},
         BadRequest{"Huge", with_plant(R"({"type": "fopdt", "K": 1e300, "T": 1, "L": 1})"), 422, "/plant/K",
                    "at most 1e30"},
+        BadRequest{"Tiny", with_plant(R"({"type": "fopdt", "K": 1, "T": 1e-300, "L": 1})"), 422, "/plant/T",
+                   "0 or at least 1e-30"},
         BadRequest{"NoType", with_plant(R"({"K": 1})"), 422, "/plant/type", "it must be fopdt, sopdt"},
         BadRequest{"UnknownType", with_plant(R"({"type": "foptd", "K": 1})"), 422, "/plant/type",
                    "Did you mean fopdt?"},

@@ -82,7 +82,7 @@ class ReplicasTest(unittest.TestCase):
         self.assertEqual(first.json["id"], again.json["id"])
 
     def test_a_stopped_process_gives_its_job_to_another(self):
-        job_id = self.running(timeout_s=3)
+        job_id = self.running(timeout_s=10)
         helper = Service("--role", "worker", "--workers", "1", store=self.place.store)
         self.addCleanup(helper.__exit__)
         self.worker.stop()

@@ -14,7 +14,7 @@ struct RegionCheck {
 
 RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
     const Badness badness = [&](const LinearPlant& plant) { return log_sensitivity_peak(plant, controller); };
-    RegionCheck result{0, {{}, -1}};
+    RegionCheck result{0, {PlantRegion::Point(static_cast<std::size_t>(region.dimension()), 0.0), -INFINITY}};
     const auto look = [&](const PlantRegion::Point& z) {
         const auto plant = LinearPlant::make(region.at(z));
         const double value = plant ? badness(*plant) : INFINITY;
@@ -34,7 +34,7 @@ RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
 
 RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller) {
     RegionFigures figures;
-    double fractions = 0, worst = -1;
+    double fractions = 0, worst = -INFINITY;
     for (const auto& region : family.regions) {
         const RegionCheck found = check(region, controller);
         fractions += found.stable_fraction;

@@ -48,7 +48,8 @@ WorstMember find_worst(const PlantRegion& region, const Badness& badness, const 
 double log_sensitivity_peak(const LinearPlant& plant, const ParallelPid& controller) {
     const auto loop = Loop::make(plant, controller);
     if (!loop || !count_unstable_poles(*loop).stable()) return kInfinity;
-    return std::log(find_sensitivity_peak(*loop, make_loop_grid(*loop)).value);
+    const double peak = find_sensitivity_peak(*loop, make_loop_grid(*loop)).value;
+    return peak > 0 ? std::log(peak) : kInfinity;
 }
 
 }  // namespace tunewright

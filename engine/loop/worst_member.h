@@ -27,7 +27,8 @@ constexpr int kRegionSamples = 128;
 WorstMember find_worst(const PlantRegion& region, const Badness& badness, const std::vector<PlantRegion::Point>& starts,
                        const std::stop_token& stop = {});
 
-/// ln of the largest |S| of the loop; infinite where it is unstable or no loop.
+/// ln of the largest |S| of the loop, negative where that is below 1; infinite where it is unstable, no loop, or where
+/// the peak cannot be told.
 double log_sensitivity_peak(const LinearPlant& plant, const ParallelPid& controller);
 
 }  // namespace tunewright

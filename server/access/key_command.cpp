@@ -34,7 +34,7 @@ int make_key(const KeyCommand& command) {
     const std::string key = new_key();
     const std::string line = command.name + " sha256:" + api::sha256_hex(key) + "\n";
     if (command.file.empty()) {
-        std::cerr << "The line for the file of keys:\n" << line;
+        std::cerr << "# For the file of keys:\n" << line;
     } else if (!append(command.file, line)) {
         std::cerr << "tunewright: cannot write to " << command.file << ": " << std::strerror(errno) << ".\n";
         return kFailed;

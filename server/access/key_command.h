@@ -7,7 +7,7 @@ namespace tunewright::server {
 
 struct KeyCommand {
     std::string name;
-    std::string file;  ///< "": the line for the file of keys goes to standard error
+    std::string file;  ///< "": standard error gets what may stand in such a file
 };
 
 /// Prints the key, which nobody keeps, and adds its digest to the file, readable by its owner alone where it is new.

@@ -38,6 +38,12 @@ class KeysTest(unittest.TestCase):
         self.assertEqual(len(text.splitlines()), 2)
         self.assertEqual(os.stat(self.path).st_mode & 0o077, 0)
 
+    def test_what_goes_to_standard_error_is_a_file_of_keys(self):
+        made = subprocess.run([BINARY, "key", "eve"], check=True, capture_output=True, text=True)
+        with open(self.path, "w") as file:
+            file.write(made.stderr)
+        self.assertEqual(self.serve().get("/v1/jobs", bearer(made.stdout.strip())).status, 200)
+
     def test_without_a_key_nothing_below_v1_is_answered(self):
         service = self.serve()
         for method, path in (("GET", "/v1/jobs"), ("POST", "/v1/jobs"), ("POST", "/v1/evaluate"), ("GET", "/metrics"),

@@ -24,6 +24,9 @@ std::string cure_for(const Json& value) {
     return {};
 }
 
+// So that quotients stay finite too, and no time or frequency lies out of reach.
+constexpr double kSmallestNumber = 1e-30;
+
 std::string broken_rule(double value, const NumberRule& rule) {
     if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
     if (value != 0 && std::abs(value) < kSmallestNumber) return "0 or at least 1e-30 in size; choose another unit";

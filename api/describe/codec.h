@@ -30,8 +30,7 @@ struct Codec {
     std::function<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
 };
 
-/// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite, and
-/// 0 or at least 1e-30, so that quotients do and no time or frequency lies out of reach.
+/// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite.
 struct NumberRule {
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {}, exclusive_maximum = {};
     bool not_zero = false;
@@ -39,7 +38,6 @@ struct NumberRule {
 };
 
 constexpr double kLargestNumber = 1e30;
-constexpr double kSmallestNumber = 1e-30;
 
 /// Reads a number or reports why it is none; the rule included. The one place of these sentences.
 std::optional<double> read_number(const Json& value, const NumberRule& rule, Reader& reader);

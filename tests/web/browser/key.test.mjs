@@ -25,7 +25,7 @@ test("a service with keys asks for one, says when it is wrong, and tunes with th
       await page.getByText("That key is not known here. Try another one.").waitFor();
       await page.getByLabel("Key", { exact: true }).fill(key);
       await page.getByRole("button", { name: "Use this key" }).click();
-      await page.getByRole("button", { name: "Tune", exact: true }).click();
+      await page.getByRole("button", { name: "Tune this model" }).click();
       await page.waitForURL(/#\/jobs\/[^/]+\/design/);
       await page.getByRole("heading", { name: /Settings|Controller/ }).first().waitFor();
       assert.equal(await page.evaluate(() => sessionStorage.getItem("tunewright-key")), key);

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <memory>
 
 #include "api/csv/encoding.h"
@@ -9,6 +8,7 @@
 #include "server/routes/batch_json.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
+#include "server/routes/parameters.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -22,7 +22,6 @@ using http::problem_response;
 using http::Reply;
 using http::Response;
 
-constexpr int kLargestPage = 200;
 constexpr std::size_t kLongestKey = 200;
 constexpr std::size_t kLongestName = 200;
 
@@ -53,27 +52,6 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
     Response found = batch_response(batches, call.request, call.path.at("id"), 200);
     if (found.status == 200) return std::nullopt;
     return found;
-}
-
-api::Problem bad_parameters(const char* of) {
-    return http::problem(422, std::string("The parameters of the ") + of + " are not valid.");
-}
-
-void refuse_parameter(api::Problem& problem, const std::string& name, const std::string& value,
-                      const std::string& rule) {
-    // What is no UTF-8 is shown as if it were Windows-1252: an answer is always text.
-    std::string name_storage, value_storage;
-    const std::string shown_name(api::utf8_text(name, name_storage));
-    problem.errors.push_back({"/" + api::pointer_segment(shown_name),
-                              shown_name + " is \"" +
-                                  std::string(api::utf8_text(std::string_view(value).substr(0, 64), value_storage)) +
-                                  "\"; " + rule});
-}
-
-template <class Number>
-bool read_whole(const std::string& text, Number least, Number most, Number& target) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target);
-    return error == std::errc{} && end == text.data() + text.size() && target >= least && target <= most;
 }
 
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <memory>
 
 #include "api/service.h"
@@ -6,6 +5,7 @@
 #include "server/http/problems.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
+#include "server/routes/parameters.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -17,7 +17,6 @@ using http::problem_response;
 using http::Reply;
 using http::Response;
 
-constexpr int kLargestPage = 200;
 constexpr std::size_t kLongestKey = 200;
 
 Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
@@ -141,10 +140,10 @@ Response get_job(JobService& jobs, const Call& call) {
 
 /// Reads the list's parameters into `query`; what is wrong with them into the problem.
 api::Problem read_query(const http::Request& request, JobQuery& query) {
-    api::Problem problem = http::problem(422, "The parameters of the list are not valid.");
+    api::Problem problem = bad_parameters("list");
     for (const auto& [name, value] : request.query) {
-        const auto refuse = [&, &key = name](const std::string& rule) {
-            problem.errors.push_back({"/" + key, key + " is \"" + value.substr(0, 64) + "\"; " + rule});
+        const auto refuse = [&, &key = name, &given = value](const std::string& rule) {
+            refuse_parameter(problem, key, given, rule);
         };
         if (name == "status") {
             query.status = job_status(value);
@@ -154,10 +153,7 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
         } else if (name == "batch") {
             query.batch = value;
         } else if (name == "limit") {
-            const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), query.limit);
-            if (error != std::errc{} || end != value.data() + value.size() || query.limit < 1 ||
-                query.limit > kLargestPage)
-                refuse("it must be a whole number from 1 to 200.");
+            if (!read_whole(value, 1, kLargestPage, query.limit)) refuse("it must be a whole number from 1 to 200.");
         } else if (name == "cursor") {
             query.before_seq = parse_cursor(value);
             if (!query.before_seq) refuse("it must come from the next link of an earlier page.");

@@ -70,3 +70,5 @@ BENCHMARK(relay)->Arg(1000)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tunewright
+
+BENCHMARK_MAIN();

@@ -90,7 +90,8 @@ std::vector<PlannedRow> league_rows(const MethodOptions& given) {
 
 bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms) {
     const auto key = [&](const Evaluation& e) {
-        const bool within = e.robustness.stable && e.robustness.Ms && *e.robustness.Ms <= rank_Ms;
+        const auto worst_Ms = e.region ? e.region->worst_Ms : e.robustness.Ms;
+        const bool within = e.robustness.stable && worst_Ms && *worst_Ms <= rank_Ms;
         const auto& IAE = e.performance.load.IAE;
         return std::tuple(!within, !e.robustness.stable, IAE ? *IAE : std::numeric_limits<double>::infinity());
     };

@@ -13,7 +13,7 @@ namespace tunewright {
 /// a variant that contradicts one is left out, a method of which nothing remains is one row with its refusal.
 std::vector<PlannedRow> league_rows(const MethodOptions& given);
 
-/// Whether `a` comes before `b`: stable with Ms <= rank_Ms first, then stable, then the rest, each by load IAE.
+/// Whether `a` comes before `b`: stable with Ms <= rank_Ms (on the worst plant of a region) first, then stable, then the rest, each by load IAE.
 bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms);
 
 }  // namespace tunewright

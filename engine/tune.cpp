@@ -40,15 +40,39 @@ std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& 
     return value ? std::optional(*value) : std::nullopt;
 }
 
+// Whether some plant of the region is unstable, or beyond the limit that the method was asked for.
+bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned) {
+    if (!evaluation.region) return false;
+    const auto limit = Ms_limit(*planned.method, planned.options);
+    return !evaluation.region->worst_Ms || (limit && *evaluation.region->worst_Ms > kNoticeable * *limit);
+}
+
+// With a model from a record what the region shows is the answer's own doubt, not only the user's.
 void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified) {
+    constexpr double kFar = 2;  // times the limit
+    if (identified)
+        for (Warning& warning : evaluation.warnings)
+            if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
     const auto limit = Ms_limit(*planned.method, planned.options);
     if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
     const double worst = *evaluation.region->worst_Ms;
     if (worst <= kNoticeable * *limit) return;
-    evaluation.warnings.push_back(
-        {"above-limit-in-region", "On the worst plant of the region Ms is " + text(worst) + ", above the " +
-                                      text(*limit) + " asked for." +
-                                      (identified ? " uncertainty \"identified\" holds the limit on all of it." : "")});
+    evaluation.warnings.push_back({"above-limit-in-region",
+                                   "On the worst plant of the region Ms is " + text(worst) + ", above the " +
+                                       text(*limit) + " asked for.",
+                                   identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
+}
+
+// The design that holds on the region stands before the one on the model alone, and says why.
+void say_choice(Evaluation& held, const Evaluation& nominal) {
+    const std::string there = nominal.region->worst_Ms
+                                  ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
+                                  : std::string("the loop may be unstable");
+    held.warnings.insert(held.warnings.begin(),
+                         {"held-on-region",
+                          "The limits hold on every plant that the record leaves possible (95 %). With the design for "
+                          "the model alone, the next entry, " +
+                              there + " on them. uncertainty \"none\" gives that one alone."});
 }
 
 void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {
@@ -82,6 +106,7 @@ private:
     std::optional<Error> state_problem();
     Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
+    std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
     bool repeats(const TuningEntry& entry) const;
     bool tune_rows(const std::vector<PlannedRow>& planned, double from, double to);
     bool wants_optima() const;
@@ -165,9 +190,9 @@ std::optional<Error> Run::find_plant() {
     family_ = family_of(model->plant);
     if (auto region = identified_region(*model))
         family_ = *region;
-    else if (request_.over_identified_region)
+    else if (request_.identified_region == IdentifiedRegion::held)
         return region.error();
-    if (request_.over_identified_region) held_ = family_;
+    if (request_.identified_region == IdentifiedRegion::held) held_ = family_;
     if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
         dead_time_std_ = at->second;
     result_.model = std::move(*model);
@@ -265,12 +290,31 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     evaluate_into(entry, answered(*tuned), tuned->warnings);
     add_tradeoff(entry, tuned->arrieta);
     if (entry.evaluation) {
-        warn_of_region(*entry.evaluation, planned, result_.model && !held_);
+        warn_of_region(*entry.evaluation, planned, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
         entry.evaluation->compute_ms = now_ms() - started;
     }
     if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
     return entry;
+}
+
+// The method's entry, and before it one that holds on the record's region, where that is needed and can be had.
+std::vector<TuningEntry> Run::entries(const PlannedRow& planned, double from, double to) {
+    std::vector<TuningEntry> entries;
+    entries.push_back(entry(planned, from, to));
+    const bool may = result_.model && request_.identified_region == IdentifiedRegion::where_needed &&
+                     planned.method->holds_family && !family_.single();
+    const auto& nominal = entries.front().evaluation;
+    if (!may || !nominal || result_.partial || stopped() || !breaks_limit(*nominal, planned)) return entries;
+    problem_->family = family_;
+    TuningEntry held = entry(planned, to, to);
+    problem_->family = held_;
+    if (!held.evaluation || result_.partial) return entries;
+    held.over_region = true;
+    held.title += ", on all that the record leaves possible";
+    say_choice(*held.evaluation, *nominal);
+    entries.insert(entries.begin(), std::move(held));
+    return entries;
 }
 
 TuningEntry Run::baseline() {
@@ -329,10 +373,11 @@ bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double 
     for (const PlannedRow& next : planned) {
         if (stopped()) return false;
         report(from, "tune", "Tuning with " + next.title + ".");
-        TuningEntry entry = this->entry(next, from, from + share_of_one);
-        if (entry.error && entry.error->kind == ErrorKind::cancelled) return false;
-        keep_best(entry);
-        if (!next.of_all || !repeats(entry)) result_.controllers.push_back(std::move(entry));
+        for (TuningEntry& entry : entries(next, from, from + share_of_one)) {
+            if (entry.error && entry.error->kind == ErrorKind::cancelled) return false;
+            keep_best(entry);
+            if (!next.of_all || !repeats(entry)) result_.controllers.push_back(std::move(entry));
+        }
         if (result_.partial) return false;
         from += share_of_one;
     }

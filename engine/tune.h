@@ -17,6 +17,13 @@
 
 namespace tunewright {
 
+/// Whether methods that can hold their limits over the 95 % confidence region of a record's model do so.
+enum class IdentifiedRegion {
+    where_needed,  ///< where the design on the model alone breaks a limit there: then both are answered, this one first
+    unused,
+    held,
+};
+
 struct TuningRequest {
     std::optional<PlantModel> plant;  ///< exactly one of plant and record
     std::optional<Record> record;
@@ -24,7 +31,7 @@ struct TuningRequest {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
-    bool over_identified_region = false;  ///< with a record: limits hold over its 95 % confidence region
+    IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
 };
 
 /// One line of the answer: a method's controller with its evaluation, or why there is none.
@@ -32,6 +39,7 @@ struct TuningEntry {
     std::string method;  ///< "baseline" for today's settings
     std::string title;
     std::string source;
+    bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
     MethodOptions options;
     std::optional<Plant> reduced_model;
     std::optional<CostSurface> surface;

@@ -317,7 +317,10 @@ const Description<Warning>& warning_contract() {
             return Codec<std::string>{{}, text(0).write, [](SchemaBook&) { return Json{{"type", "string"}}; }};
         };
         d.field("code", &Warning::code, words(), "Stable, in kebab-case.")
-            .field("detail", &Warning::detail, words(), "One sentence with the figures.");
+            .field("detail", &Warning::detail, words(), "One sentence with the figures.")
+            .field("level", &Warning::level,
+                   only_answered(choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}})),
+                   "bad: what it belongs to is not to be used as it stands.");
         return d;
     }();
     return description;

@@ -241,8 +241,9 @@ const Description<JobRequest>& job_contract() {
             .field("evaluate", &JobRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
             .field("uncertainty", &JobRequest::uncertainty,
-                   choice<std::string>({{"none", "none"}, {"identified", "identified"}}),
-                   "identified: robust holds its limits over the record's 95 % confidence region.")
+                   choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
+                   "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
+                   "design on the model alone breaks a limit there, both are answered, the one that holds it first.")
             .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .check_presence(check_source)
@@ -297,7 +298,9 @@ TuningRequest to_engine(JobRequest request) {
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;
     out.evaluate = request.evaluate;
-    out.over_identified_region = request.uncertainty == "identified";
+    out.identified_region = request.uncertainty == "identified" ? IdentifiedRegion::held
+                            : request.uncertainty == "none"     ? IdentifiedRegion::unused
+                                                                : IdentifiedRegion::where_needed;
     return out;
 }
 

@@ -15,7 +15,7 @@ struct JobRequest {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
-    std::string uncertainty = "none";
+    std::string uncertainty = "auto";
     double timeout_s = 60;
     ReadRecord read;  ///< of `record`
 };

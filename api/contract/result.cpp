@@ -85,6 +85,13 @@ const Description<TuningEntry>& entry_contract() {
     static const auto description = [] {
         Description<TuningEntry> d("Entry", "One controller with everything known about it, or why there is none.");
         add_method_fields(d);
+        d.field(
+            "over_region", {}, [](const TuningEntry&, Writer& out) { out.boolean(true); },
+            [](SchemaBook&) {
+                return Json{{"type", "boolean"}};
+            },
+            "Limits hold over the record's 95 % confidence region; left out where they hold on the model alone.", {},
+            [](const TuningEntry& entry) { return !entry.over_region; });
         evaluation_field(d, "warnings", &Evaluation::warnings, list_of(answer(warning_contract())), "Remarks.");
         d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))),
                 "The simpler model that the rule used.");

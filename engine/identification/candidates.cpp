@@ -77,7 +77,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
 }
 
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
-constexpr double kWorthAMention = 2, kStrong = 10, kRuledOut = 1e6;
+constexpr double kPositive = 6, kStrong = 10;
 
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
@@ -96,41 +96,25 @@ bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
 }
 
-/// Whether the record contradicts an unseen step at its first sample: y stays within the noise until u first moves, for
-/// longer than the dead time.
-bool seen_at_rest(const CleanRecord& r, double L, double noise) {
-    const double until = r.v_time.front();
-    int n = 0;
-    double sum = 0, squares = 0;
-    for (; n < r.samples() && r.t[n] <= until; ++n) {
-        sum += r.y[n];
-        squares += r.y[n] * r.y[n];
-    }
-    if (n < 5 || until <= L) return false;
-    const double mean = sum / n, spread = std::sqrt(std::max(0.0, squares / n - mean * mean));
-    return spread <= std::max(2 * noise, 0.01);
-}
-
+/// A relay at work from the first row on: no part of the record is at rest.
 bool starts_in_relay(const FitContext& context) {
     const CleanRecord& r = context.record;
-    return context.relay && !r.u0_given && r.changes() > 1 &&
+    return context.relay && context.start == Start::unseen &&
            std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
 
-/// Where the fit from rest leaves more than noise behind, and the user has not said where u was before: the starts that
-/// could explain it. A single change at the first sample is the unseen step itself.
+/// The starts other than rest that the record leaves open for this structure.
 std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
-    const CleanRecord& r = context.record;
+    if (context.start == Start::at_rest) return {};
     std::vector<ModelForm> starts;
-    if (r.u0_given) return starts;
     ModelForm form = from_rest.form;
-    if (is_integrating(form.structure) && !form.slope && shows_rest(r)) {
+    if (is_integrating(form.structure) && !form.slope && shows_rest(context.record)) {
         form.slope = true;
         starts.push_back(form);
         form = from_rest.form;
     }
     form.other_level = true;
-    if (leaves_a_pattern(context, from_rest) && !(r.changes() == 1 && r.v_time[0] == 0)) starts.push_back(form);
+    if (context.start == Start::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
     return starts;
 }
 
@@ -147,6 +131,7 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
     context.thin = thin_out(record, kThinSamples);
     context.medium = every_few(record, kMediumSamples);
     context.record = std::move(record);
+    context.start = start_of(context.record);
     context.relay = relay;
     context.stop = stop;
     return context;
@@ -160,7 +145,7 @@ bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
                   const std::vector<Fit>& simpler) {
     const CleanRecord& record = context.record;
-    ModelForm form{structure, false, disturbances.slope, disturbances.load};
+    const ModelForm form{structure, false, disturbances.slope, disturbances.load};
     // A start that the simplest self-regulating structure needed, its extensions need too.
     const auto fopdt =
         std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
@@ -173,12 +158,13 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     }
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
+    // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
+    const double lead = context.start == Start::moving && !disturbances.slope ? 0 : kStrong;
     for (const ModelForm& start : other_starts(context, best)) {
         Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
-        if (start.other_level && seen_at_rest(record, fit.shape.L(), context.noise)) continue;
         const double n = effective_samples(fit.residual);
-        if (information_criterion(fit, n) + kStrong < information_criterion(best, n)) best = std::move(fit);
+        if (information_criterion(fit, n) + lead < information_criterion(best, n)) best = std::move(fit);
     }
     return best;
 }
@@ -229,53 +215,73 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
     return 100 * (1 - std::sqrt(left / total));
 }
 
-/// A lag of ten record lengths and more (two, where it is unstable) cannot be told from an integrator, nor its gain
-/// from any other.
 bool looks_integrating(const Fit& fit) {
     const Structure structure = fit.form.structure;
     if (structure == Structure::fopdt) return fit.shape.T() > 10;
     if (structure == Structure::unstable) return fit.shape.T() > 2;
-    return (structure == Structure::sopdt || structure == Structure::sopdt_zero) && fit.shape.a1() > 10;
+    if (structure == Structure::third && fit.shape.T3() > 10) return true;
+    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > 10;
+}
+
+/// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
+/// leave: 95 % of an F distribution is about 4.
+double by_noise(int more, double independent, int parameters) {
+    constexpr double kF = 4;
+    return std::sqrt(1 + kF * more / std::max(1.0, independent - parameters));
+}
+
+/// Whether `simple` explains the record as well as `best` does, but for noise.
+bool as_good(const Fit& simple, const Fit& best, double lead, double points, double left, double independent) {
+    const bool unusual = best.form.structure == Structure::sopdt_zero ||
+                         best.form.structure == Structure::unstable ||
+                         (best.form.other_level && !simple.form.other_level);
+    const int more = best.form.parameters() - simple.form.parameters();
+    constexpr double kPoint = 1;
+    return more > 0 && lead < (unusual ? kStrong : kPositive) &&
+           points < kPoint + left * (by_noise(more, independent, best.form.parameters()) - 1);
+}
+
+std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,
+                       const std::vector<double>& percents, int chosen, double independent_samples) {
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    int rival = -1;
+    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
+        if (i != chosen && fits[at(i)].determined && (rival < 0 || criteria[at(i)] < criteria[at(rival)])) rival = i;
+    }
+    const std::string name = name_of(fits[at(chosen)].form.structure);
+    if (rival < 0) return name + ": the only structure that this record determines.";
+    const std::string other = name_of(fits[at(rival)].form.structure);
+    const std::string figures = "fit " + number_text(percents[at(chosen)]) + " % against " +
+                                number_text(percents[at(rival)]) + " % of " + other;
+    const double lead = criteria[at(rival)] - criteria[at(chosen)];
+    if (lead < 0) {
+        return name + ": the simpler structure; what " + other + " gains is within what noise explains (" + figures +
+               "; information criterion within " + number_text(-lead, 3) + ").";
+    }
+    return name + ": the best balance of fit and number of parameters (" + figures + "; information criterion lower by " +
+           number_text(lead, 3) + " with " + number_text(independent_samples, 3) + " independent samples).";
 }
 
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
               double independent_samples) {
-    // A handicap makes "must win by" a comparison like any other.
-    auto handicapped = [&](int i) {
-        const bool unusual = fits[i].form.structure == Structure::sopdt_zero ||
-                             fits[i].form.structure == Structure::unstable || fits[i].form.other_level;
-        return criteria[i] + (unusual ? kStrong - kWorthAMention : 0) + (looks_integrating(fits[i]) ? kRuledOut : 0);
-    };
     int best = -1;
-    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
-        if (fits[i].determined && (best < 0 || handicapped(i) < handicapped(best))) best = i;
+    for (const bool any : {false, true}) {
+        for (int i = 0; i < static_cast<int>(fits.size()) && (best < 0 || !any); ++i) {
+            if (!fits[i].determined || (!any && looks_integrating(fits[i]))) continue;
+            if (best < 0 || criteria[i] < criteria[best]) best = i;
+        }
     }
     if (best < 0) return {-1, ""};
     int chosen = best;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
-        if (fits[i].determined && fits[i].form.parameters() < fits[chosen].form.parameters() &&
-            handicapped(i) < handicapped(best) + kWorthAMention)
+        if (!fits[i].determined || looks_integrating(fits[i])) continue;
+        const bool simpler = fits[i].form.parameters() < fits[chosen].form.parameters() ||
+                             (fits[i].form.parameters() == fits[chosen].form.parameters() && criteria[i] < criteria[chosen]);
+        if (simpler && as_good(fits[i], fits[best], criteria[i] - criteria[best], percents[best] - percents[i],
+                               100 - percents[best], independent_samples))
             chosen = i;
     }
-    int rival = -1;
-    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
-        if (i != chosen && fits[i].determined && (rival < 0 || criteria[i] < criteria[rival])) rival = i;
-    }
-    std::string reason = name_of(fits[chosen].form.structure);
-    if (rival < 0) return {chosen, reason + ": the only structure that this record determines."};
-    const std::string other = name_of(fits[rival].form.structure);
-    const std::string figures =
-        "fit " + number_text(percents[chosen]) + " % against " + number_text(percents[rival]) + " % of " + other;
-    const double lead = criteria[rival] - criteria[chosen];
-    if (lead >= 0) {
-        reason += ": the best balance of fit and number of parameters (" + figures +
-                  "; information criterion lower by " + number_text(lead, 3) + " with " +
-                  number_text(independent_samples, 3) + " independent samples).";
-    } else {
-        reason += ": the simpler structure; " + other + " fits no better beyond what noise explains (" + figures +
-                  "; information criterion within " + number_text(-lead, 3) + ").";
-    }
-    return {chosen, reason};
+    return {chosen, why_chosen(fits, criteria, percents, chosen, independent_samples)};
 }
 
 }  // namespace tunewright

@@ -7,6 +7,7 @@
 #include "engine/expected.h"
 #include "engine/identification/identify.h"
 #include "engine/identification/output_error.h"
+#include "engine/identification/record_start.h"
 
 namespace tunewright {
 
@@ -17,6 +18,7 @@ struct FitContext {
     double noise = 0;             ///< standard deviation of what changes from sample to sample, rounding included
     double grid = 0;              ///< step that y is rounded to, 0 if none
     bool relay = false;           ///< a relay test
+    Start start = Start::at_rest;
     std::vector<Anchor> anchors;  ///< that every model is held to
     std::stop_token stop;
 
@@ -35,8 +37,9 @@ struct Disturbances {
 };
 
 /// Fits one structure to the medium record: scan and refinement of the best starts on the thin one, final fit there.
-/// `simpler` are fits of the structures that it contains; it never ends worse than they do. With no u0 given, starts
-/// other than rest are fitted where the record asks for it, and kept if they lower the criterion by 10.
+/// `simpler` are fits of the structures that it contains; it never ends worse than they do. A start other than rest is
+/// fitted where the record does not show rest: kept where y moves before u does if it lowers the criterion, where
+/// nothing is seen before u moves if it lowers it by 10.
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
                   const std::vector<Fit>& simpler);
 
@@ -58,9 +61,14 @@ struct Choice {
     std::string reason;
 };
 
-/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 2 of it; a zero,
-/// an unseen start and an unstable pole must win by 10. `criteria` belong to `fits`; fit_percent only goes into the
-/// sentence.
+/// A lag of ten record lengths and more (two, where it is unstable) cannot be told from an integrator, nor its gain
+/// from any other.
+bool looks_integrating(const Fit& fit);
+
+/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 6 of it (within 10
+/// of one with a zero, an unseen start or an unstable pole) and its fit, too, lies within what noise explains: a
+/// hundredth of y's deviation, and what so few more parameters take up of noise as strong as the best fit's residual
+/// (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
               double independent_samples);
 

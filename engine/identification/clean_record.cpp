@@ -75,6 +75,7 @@ void scale_rows(const Rows& rows, CleanRecord& clean) {
     s.u_rest = rows.u_rest;
     s.u_scale = 0;
     for (double u : rows.change_level) s.u_scale = std::max(s.u_scale, std::abs(u - s.u_rest));
+    clean.row = rows.number;
     for (std::size_t i = 0; i < rows.t.size(); ++i) {
         clean.t.push_back((rows.t[i] - s.t_origin) / s.t_scale);
         clean.y.push_back((rows.y[i] - s.y_origin) / s.y_scale);
@@ -134,6 +135,7 @@ Expected<CleanRecord> clean_record(const Record& record) {
     CleanRecord clean;
     Rows rows = collect_rows(record, clean.cleaning);
     drop_false_readings(rows, clean.cleaning);
+    drop_late_moves(rows, clean.cleaning);
     if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
     const Cleaning& done = clean.cleaning;
     clean.u_only = done.missing_y + static_cast<int>(done.spikes.size());
@@ -149,6 +151,28 @@ Expected<CleanRecord> clean_record(const Record& record) {
     clean.u0_given = record.u0.has_value();
     if (record.y0) clean.y_rest = (*record.y0 - s.y_origin) / s.y_scale;
     return clean;
+}
+
+CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& indices) {
+    std::size_t next = 0, kept = 0;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (next < indices.size() && indices[next] == i) {
+            record.cleaning.spikes.push_back(record.row[i]);
+            record.cleaning.spike_times.push_back(record.scale.t_origin + record.scale.t_scale * record.t[i]);
+            ++next;
+            continue;
+        }
+        record.t[kept] = record.t[i];
+        record.y[kept] = record.y[i];
+        record.row[kept] = record.row[i];
+        ++kept;
+    }
+    record.t.resize(kept);
+    record.y.resize(kept);
+    record.row.resize(kept);
+    record.u_only += static_cast<int>(next);
+    record.dropped += static_cast<int>(next);
+    return record;
 }
 
 CleanRecord thin_out(const CleanRecord& record, int most) {

@@ -30,6 +30,9 @@ struct Cleaning {
     int missing_y = 0;                      ///< u of the row was used
     double hole_from = 0, hole_to = 0;      ///< the longest time without y because of that, record's unit
     std::vector<int> spikes;                ///< left out: readings of y that are false plainly (false_readings.h)
+    std::vector<double> spike_times;        ///< of the same, record's unit
+    int late_moves = 0;                     ///< left out: changes of u that no sample follows
+    int limited_u = 0;                      ///< rows in which u was cut to its limits
 };
 
 /// "line 12" or "row 12".
@@ -40,6 +43,7 @@ std::string row_text(const Cleaning& cleaning, int row);
 /// spans 1, the record lasts 1.
 struct CleanRecord {
     std::vector<double> t, y;
+    std::vector<int> row;  ///< of each sample of the whole record, as Cleaning numbers them
     std::vector<double> v_time, v_level;
     std::optional<double> y_rest;             ///< y0 where the user gave it
     bool u0_given = false;                    ///< then the level of rest is known, also for integrating plants
@@ -68,6 +72,9 @@ Expected<CleanRecord> clean_record(const Record& record);
 /// A record of at most about `most` samples with the same input, denser after the large changes of u: for coarse
 /// searches. An input of very many changes is averaged over blocks.
 CleanRecord thin_out(const CleanRecord& record, int most);
+
+/// Without the samples of these indices, which are noted as false readings. Of a whole record.
+CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& indices);
 
 /// Every second, third, ... sample, so that at most `most` are left, with the input as it is.
 CleanRecord every_few(const CleanRecord& record, int most);

@@ -70,9 +70,24 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
     if (done.without_time > 0)
         notes.push_back(std::to_string(done.without_time) +
                         " row(s) without a time, or before the first u, were left out.");
+    if (done.late_moves > 0)
+        notes.push_back(std::to_string(done.late_moves) +
+                        " change(s) of u with the last sample were left out: nothing follows them.");
+    if (done.limited_u > 0)
+        notes.push_back("u was cut to its limits in " + std::to_string(done.limited_u) +
+                        " row(s): that is what reaches the plant.");
     if (done.missing_u > 0)
         notes.push_back("u is missing in " + std::to_string(done.missing_u) +
                         " row(s); it was held from the row above.");
+}
+
+/// "line 102 (t = 2.02), line 103 (t = 2.04), ...".
+std::string places_of_spikes(const Cleaning& done) {
+    constexpr std::size_t kInSentence = 5;
+    std::string places;
+    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) + " (t = " + number_text(done.spike_times[k], 10) + ")";
+    return places + (done.spikes.size() > kInSentence ? ", ..." : "");
 }
 
 void describe_missing(const CleanRecord& r, DataQuality& quality) {
@@ -85,16 +100,12 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
                                 "; u of these rows was used, and y was not interpolated.");
     }
     if (done.spikes.empty()) return;
-    constexpr std::size_t kShown = 20, kInSentence = 5;
+    constexpr std::size_t kShown = 20;
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
     outliers.rows.resize(std::min(kShown, outliers.rows.size()));
-    std::string rows;
-    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
-        rows += (k > 0 ? ", " : "") + std::to_string(done.spikes[k]);
     quality.outliers = std::move(outliers);
-    quality.notes.push_back(
-        std::to_string(done.spikes.size()) + " reading(s) of y are plainly false and were left out (" +
-        (done.from_file ? "line " : "row ") + rows + (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
+    quality.notes.push_back(std::to_string(done.spikes.size()) +
+                            " reading(s) of y are plainly false and were left out (" + places_of_spikes(done) + ").");
 }
 
 bool on_a_level(const TwoLevels& u, double v) {
@@ -248,9 +259,8 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
     }
     if (quality.outliers) {
         warnings.push_back({"removed-outliers",
-                            std::to_string(quality.outliers->count) +
-                                " reading(s) of y that no process makes were left out, the first at " +
-                                row_text(done, quality.outliers->rows.front()) + ". Look whether they are false."});
+                            std::to_string(quality.outliers->count) + " reading(s) of y that no process makes were left out: " +
+                                places_of_spikes(done) + ". Look whether they are false."});
     }
     if (done.reversed)
         warnings.push_back({"reversed-time",

@@ -5,8 +5,10 @@
 
 #include "engine/identification/data_quality.h"
 #include "engine/identification/diagnosis.h"
+#include "engine/identification/input_limits.h"
 #include "engine/identification/model_answer.h"
 #include "engine/identification/model_search.h"
+#include "engine/identification/reading_check.h"
 #include "engine/identification/record_kind.h"
 #include "engine/identification/relay_fourier.h"
 #include "engine/identification/two_point.h"
@@ -222,12 +224,22 @@ double steady_misfit(const CleanRecord& r, const RecordedCycle& cycle, const Fit
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The identification was cancelled."}; }
 
-Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const IdentifyOptions& options,
+RecordKind kind_of(const CleanRecord& record) {
+    return record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
+}
+
+/// The models of a record, its false readings left out of it.
+Search searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
+    constexpr int kMostFitted = 100'000;
+    Search search = search_models(block_means(record, kMostFitted), model, kind_of(record) == RecordKind::relay, control);
+    if (search.choice.index < 0 || control.stop.stop_requested()) return search;
+    return without_false_readings(std::move(search), record, model, control);
+}
+
+Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, const IdentifyOptions& options,
                                           const RunControl& control) {
     constexpr double kMisfit = 0.004;
-    const RecordKind kind = record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
-    constexpr int kMostFitted = 100'000;
-    Search search = search_models(block_means(record, kMostFitted), options.model, kind == RecordKind::relay, control);
+    const RecordKind kind = kind_of(record);
     if (control.stop.stop_requested()) return cancelled();
     if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) {
         const double best = *std::max_element(search.percents.begin(), search.percents.end());
@@ -265,6 +277,48 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, const Ident
     return model;
 }
 
+/// What a record is fitted as.
+struct Fitted {
+    CleanRecord record;
+    Search search;
+    std::optional<InputLimits> u_limits;
+};
+
+/// Where u runs beyond ends that are usual for a controller's output and the fit leaves a pattern: with u cut to them,
+/// kept if that leaves a third of the sum of squares or less.
+void try_limits(const Record& record, ModelChoice model, const RunControl& control, Fitted& fitted) {
+    constexpr double kMuchLess = 3;
+    if (record.u_limits || fitted.search.choice.index < 0) return;
+    if (!leaves_a_pattern(fitted.search.context, fitted.search.chosen())) return;
+    for (const InputLimits& limits : plain_limits(record)) {
+        Record cut = record;
+        cut.u_limits = limits;
+        Expected<CleanRecord> clean = clean_record(cut);
+        if (!clean || control.stop.stop_requested()) continue;
+        Search search = searched(*clean, model, control);
+        if (search.choice.index < 0) continue;
+        const auto mean_square = [](const Fit& fit) { return fit.sse / static_cast<double>(fit.residual.size()); };
+        if (kMuchLess * mean_square(search.chosen()) > mean_square(fitted.search.chosen())) continue;
+        fitted = {std::move(*clean), std::move(search), limits};
+    }
+}
+
+Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, const IdentifyOptions& options,
+                                     const RunControl& control) {
+    Search search = searched(clean, options.model, control);
+    Fitted fitted{std::move(clean), std::move(search), record.u_limits};
+    try_limits(record, options.model, control, fitted);
+    auto model = by_output_error(std::move(fitted.record), std::move(fitted.search), options, control);
+    if (!model) return model;
+    model->data_quality.u_limits = fitted.u_limits;
+    if (fitted.u_limits && !record.u_limits)
+        model->data_quality.notes.push_back(
+            "u runs beyond " + number_text((*fitted.u_limits)[0]) + " to " + number_text((*fitted.u_limits)[1]) +
+            " and y follows it only as far as that: it was logged before its limiter. Give u_limits if these are not "
+            "the ends.");
+    return model;
+}
+
 }  // namespace
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
@@ -275,7 +329,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     Expected<IdentifiedModel> model = by_formula ? by_relay_formulas(*clean, options)
                                       : options.method == IdentifyMethod::two_point
                                           ? by_two_points(*clean, options)
-                                          : by_output_error(*clean, options, control);
+                                          : by_fitting(record, *clean, options, control);
     if (!model) return model;
     add_excited_band(*clean, *model);
     add_ultimate_point(*model);

@@ -51,20 +51,39 @@ void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality)
                             "). Give u0 if it is known.");
 }
 
-/// After one step the beginning of a slow response looks like an integrator's.
+/// Of a self-regulating fit, relative to the record's length.
+double slowest_lag(const Fit& fit) {
+    if (!has_quadratic(fit.form.structure)) return fit.shape.T();
+    const double a1 = fit.shape.a1(), ratio = fit.shape.a2() / (a1 * a1);
+    const double of_two = ratio < 0.25 ? 0.5 * a1 * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(fit.shape.a2());
+    return fit.form.structure == Structure::third ? std::max(of_two, fit.shape.T3()) : of_two;
+}
+
+/// Relative to the record's length: from there on a lag may be an integrator.
+constexpr double kSlow = 0.5;
+
+/// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
+/// integrator's.
 void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnings) {
-    constexpr double kPositive = 6, kLongest = 3;
-    if (!is_integrating(search.chosen().form.structure) || search.context.record.changes() > 2) return;
+    constexpr double kStrong = 10, kPoint = 1;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    const bool integrating = is_integrating(search.chosen().form.structure);
+    if (search.chosen().form.structure == Structure::unstable) return;
+    const double scale = search.context.record.scale.t_scale;
+    if (!integrating && slowest_lag(search.chosen()) < kSlow) return;
     for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
-        const double lead = search.criteria[i] - search.criteria[static_cast<std::size_t>(search.choice.index)];
-        if (fit.form.structure != Structure::fopdt || !fit.determined || lead > kPositive) continue;
-        if (fit.shape.T() > kLongest) continue;
+        if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
+        if (is_integrating(fit.form.structure) == integrating) continue;
+        if (search.criteria[i] - search.criteria[chosen] > kStrong && search.percents[chosen] - search.percents[i] > kPoint)
+            continue;
+        const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
-                            "A first-order response with a time constant of " +
-                                number_text(fit.shape.T() * search.context.record.scale.t_scale, 3) +
-                                " explains this record as well as an integrator: it ends too early to tell. Record "
-                                "longer, or choose the model by what is known of the process."});
+                            "A response with a time constant of " + number_text(slowest_lag(slow) * scale, 3) +
+                                " explains this record as well as an integrator does: it ends too early to tell, and "
+                                "the static gain is open. Record longer, or choose the model by what is known of the "
+                                "process."});
+        return;
     }
 }
 
@@ -86,6 +105,38 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
     }
 }
 
+/// The variance of K with the choice of structure left open: the mean over all structures of the same kind, weighed by
+/// Akaike's criterion, of their own variances and squared distances from the chosen one (Buckland, Burnham and Augustin
+/// 1997; Burnham and Anderson 2002, section 4.3).
+double unconditional_variance(const Search& search, const std::vector<FittedPlant>& plants) {
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    const double log_n = std::log(search.independent), K = plants[chosen].values.at("K");
+    const auto akaike = [&](std::size_t i) {
+        return search.criteria[i] + (2 - log_n) * search.fits[i].form.parameters();
+    };
+    double weights = 0, variance = 0;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        const Fit& fit = search.fits[i];
+        if (!fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
+            is_integrating(fit.form.structure) != is_integrating(search.fits[chosen].form.structure))
+            continue;
+        const double weight = std::exp(-0.5 * std::max(-50.0, akaike(i) - akaike(chosen)));
+        const double own = plants[i].standard_errors.at("K"), apart = plants[i].values.at("K") - K;
+        if (own > std::abs(plants[i].values.at("K"))) continue;
+        weights += weight;
+        variance += weight * (own * own + apart * apart);
+    }
+    const double own = plants[chosen].standard_errors.at("K");
+    return weights > 0 ? std::max(own * own, variance / weights) : own * own;
+}
+
+void widen_gain(FittedPlant& plant, double variance) {
+    ParameterCovariance& covariance = plant.covariance;
+    const auto at = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
+    covariance.matrix[at][at] = variance;
+    plant.standard_errors["K"] = std::sqrt(variance);
+}
+
 }  // namespace
 
 IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
@@ -96,18 +147,27 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
     // Means over blocks lie on no grid.
     const double grid =
         recorded.samples() == record.samples() ? model.data_quality.quantisation / record.scale.y_scale : 0;
+    std::vector<FittedPlant> plants;
+    for (Fit& fit : search.fits) {
+        if (fit.determined) jacobian(data, fit);
+        plants.push_back(fit.determined
+                             ? fitted_plant(record, fit, grid, model.data_quality.noise_std / record.scale.y_scale)
+                             : FittedPlant{});
+        fit.J.clear();
+    }
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    if (search.fits[chosen].form.structure != Structure::unstable)
+        widen_gain(plants[chosen], unconditional_variance(search, plants));
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
     for (const int i : order) {
         Fit& fit = search.fits[i];
         if (!fit.determined) continue;
-        jacobian(data, fit);
-        FittedPlant fitted = fitted_plant(record, fit, grid, model.data_quality.noise_std / record.scale.y_scale);
+        FittedPlant& fitted = plants[static_cast<std::size_t>(i)];
         FitTrace trace = trace_of(record, fit.model);
         model.candidates.push_back(
             {fitted.plant, search.percents[i], search.criteria[i], fitted.standard_errors, trace.y_model});
-        fit.J.clear();
         if (i != search.choice.index) continue;
         Diagnosis diagnosis = diagnose(record, fit, fitted.values, fitted.standard_errors, model.data_quality);
         model.plant = fitted.plant;

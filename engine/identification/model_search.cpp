@@ -10,9 +10,10 @@
 namespace tunewright {
 namespace {
 
-/// The structures to fit, simpler ones first, and those that answer the request: the others only give starting values.
+/// The structures to fit, simpler ones first, those to fit where these leave a pattern, and those that answer the
+/// request: the others only give starting values.
 struct Plan {
-    std::vector<Structure> fitted, answers;
+    std::vector<Structure> fitted, answers, richer = {};
 };
 
 Plan plan_for(ModelChoice model, const CleanRecord& record) {
@@ -35,7 +36,9 @@ Plan plan_for(ModelChoice model, const CleanRecord& record) {
     }
     plan.fitted = {ipdt, fopdt, ipdt_lag, sopdt, sopdt_zero};
     if (maybe_unstable) plan.fitted.push_back(unstable);
+    plan.richer = {third, ipdt_second};
     plan.answers = plan.fitted;
+    plan.answers.insert(plan.answers.end(), plan.richer.begin(), plan.richer.end());
     return plan;
 }
 
@@ -68,6 +71,18 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     return search;
 }
 
+/// Whether the best fit leaves what another lag could explain: more than noise, or no white noise.
+bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    if (best == nullptr) return false;
+    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;
+    const double n = static_cast<double>(best->residual.size());
+    return best->sse > kMoreThanNoise * n * context.noise * context.noise || correlation_time(best->residual) > kNotWhite;
+}
+
 Search fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
     const Plan plan = plan_for(model, context.record);
     std::vector<Fit> fits;
@@ -75,6 +90,12 @@ Search fit_all(FitContext context, ModelChoice model, const Disturbances& distur
         report(control, static_cast<double>(i) / static_cast<double>(plan.fitted.size()),
                std::string("fitting ") + name_of(plan.fitted[i]));
         fits.push_back(fit_structure(context, plan.fitted[i], disturbances, fits));
+    }
+    if (!plan.richer.empty() && wants_richer(context, fits)) {
+        report(control, 0.9, "fitting higher orders");
+        for (const Structure structure : plan.richer) {
+            if (!control.stop.stop_requested()) fits.push_back(fit_structure(context, structure, disturbances, fits));
+        }
     }
     return ranked(std::move(context), std::move(fits), plan, disturbances);
 }
@@ -140,17 +161,6 @@ bool shows_drift(const CleanRecord& r) {
     return r.changes() > 1 || before >= kEnoughBefore;
 }
 
-/// What the parameters of `plain` become in `with_slope`, which has one coefficient more.
-std::vector<double> difference(const Fit& with_slope, const Fit& plain) {
-    std::vector<double> change;
-    for (const int place : plain.form.searched()) change.push_back(with_slope.shape.p[place] - plain.shape.p[place]);
-    for (int i = 0; i < plain.form.linear_size(); ++i) {
-        const int j = i < with_slope.form.slope_index() ? i : i + 1;
-        change.push_back(with_slope.linear[j] - plain.linear[i]);
-    }
-    return change;
-}
-
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(Search& search, ModelChoice model, const RunControl& control) {
@@ -165,10 +175,7 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
     const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < 2 ? kPositive : kStrong)) {
-        if (lead > 0) search.fits[static_cast<std::size_t>(search.choice.index)].doubt = difference(fit, plain);
-        return;
-    }
+    if (lead < (time < 2 ? kPositive : kStrong)) return;
     if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
     Search other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;

@@ -295,8 +295,7 @@ double distance(const Shape& a, const Shape& b) {
 }  // namespace
 
 std::vector<int> ModelForm::searched() const {
-    std::vector<int> places;
-    for (int k = 0; k < shape_size(structure); ++k) places.push_back(k);
+    std::vector<int> places = shape_places(structure);
     if (load) places.push_back(kLoadTime);
     return places;
 }
@@ -304,8 +303,11 @@ std::vector<int> ModelForm::searched() const {
 ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
     const double spacing = 1.0 / std::max(1, record.samples() - 1);
     ShapeBounds bounds;
-    bounds.low = {0, std::log(std::min(0.02 * spacing, 1e-3)), std::log(1e-4), 0};
-    bounds.high = {std::max(0.0, record.response_time()), std::log(100.0), std::log(2500.0), 1 - 3 * spacing};
+    const double shortest = std::log(std::min(0.02 * spacing, 1e-3));
+    bounds.low = {0, shortest, std::log(1e-4), 0, shortest};
+    bounds.high = {std::max(0.0, record.response_time()), std::log(100.0), std::log(2500.0), 1 - 3 * spacing,
+                   std::log(100.0)};
+    if (structure == Structure::ipdt_second) bounds.high[1] = std::log(10.0);
     if (structure == Structure::ipdt_lag) bounds.high[1] = std::log(10.0);
     if (structure == Structure::unstable) bounds.low[1] = kShortestUnstable, bounds.high[1] = std::log(10.0);
     return bounds;

@@ -32,7 +32,7 @@ struct ModelForm {
 
 /// Bounds of the search, dimensionless, from the record's sampling and length.
 struct ShapeBounds {
-    std::array<double, 4> low{}, high{};
+    std::array<double, 5> low{}, high{};
 };
 /// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
 inline constexpr double kShortestUnstable = -2.995732273553991;
@@ -59,9 +59,6 @@ struct Fit {
     std::vector<std::vector<double>> J;
     bool determined = false;  ///< the gain's column is independent of the others
     int iterations = 0;
-    /// A change of (searched, linear) that the record neither asks for nor rules out, one standard deviation long: what
-    /// a drift too small to be found would do. Empty: none.
-    std::vector<double> doubt;
 };
 
 /// The data of a least-squares problem. The referred record and anchors must outlive it.

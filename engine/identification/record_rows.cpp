@@ -99,6 +99,14 @@ private:
     double last_ = 0;
 };
 
+/// u as it reaches the plant.
+double limited(const Record& r, double u, Cleaning& cleaning) {
+    if (!r.u_limits || !std::isfinite(u)) return u;
+    const double inside = std::clamp(u, (*r.u_limits)[0], (*r.u_limits)[1]);
+    cleaning.limited_u += inside != u ? 1 : 0;
+    return inside;
+}
+
 }  // namespace
 
 Rows collect_rows(const Record& r, Cleaning& cleaning) {
@@ -113,7 +121,7 @@ Rows collect_rows(const Record& r, Cleaning& cleaning) {
     for (std::size_t k = 0; k < r.t.size(); ++k) {
         const std::size_t i = order.row(k);
         const int number = cleaning.from_file ? r.line[i] : static_cast<int>(i);
-        const double t = order.time(k), u = r.u[i];
+        const double t = order.time(k), u = limited(r, r.u[i], cleaning);
         if (!std::isfinite(t) || (!rows.started && !std::isfinite(u))) {
             ++cleaning.without_time;
             continue;
@@ -147,6 +155,14 @@ Rows collect_rows(const Record& r, Cleaning& cleaning) {
     return rows;
 }
 
+void drop_late_moves(Rows& rows, Cleaning& cleaning) {
+    while (rows.change_time.size() > 1 && !rows.t.empty() && rows.change_time.back() >= rows.t.back()) {
+        rows.change_time.pop_back();
+        rows.change_level.pop_back();
+        ++cleaning.late_moves;
+    }
+}
+
 void drop_false_readings(Rows& rows, Cleaning& cleaning) {
     const std::vector<std::size_t> found = false_readings(rows.y);
     if (found.empty()) return;
@@ -154,6 +170,7 @@ void drop_false_readings(Rows& rows, Cleaning& cleaning) {
     for (std::size_t i = 0; i < rows.y.size(); ++i) {
         if (next < found.size() && found[next] == i) {
             cleaning.spikes.push_back(rows.number[i]);
+            cleaning.spike_times.push_back(rows.t[i]);
             ++next;
             continue;
         }

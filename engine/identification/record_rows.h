@@ -16,6 +16,10 @@ struct Rows {
 /// As clean_record says, without the spikes. Columns are of equal length.
 Rows collect_rows(const Record& record, Cleaning& cleaning);
 
+/// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. The
+/// last change that there is stays.
+void drop_late_moves(Rows& rows, Cleaning& cleaning);
+
 /// Takes the readings out that are plainly false.
 void drop_false_readings(Rows& rows, Cleaning& cleaning);
 

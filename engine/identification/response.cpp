@@ -1,5 +1,7 @@
 #include "engine/identification/response.h"
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -129,6 +131,62 @@ private:
     double x_ = 0, x1_ = 0;
 };
 
+/// x' = l, a2 l'' + a1 l' + l = v, so that x is the integral of v less a1 l + a2 l'.
+class IntegratedSecondOrder {
+public:
+    IntegratedSecondOrder(double a1, double a2) : a1_(a1), a2_(a2), l_(a1, a2) {}
+
+    void advance(double dt, double v) {
+        l_.advance(dt, v);
+        area_ += v * dt;
+    }
+    double value() const { return area_ - a1_ * l_.value() - a2_ * l_.slope(0); }
+    double slope(double) const { return l_.value(); }
+    double curvature(double) const { return l_.slope(0); }
+
+private:
+    double a1_, a2_;
+    SecondOrder l_;
+    double area_ = 0;
+};
+
+/// T3 x' + x = l, a2 l'' + a1 l' + l = v. The state is (l, l' sqrt(a2), x) less its rest under v.
+class ThirdOrder {
+public:
+    ThirdOrder(double T3, double a1, double a2) : T3_(T3) {
+        const double w = 1 / std::sqrt(a2);
+        A_ << 0, w, 0, -w, -a1 / a2, 0, 1 / T3, 0, -1 / T3;
+    }
+
+    void advance(double dt, double v) {
+        const Eigen::Matrix3d& turn = turns_.over(dt, [&](double step) { return exponential(A_ * step); });
+        const Eigen::Vector3d rest(v, 0, v);
+        state_ = rest + turn * (state_ - rest);
+    }
+    double value() const { return state_[2]; }
+    double slope(double) const { return (state_[0] - state_[2]) / T3_; }
+    double curvature(double) const { return (A_(0, 1) * state_[1] - slope(0)) / T3_; }
+
+private:
+    /// By Taylor's series of a part so short that its norm is below 1/2, squared back; the terms end below 1e-17.
+    static Eigen::Matrix3d exponential(Eigen::Matrix3d M) {
+        const double norm = M.cwiseAbs().rowwise().sum().maxCoeff();
+        int halvings = 0;
+        std::frexp(norm, &halvings);
+        halvings = std::max(0, halvings + 1);
+        M *= std::ldexp(1.0, -halvings);
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Identity();
+        for (int k = 14; k > 0; --k) sum = Eigen::Matrix3d::Identity() + M * sum / k;
+        for (; halvings > 0; --halvings) sum = (sum * sum).eval();
+        return sum;
+    }
+
+    double T3_;
+    Eigen::Matrix3d A_;
+    TwoSteps<Eigen::Matrix3d> turns_;
+    Eigen::Vector3d state_ = Eigen::Vector3d::Zero();
+};
+
 template <int kDerivatives, class System>
 void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
     double now = 0, v = 0;
@@ -159,6 +217,10 @@ void run(std::span<const double> t, const Input& input, const Shape& shape, Unit
         case Structure::sopdt:
         case Structure::sopdt_zero:
             return run<kDerivatives>(t, input, shape.L(), SecondOrder(shape.a1(), shape.a2()), out);
+        case Structure::third:
+            return run<kDerivatives>(t, input, shape.L(), ThirdOrder(shape.T3(), shape.a1(), shape.a2()), out);
+        case Structure::ipdt_second:
+            return run<kDerivatives>(t, input, shape.L(), IntegratedSecondOrder(shape.a1(), shape.a2()), out);
     }
 }
 
@@ -168,17 +230,32 @@ double Shape::T() const { return std::exp(p[1]); }
 double Shape::a1() const { return std::exp(p[1]); }
 double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
 
-int shape_size(Structure structure) {
+double Shape::T3() const { return std::exp(p[kThirdLag]); }
+
+std::vector<int> shape_places(Structure structure) {
     switch (structure) {
-        case Structure::ipdt: return 1;
+        case Structure::ipdt: return {0};
         case Structure::fopdt:
         case Structure::unstable:
-        case Structure::ipdt_lag: return 2;
-        default: return 3;
+        case Structure::ipdt_lag: return {0, 1};
+        case Structure::sopdt:
+        case Structure::sopdt_zero:
+        case Structure::ipdt_second: return {0, 1, 2};
+        case Structure::third: return {0, 1, 2, kThirdLag};
     }
+    return {};
 }
 
-bool is_integrating(Structure structure) { return structure == Structure::ipdt || structure == Structure::ipdt_lag; }
+int shape_size(Structure structure) { return static_cast<int>(shape_places(structure).size()); }
+
+bool is_integrating(Structure structure) {
+    return structure == Structure::ipdt || structure == Structure::ipdt_lag || structure == Structure::ipdt_second;
+}
+
+bool has_quadratic(Structure structure) {
+    return structure == Structure::sopdt || structure == Structure::sopdt_zero || structure == Structure::third ||
+           structure == Structure::ipdt_second;
+}
 
 const char* name_of(Structure structure) {
     switch (structure) {
@@ -188,6 +265,8 @@ const char* name_of(Structure structure) {
         case Structure::sopdt_zero: return "sopdt_zero";
         case Structure::ipdt: return "ipdt";
         case Structure::ipdt_lag: return "ipdt_lag";
+        case Structure::third: return "third order";
+        case Structure::ipdt_second: return "ipdt with two lags";
     }
     return "";
 }
@@ -201,6 +280,8 @@ std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
         case Structure::ipdt_lag: return delay / (s * (1.0 + shape.T() * s));
         case Structure::sopdt:
         case Structure::sopdt_zero: return delay / (1.0 + s * (shape.a1() + s * shape.a2()));
+        case Structure::third: return delay / ((1.0 + s * shape.T3()) * (1.0 + s * (shape.a1() + s * shape.a2())));
+        case Structure::ipdt_second: return delay / (s * (1.0 + s * (shape.a1() + s * shape.a2())));
     }
     return 0;
 }

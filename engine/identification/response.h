@@ -17,29 +17,36 @@ enum class Structure {
     sopdt_zero,  ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
     ipdt,        ///< e^(-Ls)/s
     ipdt_lag,    ///< e^(-Ls)/(s (T s + 1))
+    third,       ///< e^(-Ls)/((T3 s + 1)(a2 s^2 + a1 s + 1))
+    ipdt_second,  ///< e^(-Ls)/(s (a2 s^2 + a1 s + 1))
 };
 
 /// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
 /// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
-/// smoothly. The last entry is the time at which an unseen load reaches the plant, where one is looked for.
+/// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3.
 struct Shape {
     Structure structure = Structure::fopdt;
-    std::array<double, 4> p{};
+    std::array<double, 5> p{};
 
     double L() const { return p[0]; }
     double load_time() const { return p[3]; }
     double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
-    double a1() const;  ///< sopdt, sopdt_zero
+    double a1() const;  ///< sopdt, sopdt_zero, third, ipdt_second
     double a2() const;
+    double T3() const;  ///< third
 };
 
-/// 1 to 3: how many entries of `p` count.
+/// Places in Shape::p that belong to a structure, the dead time's first.
+std::vector<int> shape_places(Structure structure);
+/// 1 to 4: how many they are.
 int shape_size(Structure structure);
 bool is_integrating(Structure structure);
+/// Whether the denominator has a quadratic factor: a1 and a2 count.
+bool has_quadratic(Structure structure);
 /// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
-inline constexpr int kLoadTime = 3;  ///< its place in Shape::p
+inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in Shape::p
 
 /// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
 struct UnitResponse {

@@ -27,8 +27,28 @@ std::vector<double> dead_times(const CleanRecord& r, int even) {
     return values;
 }
 
-Shape at(Structure structure, double L, double T, double rho, double load_time = 0) {
-    return {structure, {L, std::log(T), std::log(rho), load_time}};
+Shape at(Structure structure, double L, double T, double rho, double load_time = 0, double T3 = 1) {
+    return {structure, {L, std::log(T), std::log(rho), load_time, std::log(T3)}};
+}
+
+/// A third lag beside a fitted second order, from next to none to the longest, the others shortened for it; the fitted
+/// one first.
+std::vector<Shape> third_beside(const Shape& second) {
+    const double L = second.L(), a1 = second.a1(), rho = second.a2() / (a1 * a1), load = second.load_time();
+    const double slow = std::sqrt(second.a2());
+    std::vector<Shape> shapes = {at(Structure::third, L, a1, rho, load, 1e-3 * a1)};
+    if (rho > 0.25) {
+        for (const double lag : {0.1, 0.4, 1.2}) shapes.push_back(at(Structure::third, 0.5 * L, a1, rho, load, lag * slow));
+        return shapes;
+    }
+    // Of the two lags and the dead time: a part of each goes to the third.
+    const double longest = 0.5 * a1 * (1 + std::sqrt(std::max(0.0, 1 - 4 * rho))), shorter = a1 - longest;
+    for (const double part : {0.25, 0.6, 0.95}) {
+        const double spare = part * L + shorter, lag = 0.5 * spare;
+        shapes.push_back(at(Structure::third, (1 - part) * L, spare, 0.2, load, longest));
+        shapes.push_back(at(Structure::third, (1 - part) * L, longest + lag, longest * lag / ((longest + lag) * (longest + lag)), load, lag));
+    }
+    return shapes;
 }
 
 /// Every combination of the axes' values, the last axis fastest.
@@ -87,8 +107,10 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
 }  // namespace
 
 std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop) {
-    // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found.
+    // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found. The
+    // widest always do.
     if (form.load && shape_size(form.structure) > 2) return {};
+    if (form.structure == Structure::third || form.structure == Structure::ipdt_second) return {};
     const Grid grid = scan_grid(*data.record, form);
     const std::vector<double> sums = sums_of_squares(data, form, grid.shapes, stop);
     std::vector<int> minima;
@@ -115,6 +137,12 @@ std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
         Shape shape = simpler;
         shape.structure = structure;
         return {shape};
+    }
+    if (simpler.structure == Structure::sopdt && structure == Structure::third) return third_beside(simpler);
+    if (simpler.structure == Structure::ipdt_lag && structure == Structure::ipdt_second) {
+        const double T = simpler.T(), spare = 0.5 * L;
+        return {at(structure, L, T, 1e-3, load), at(structure, spare, T + spare, 0.2, load), at(structure, L, T, 0.25, load),
+                at(structure, L, T, 1.5, load)};
     }
     if (simpler.structure == Structure::ipdt && structure == Structure::ipdt_lag) {
         const double sum = std::max(L, 1e-4);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/residual_noise.h"
+
 namespace tunewright {
 namespace {
 
@@ -33,9 +35,16 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shap
             }
             break;
         case Structure::sopdt_zero:
+            p["b"] = linear[1] / linear[0] * s.t_scale;
+            [[fallthrough]];
+        case Structure::ipdt_second:
             p["a1"] = shape.a1() * s.t_scale;
             p["a2"] = shape.a2() * s.t_scale * s.t_scale;
-            p["b"] = linear[1] / linear[0] * s.t_scale;
+            break;
+        case Structure::third:
+            p["a1"] = (shape.a1() + shape.T3()) * s.t_scale;
+            p["a2"] = (shape.a2() + shape.a1() * shape.T3()) * s.t_scale * s.t_scale;
+            p["a3"] = shape.a2() * shape.T3() * s.t_scale * s.t_scale * s.t_scale;
             break;
     }
     return p;
@@ -53,19 +62,12 @@ Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
             return OscillatorySopdt{at("K"), at("T"), at("zeta"), at("L")};
         case Structure::sopdt_zero:
             return TransferFunction{{at("K") * at("b"), at("K")}, {at("a2"), at("a1"), 1}, at("L")};
+        case Structure::third: return TransferFunction{{at("K")}, {at("a3"), at("a2"), at("a1"), 1}, at("L")};
+        case Structure::ipdt_second: return TransferFunction{{at("K")}, {at("a2"), at("a1"), 1, 0}, at("L")};
         case Structure::ipdt: return Ipdt{at("K"), at("L"), 0};
         case Structure::ipdt_lag: return Ipdt{at("K"), at("L"), at("T")};
     }
     return Fopdt{};
-}
-
-/// s^2 times the factor for correlated residuals.
-double residual_variance(const Fit& fit, double quantisation) {
-    const double n = static_cast<double>(fit.residual.size());
-    const double floor = quantisation * quantisation / 12;
-    const double independent = effective_samples(fit.residual);
-    const double freedom = std::max(1.0, independent - fit.form.parameters());
-    return std::max(fit.sse / n, floor) * n / freedom;
 }
 
 /// Stretches of samples that the model puts into one step of y's grid: [first, last).
@@ -90,11 +92,39 @@ double common_rounding(double grid, double noise) {
     return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
 }
 
+/// What drifts of the next two powers of time would change, were they fitted: small ones hide in gain and time constants
+/// without leaving a pattern. Each is shrunk by what chance alone would show (James and Stein 1961), so that it counts
+/// only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
+std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
+                                          const Eigen::MatrixXd& inverse, double variance) {
+    if (is_integrating(fit.form.structure)) return {};
+    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
+    std::vector<Eigen::VectorXd> changes;
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(n);
+    for (const int power : {fit.form.slope ? 2 : 1, fit.form.slope ? 3 : 2}) {
+        const Eigen::VectorXd q = time.array().pow(power);
+        const Eigen::VectorXd moved = inverse * (J.topRows(n).transpose() * q);
+        Eigen::VectorXd alone = q - J.topRows(n) * moved;
+        if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
+        const double size = alone.squaredNorm();
+        if (!(size > 1e-9 * q.squaredNorm())) break;
+        const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
+        before = alone;
+        if (z2 > 2) changes.emplace_back(-slope * (1 - 2 / z2) * moved);
+    }
+    return changes;
+}
+
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
-/// covariance, one per plateau of a rounded y, and the fit's doubt.
-Eigen::MatrixXd deviations_of(const Fit& fit, double variance, double grid, double noise) {
+/// covariance, one per plateau of a rounded y, and what drifts too small to be found would do. The covariance of least squares under noise that is
+/// not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989, section 4.2).
+Eigen::MatrixXd deviations_of(const Fit& fit, std::span<const double> t, double grid, double noise) {
     const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
     const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
+    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    const ResidualNoise left(fit.residual, m, grid * grid / 12);
+    const double variance = left.long_run_variance();
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);
     Eigen::VectorXd length(m);
     for (int k = 0; k < m; ++k) {
@@ -105,30 +135,30 @@ Eigen::MatrixXd deviations_of(const Fit& fit, double variance, double grid, doub
         J.col(k) /= length[k];
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(J.transpose() * J);
+    const Eigen::MatrixXd inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+                                    eigen.eigenvectors().transpose();
+    const Eigen::MatrixXd others = J.bottomRows(rows - n);
+    const Eigen::MatrixXd spread = left.weighed(J.topRows(n)) + variance * others.transpose() * others;
+    const Eigen::MatrixXd covariance = inverse * spread * inverse;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
+    const double widened = student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
     for (int k = 0; k < m; ++k) {
-        const double value = std::max(eigen.eigenvalues()[k], 1e-13);
-        all.emplace_back(std::sqrt(variance / value) * eigen.eigenvectors().col(k).array() / length.array());
+        const double value = std::max(axes.eigenvalues()[k], 0.0);
+        all.emplace_back(widened * std::sqrt(value) * axes.eigenvectors().col(k).array() / length.array());
     }
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
     if (common > 0.02 * grid) {
-        const Eigen::MatrixXd inverse = eigen.eigenvectors() *
-                                        eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
-                                        eigen.eigenvectors().transpose();
         for (const auto& [first, last] : plateaus(fit, grid)) {
             const Eigen::VectorXd pull = J.middleRows(first, last - first).colwise().sum().transpose();
             all.emplace_back((common * (inverse * pull)).array() / length.array());
         }
     }
-    if (!fit.doubt.empty()) all.emplace_back(Eigen::Map<const Eigen::VectorXd>(fit.doubt.data(), m));
+    for (const Eigen::VectorXd& change : drift_doubts(fit, t, J, inverse, variance)) all.emplace_back(change.array() / length.array());
     Eigen::MatrixXd deviations(static_cast<Eigen::Index>(all.size()), m);
     for (std::size_t k = 0; k < all.size(); ++k) deviations.row(static_cast<Eigen::Index>(k)) = all[k].transpose();
     return deviations;
 }
-
-}  // namespace
-
-namespace {
 
 /// By Geyer's sum, for up to a few thousand samples.
 double summed_correlation_time(std::span<const double> series) {
@@ -190,7 +220,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
-    const Eigen::MatrixXd deviations = deviations_of(fit, residual_variance(fit, quantisation), quantisation, noise);
+    const Eigen::MatrixXd deviations = deviations_of(fit, record.t, quantisation, noise);
     const std::vector<int> places = fit.form.searched();
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

@@ -33,10 +33,12 @@ double* member(T& plant, const std::string& name) {
     return nullptr;
 }
 
-/// a2 and a1 of den [a2, a1, 1], the last two but one of its coefficients.
+/// a1, a2, a3 of den [a3, a2, a1, 1], perhaps times s: counted back from the last coefficient other than 0.
 double* denominator_coefficient(TransferFunction& plant, const std::string& name) {
-    const std::size_t n = plant.den.size(), back = name == "a1" ? 2 : name == "a2" ? 3 : 0;
-    return back > 0 && n >= back ? &plant.den[n - back] : nullptr;
+    if (name != "a1" && name != "a2" && name != "a3") return nullptr;
+    const auto last = std::find_if(plant.den.rbegin(), plant.den.rend(), [](double c) { return c != 0; });
+    const auto place = static_cast<std::ptrdiff_t>(name[1] - '0');
+    return plant.den.rend() - last > place ? &*(last + place) : nullptr;
 }
 
 double scale(const TransferFunction& plant) {

@@ -78,6 +78,7 @@ struct TuningMethod {
     /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
     /// integral action, or the defaults.
     std::vector<MethodVariant> variants = {};
+    bool holds_family = false;      ///< limits hold on all of TuningProblem::family
     bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
     Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
     /// For a plant known by measured points of its frequency response; null: the method needs a model.

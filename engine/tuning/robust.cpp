@@ -326,6 +326,7 @@ TuningMethod robust_method() {
         "on Mks";
     method.options = option_descriptions();
     method.tune = tune_robust;
+    method.holds_family = true;
     method.tune_on_points = tune_on_points;
     return method;
 }

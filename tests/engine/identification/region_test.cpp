@@ -77,7 +77,7 @@ TuningResult tuned(double noise, bool over_region) {
     request.record = noisy_step(noise, 1);
     request.identify.model = ModelChoice::fopdt;
     request.evaluate.points = 0;
-    request.over_identified_region = over_region;
+    request.identified_region = over_region ? IdentifiedRegion::held : IdentifiedRegion::unused;
     auto result = tune(request, {});
     EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
     return result ? std::move(*result) : TuningResult{};

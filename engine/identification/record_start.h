@@ -1,0 +1,19 @@
+// Whether a record begins at rest.
+#pragma once
+
+#include "engine/identification/clean_record.h"
+
+namespace tunewright {
+
+/// What the rows before the first move of u say of the start.
+enum class Start {
+    at_rest,  ///< y rests there, u0 is given, or u moves only once and nothing else is seen
+    unseen,   ///< too few rows to tell, in a record in which u moves more than once
+    moving,   ///< y moves there
+};
+
+/// y moves where its slope over the rows before the first change of u exceeds five of its standard errors (the
+/// correlation of the noise counted) and, kept up until the end of the record, would be a twentieth of y's range.
+Start start_of(const CleanRecord& record);
+
+}  // namespace tunewright

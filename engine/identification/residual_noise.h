@@ -1,0 +1,51 @@
+// The noise that a fit leaves behind, as a model: how strong, how slow, and how well known.
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <vector>
+
+namespace tunewright {
+
+/// e_k = a_1 e_(k-1) + ... + a_p e_(k-p) + w_k, w white.
+struct Autoregression {
+    std::vector<double> a;
+    double innovation = 0;  ///< standard deviation of w
+
+    /// Variance of e over that of w, and its integrated correlation time in steps, >= 1.
+    struct Gains {
+        double variance = 1, time = 1;
+    };
+    Gains gains(std::size_t n) const;
+    /// X' R X for the covariance matrix R of such noise, X of one row a step.
+    Eigen::MatrixXd weighed(const Eigen::MatrixXd& X) const;
+};
+
+/// Noise in two layers: means over blocks of samples, in which slow noise stands out from what changes between samples,
+/// and the rest inside the blocks.
+class ResidualNoise {
+public:
+    /// Each layer by Burg's estimate (Burg 1975; Kay 1988, section 7.4), of an order that Akaike's criterion chooses: up
+    /// to 1 for the means, up to 3 inside. Fitting m = `parameters` slow regressors takes slow noise away from the
+    /// residual: the first order's coefficient is put back by (m + (m + 2) a)/n, which is exact to first order for
+    /// polynomials (Kendall 1954 for m = 1). `least`: a variance below which y is not known.
+    ResidualNoise(std::span<const double> residual, int parameters, double least);
+
+    /// X' R X for the covariance matrix R of the noise, X of one row a sample.
+    Eigen::MatrixXd weighed(const Eigen::MatrixXd& X) const;
+    /// Variance of the mean over many samples, times their number.
+    double long_run_variance() const { return long_run_; }
+    /// Degrees of freedom: independent samples less parameters, at least 1.
+    double freedom() const { return freedom_; }
+
+private:
+    Eigen::Index block_ = 1;
+    Autoregression slow_, fast_;
+    double long_run_ = 0, freedom_ = 1;
+};
+
+/// The factor by which 1.96 standard errors of so many degrees of freedom must be widened to hold 95 %: Student's t
+/// over the normal quantile (Abramowitz and Stegun 1964, 26.7.5).
+double student_factor(double freedom);
+
+}  // namespace tunewright

@@ -1,0 +1,110 @@
+#include "tests/records/judgement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/plant/linear_plant.h"
+#include "engine/plant/plant_region.h"
+
+namespace tunewright::records {
+namespace {
+
+bool integrates(const Plant& plant) {
+    const auto linear = LinearPlant::make(plant);
+    return linear && linear->integrators() > 0;
+}
+
+/// Whether a sentence warns of the gain, or of the model as a whole.
+bool names_gain(const Warning& warning) {
+    static const std::set<std::string> kWhole = {
+        "unsettled-record", "slow-or-integrating", "looks-integrating", "structured-residuals", "structure-mismatch",
+        "closed-loop",      "not-at-rest",         "saturated-output",  "unstable-in-region", "static-gain-contradiction"};
+    if (kWhole.contains(warning.code)) return true;
+    return warning.detail.find("K = ") != std::string::npos || warning.detail.find("gain") != std::string::npos;
+}
+
+/// The relative standard deviation of G(j omega) that the covariance states: half axes of the 95 % region, over the
+/// quantile of chi-square.
+double stated_std(const IdentifiedModel& model, double omega) {
+    const auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
+    const auto centre = LinearPlant::make(model.plant);
+    if (!region || !centre) return 0;
+    static constexpr double kQuantile[] = {1, 3.841, 5.991, 7.815, 9.488, 11.070, 12.592, 14.067, 15.507};
+    const std::complex<double> G = centre->at({0, omega});
+    double squares = 0;
+    for (int k = 0; k < region->dimension(); ++k) {
+        PlantRegion::Point z(static_cast<std::size_t>(region->dimension()), 0.0);
+        z[static_cast<std::size_t>(k)] = 0.5;
+        const auto moved = LinearPlant::make(region->at(z));
+        if (moved) squares += 4 * std::norm(moved->at({0, omega}) - G);
+    }
+    return std::sqrt(squares / kQuantile[region->dimension()]) / std::abs(G);
+}
+
+void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement& j) {
+    const auto found = LinearPlant::make(model.plant);
+    if (!found) return;
+    j.K = found->low_frequency_gain();
+    j.K_true = made.plant.K;
+    j.comparable = integrates(model.plant) == made.plant.integrating;
+    if (const auto at = model.standard_errors.find("K"); at != model.standard_errors.end()) j.K_std = at->second;
+}
+
+void judge_design(const MadeRecord& made, const TuningResult& result, Judgement& j) {
+    if (result.controllers.empty() || !result.controllers.front().evaluation) return;
+    const TuningEntry& first = result.controllers.front();
+    j.designed = true;
+    for (const Warning& warning : first.evaluation->warnings) {
+        j.codes.push_back(warning.code);
+        j.detail += "\n      [" + warning.code + "] " + warning.detail;
+        j.warned_badly |= warning.level == WarningLevel::bad;
+    }
+    EvaluateOptions options;
+    options.points = 0;
+    const auto evaluation = evaluate(PlantModel(Plant(made.plant.zpk())), first.evaluation->controller, options);
+    if (evaluation && evaluation->robustness.stable) j.Ms_true = evaluation->robustness.Ms;
+    const double omega = first.evaluation->robustness.gain_crossover.value_or(1 / (made.plant.L + made.plant.lag_sum()));
+    const auto found = LinearPlant::make(result.model->plant);
+    if (!found) return;
+    j.response_error = std::abs(found->at({0, omega}) / made.plant.response(omega) - 1.0);
+    j.response_std = stated_std(*result.model, omega);
+}
+
+}  // namespace
+
+double Judgement::K_error() const { return comparable ? std::abs(K / K_true - 1) : 1; }
+
+bool Judgement::wrong_in_silence() const {
+    return !refused && K_error() > 0.1 && (!comparable || std::abs(K - K_true) > 3 * K_std) && !gain_warned;
+}
+
+bool Judgement::covered() const { return comparable && std::abs(K - K_true) <= 1.96 * K_std; }
+
+Judgement judge(const MadeRecord& made) {
+    TuningRequest request;
+    request.record = made.record;
+    request.evaluate.points = 0;
+    const auto result = tune(request, {});
+    Judgement j;
+    if (!result) {
+        j.refused = true;
+        j.refusal = result.error().message;
+        return j;
+    }
+    j.detail = result->model->choice_reason;
+    for (const Warning& warning : result->model->warnings) {
+        j.codes.push_back(warning.code);
+        j.gain_warned |= names_gain(warning);
+        j.warned_badly |= warning.level == WarningLevel::bad;
+        j.detail += "\n      " + warning.code + ": " + warning.detail;
+    }
+    for (const std::string& note : result->model->data_quality.notes) {
+        if (note.find("does not start at rest") != std::string::npos) j.detail += "\n      note: " + note;
+    }
+    judge_gain(made, *result->model, j);
+    judge_design(made, *result, j);
+    return j;
+}
+
+}  // namespace tunewright::records

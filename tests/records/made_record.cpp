@@ -1,0 +1,324 @@
+#include "tests/records/made_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+
+namespace tunewright::records {
+namespace {
+
+constexpr int kFine = 6;  // steps of the simulation per row
+
+/// What u does: its level at a row, from what was measured there.
+using Operator = std::function<double(int row, double y)>;
+
+struct Plan {
+    int rows = 0;
+    double dt = 0;
+    Operator u;
+    std::vector<double> r;  ///< set point, where there is one
+};
+
+/// Rows at which a test without feedback moves u.
+struct Move {
+    int row;
+    double level;
+};
+
+Operator by_moves(std::vector<Move> moves) {
+    return [moves = std::move(moves)](int row, double) {
+        double level = 0;
+        for (const Move& move : moves) {
+            if (row >= move.row) level = move.level;
+        }
+        return level;
+    };
+}
+
+/// The times that a test is made of, in rows.
+struct Scale {
+    double dt;
+    int settling, rest;
+};
+
+Scale some_scale(const MadeRecord& made, Random& random) {
+    const double settling = made.plant.settling();
+    const int rows = static_cast<int>(random.spread(60, 500));
+    const bool little = made.test == Test::step_little_rest;
+    return {settling / rows, rows, little ? random.below(9) : std::max(6, static_cast<int>(rows * random.uniform(0.1, 0.5)))};
+}
+
+Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
+    std::vector<Move> moves;
+    int row = std::max(1, s.rest);
+    const double sign = random.chance(0.3) ? -1 : 1;
+    auto wait = [&](double low, double high) { row += std::max(2, static_cast<int>(s.settling * random.uniform(low, high))); };
+    switch (made.test) {
+        case Test::bump:
+            moves.push_back({row, sign});
+            wait(0.4, 1.2);
+            moves.push_back({row, 0});
+            wait(0.8, 1.5);
+            break;
+        case Test::staircase: {
+            double level = 0;
+            for (int k = 3 + random.below(3); k > 0; --k) {
+                level += random.chance(0.7) ? random.uniform(0.3, 0.6) : -random.uniform(0.3, 0.6);
+                moves.push_back({row, sign * level});
+                wait(0.5, 1.2);
+            }
+            break;
+        }
+        case Test::prbs: {
+            const int clock = std::max(2, static_cast<int>(s.settling * random.uniform(0.08, 0.3)));
+            const int end = row + static_cast<int>(s.settling * random.uniform(4, 6));
+            for (double level = 1; row < end; row += clock * (1 + random.below(3)), level = -level) moves.push_back({row, level});
+            row = end;
+            break;
+        }
+        case Test::ramp: {
+            const int length = static_cast<int>(s.settling * random.uniform(0.3, 1.5));
+            for (int k = 0; k <= length; ++k) moves.push_back({row + k, sign * k / length});
+            row += length;
+            wait(1, 1.6);
+            break;
+        }
+        default:
+            moves.push_back({row, sign});
+            made.cut_short = random.chance(0.12);
+            if (made.cut_short)
+                wait(0.35, 0.8);
+            else
+                wait(1, 2.2);
+    }
+    return {row, s.dt, by_moves(std::move(moves)), {}};
+}
+
+Plan relay_test(const MadeRecord& made, const Scale& s, Random& random) {
+    const double bias = random.chance(0.5) ? random.uniform(0.1, 0.4) : 0, sign = made.plant.K > 0 ? 1 : -1;
+    // What the relay must see: beyond the noise, within what a half swing moves.
+    const double moved = made.plant.integrating ? std::abs(made.plant.K) * (made.plant.L + made.plant.lag_sum()) : std::abs(made.plant.K);
+    const double hysteresis = moved * std::max(random.uniform(0.02, 0.1), 4 * made.noise_std);
+    const int rest = s.rest;
+    bool up = true;
+    Plan plan{rest + 5 * s.settling, s.dt, nullptr, {}};
+    plan.u = [=](int row, double y) mutable {
+        if (row < rest) return 0.0;
+        if (up && sign * y > hysteresis) up = false;
+        if (!up && sign * y < -hysteresis) up = true;
+        return (up ? 1 : -1) + bias;
+    };
+    return plan;
+}
+
+/// A PI controller by lambda tuning on a rough first-order picture of the plant, in the position form.
+Plan feedback(const MadeRecord& made, const Scale& s, Random& random) {
+    const TruePlant& plant = made.plant;
+    const double lags = plant.lag_sum(), dead = plant.L + 0.4 * lags + std::max(0.0, -plant.b) + s.dt;
+    double Kp = 0, Ti = 0;
+    if (plant.integrating) {
+        const double close = 2 * (plant.L + lags);
+        Kp = 1 / (plant.K * (close + plant.L + lags));
+        Ti = 4 * (close + plant.L + lags);
+    } else {
+        Ti = std::max(0.6 * lags, 0.3 * dead);
+        Kp = 0.6 * Ti / (plant.K * (dead + random.uniform(1, 2) * dead));
+    }
+    const bool moves = made.test == Test::closed_setpoints;
+    const double size = plant.integrating ? std::abs(plant.K) * (plant.L + lags) : std::abs(plant.K);
+    Plan plan{s.rest + 6 * s.settling, s.dt, nullptr, {}};
+    std::vector<double> r(static_cast<std::size_t>(plan.rows), 0.0);
+    int next = s.rest;
+    double level = 0;
+    for (int row = 0; row < plan.rows; ++row) {
+        if (moves && row == next) {
+            level = size * random.uniform(-1, 1);
+            next += static_cast<int>(s.settling * random.uniform(0.8, 1.6));
+        }
+        r[static_cast<std::size_t>(row)] = level;
+    }
+    double sum = 0;
+    plan.u = [=, dt = s.dt](int row, double y) mutable {
+        const double e = r[static_cast<std::size_t>(row)] - y;
+        sum += Kp / Ti * e * dt;
+        return Kp * e + sum;
+    };
+    if (moves) plan.r = r;
+    return plan;
+}
+
+Plan make_plan(MadeRecord& made, const Scale& scale, Random& random) {
+    switch (made.test) {
+        case Test::relay: return relay_test(made, scale, random);
+        case Test::closed_setpoints:
+        case Test::closed_regulation: return feedback(made, scale, random);
+        default: return open_steps(made, scale, random);
+    }
+}
+
+/// A valve that follows u only by jumps larger than its dead band.
+struct Valve {
+    double dead_band, at = 0;
+    double follow(double u) {
+        if (std::abs(u - at) > dead_band) at = u - std::copysign(0.5 * dead_band, u - at);
+        return dead_band > 0 ? at : u;
+    }
+};
+
+/// What is added to y and to the plant's input, row by row; `size` is what a unit of u moves.
+struct Disturbance {
+    std::vector<double> on_y, load;
+};
+
+Disturbance make_disturbance(const MadeRecord& made, const Plan& plan, double size, Random& random) {
+    Disturbance d;
+    const double white = size * made.noise_std, slow = plan.dt / made.plant.settling();
+    const double pole = random.uniform(0.8, 0.97), walk = made.noise == Noise::drifting_load ? 0.02 * std::sqrt(slow) : 0;
+    double state = random.normal(), load = 0;
+    int next_load = static_cast<int>(random.uniform(0.2, 1) * made.plant.settling() / plan.dt);
+    for (int row = 0; row < plan.rows; ++row) {
+        const double fresh = random.normal();
+        state = made.noise == Noise::coloured ? pole * state + std::sqrt(1 - pole * pole) * fresh : fresh;
+        d.on_y.push_back(white * state + size * made.plant.drift * row * slow);
+        load += walk * random.normal();
+        if (made.test == Test::closed_regulation && row == next_load) {
+            load += random.uniform(-0.5, 0.5);
+            next_load += static_cast<int>(random.uniform(0.5, 2) * made.plant.settling() / plan.dt);
+        }
+        d.load.push_back(load);
+    }
+    return d;
+}
+
+Record run(const MadeRecord& made, const Plan& plan, const Disturbance& d, double size) {
+    RunningPlant plant(made.plant, plan.dt / kFine);
+    Valve valve{made.plant.dead_band};
+    Record record;
+    record.r = plan.r;
+    double y = 0;
+    for (int row = 0; row < plan.rows; ++row) {
+        double measured = y + d.on_y[static_cast<std::size_t>(row)];
+        if (made.plant.grid > 0) measured = size * made.plant.grid * std::round(measured / (size * made.plant.grid));
+        const double u = plan.u(row, measured);
+        record.t.push_back(plan.dt * row);
+        record.u.push_back(u);
+        record.y.push_back(measured);
+        for (int k = 0; k < kFine; ++k) {
+            double in = valve.follow(u);
+            if (const int period = kFine * made.plant.switched_rows; period > 0) {
+                // The duty, -2 to 2 for all off and all on, is switched between the two ends; its mean over this step.
+                const double from = static_cast<double>((row * kFine + k) % period), duty = period * (2 + u) / 4;
+                in = std::abs(u) < 2 ? 4 * std::clamp(duty - from, 0.0, 1.0) - 2 : u;
+            }
+            y = plant.advance(in, d.load[static_cast<std::size_t>(row)]);
+        }
+    }
+    return record;
+}
+
+void keep(Record& record, const std::function<bool(std::size_t)>& kept) {
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (!kept(i)) continue;
+        for (auto* column : {&record.t, &record.u, &record.y, &record.r}) {
+            if (!column->empty()) (*column)[to] = (*column)[i];
+        }
+        ++to;
+    }
+    for (auto* column : {&record.t, &record.u, &record.y, &record.r}) {
+        if (!column->empty()) column->resize(to);
+    }
+}
+
+/// What the logger does to the rows.
+void log_rows(const MadeRecord& made, Record& record, double size, Random& random) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    switch (made.noise) {
+        case Noise::outliers:
+            for (double& y : record.y) {
+                if (random.chance(0.004)) y += size * random.uniform(1, 6) * (random.chance(0.5) ? 1 : -1);
+            }
+            break;
+        case Noise::missing_rows:
+            for (double& y : record.y) {
+                if (random.chance(0.04)) y = nan;
+            }
+            keep(record, [&](std::size_t) { return !random.chance(0.05); });
+            break;
+        case Noise::irregular_times:
+            // Rows at random, those kept where u has just moved.
+            keep(record, [&](std::size_t i) { return i == 0 || record.u[i] != record.u[i - 1] || random.chance(0.6); });
+            break;
+        case Noise::logged_on_change: {
+            const double band = size * std::max(0.004, made.noise_std);
+            double last = record.y[0];
+            std::size_t silent = 0;
+            std::vector<bool> kept;
+            for (std::size_t i = 0; i < record.t.size(); ++i) {
+                const bool now = i == 0 || record.u[i] != record.u[i - 1] || std::abs(record.y[i] - last) > band || ++silent >= 30;
+                if (now) last = record.y[i], silent = 0;
+                kept.push_back(now);
+            }
+            keep(record, [&](std::size_t i) { return kept[i]; });
+            break;
+        }
+        default: break;
+    }
+}
+
+/// The user's units: a level, a slope for u, a start of time.
+void into_units(MadeRecord& made, double u_level, double u_step, double y_level, double t_start) {
+    for (double& u : made.record.u) u = u_level + u_step * u;
+    for (double& y : made.record.y) y += y_level;
+    for (double& r : made.record.r) r += y_level;
+    for (double& t : made.record.t) t += t_start;
+    made.plant.K /= u_step;
+}
+
+}  // namespace
+
+const char* name_of(Test test) {
+    static constexpr const char* kNames[] = {"step, little rest", "step", "bump", "staircase", "prbs", "ramp", "relay", "set points", "regulation"};
+    return kNames[static_cast<int>(test)];
+}
+
+const char* name_of(Noise noise) {
+    static constexpr const char* kNames[] = {"none", "white", "coloured", "drifting load", "outliers", "missing rows", "irregular times", "logged on change"};
+    return kNames[static_cast<int>(noise)];
+}
+
+std::string MadeRecord::text() const {
+    char line[400];
+    std::string lags;
+    for (const double T : plant.lags) {
+        std::snprintf(line, sizeof line, " %.3g", T);
+        lags += line;
+    }
+    std::snprintf(line, sizeof line, "%s, %s, %s %.2g%s: K %.4g L %.3g lags%s osc %.3g/%.2g b %.3g%s, %zu rows of %.3g s", records::name_of(plant.family),
+                  records::name_of(test), records::name_of(noise), noise_std, cut_short ? " (cut short)" : "", plant.K, plant.L, lags.c_str(), plant.T_osc, plant.zeta, plant.b,
+                  plant.integrating ? " /s" : "", record.t.size(), record.t.size() > 1 ? record.t[1] - record.t[0] : 0.0);
+    return line;
+}
+
+MadeRecord make_record(std::uint64_t seed) {
+    const int i = static_cast<int>(seed % (kFamilies * kTests * kNoises));
+    return make_record(seed, static_cast<Family>(i % kFamilies), static_cast<Test>(i / kFamilies % kTests), static_cast<Noise>(i / (kFamilies * kTests)));
+}
+
+MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise) {
+    Random random(seed);
+    MadeRecord made{make_plant(family, random), test, noise, 0, false, {}};
+    if (noise != Noise::none) made.noise_std = random.spread(0.001, 0.03);
+    const Scale scale = some_scale(made, random);
+    const Plan plan = make_plan(made, scale, random);
+    const TruePlant& plant = made.plant;
+    const double size = std::abs(plant.K) * (plant.integrating ? plant.L + plant.lag_sum() : 1);
+    made.record = run(made, plan, make_disturbance(made, plan, size, random), size);
+    log_rows(made, made.record, size, random);
+    into_units(made, random.uniform(-50, 100), random.spread(0.1, 30), size * random.uniform(-10, 10), random.chance(0.5) ? 0 : random.uniform(0, 1e5));
+    return made;
+}
+
+}  // namespace tunewright::records

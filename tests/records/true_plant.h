@@ -1,0 +1,62 @@
+// The plants that records are made from: ten families, exact over a fixed step.
+#pragma once
+
+#include <Eigen/Dense>
+#include <complex>
+#include <deque>
+#include <vector>
+
+#include "engine/plant/plant.h"
+#include "tests/records/random.h"
+
+namespace tunewright::records {
+
+enum class Family {
+    equal_lags,
+    spread_lags,      ///< a dominant one, or one behind three to six equal ones
+    oscillating,
+    inverse_response,
+    integrating,
+    drifting,         ///< one or two lags, and y drifts
+    sticky_valve,     ///< a dead band and stiction before the lags
+    coarse_sensor,    ///< a sensor's lag and its grid
+    switched_heater,  ///< u is a duty ratio, the element is switched on and off
+    two_time_scales,  ///< a quick part and a slow one in parallel
+};
+inline constexpr int kFamilies = 10;
+const char* name_of(Family family);
+
+/// K (b s + 1) e^(-Ls) / (lags, one oscillation, one integrator). Time in seconds; K is a slope where it integrates.
+struct TruePlant {
+    Family family = Family::equal_lags;
+    double K = 1, L = 0, b = 0;
+    std::vector<double> lags;
+    double T_osc = 0, zeta = 1;  ///< no oscillation where T_osc is 0
+    bool integrating = false;
+    double drift = 0;      ///< of y over the time in which the plant settles, relative to what a unit of u moves
+    double dead_band = 0;  ///< of the valve, relative to the test's amplitude
+    double grid = 0;       ///< of y, relative to what the test moves
+    int switched_rows = 0; ///< period of the switching, in rows
+
+    double lag_sum() const;
+    double settling() const;  ///< about the time until a step response rests
+    std::complex<double> response(double omega) const;
+    Zpk zpk() const;
+};
+
+TruePlant make_plant(Family family, Random& random);
+
+/// The plant running at a fixed step, from rest. Its dead time is rounded to whole steps.
+class RunningPlant {
+public:
+    RunningPlant(const TruePlant& plant, double step);
+    /// Advances one step under `u` and `load`, which enters behind the dead time; returns y at its end.
+    double advance(double u, double load);
+
+private:
+    Eigen::MatrixXd A_;
+    Eigen::VectorXd B_, C_, x_;
+    std::deque<double> delayed_;
+};
+
+}  // namespace tunewright::records

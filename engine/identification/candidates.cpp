@@ -159,7 +159,7 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
     // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
-    const double lead = context.start == Start::moving && !disturbances.slope ? 0 : kStrong;
+    const double lead = disturbances.slope ? kStrong : context.start == Start::moving ? 0 : kPositive;
     for (const ModelForm& start : other_starts(context, best)) {
         Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
@@ -200,8 +200,9 @@ double level_of_rest(const Fit& fit) {
     return 0;
 }
 
-double information_criterion(const Fit& fit, double independent_samples) {
-    const double variance = fit.sse / static_cast<double>(fit.residual.size()) + kVarianceFloor;
+double information_criterion(const Fit& fit, double independent_samples, double least_variance) {
+    const double variance =
+        std::max(fit.sse / static_cast<double>(fit.residual.size()), least_variance) + kVarianceFloor;
     return independent_samples * std::log(variance) + fit.form.parameters() * std::log(independent_samples);
 }
 
@@ -236,9 +237,9 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
                          best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
-    constexpr double kPoint = 1;
-    return more > 0 && lead < (unusual ? kStrong : kPositive) &&
-           points < kPoint + left * (by_noise(more, independent, best.form.parameters()) - 1);
+    constexpr double kPoint = 1, kMostByNoise = 3;
+    const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
+    return more > 0 && lead < (unusual ? kStrong : kPositive) && points < kPoint + std::min(kMostByNoise, taken_up);
 }
 
 std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,

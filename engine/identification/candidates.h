@@ -39,7 +39,7 @@ struct Disturbances {
 /// Fits one structure to the medium record: scan and refinement of the best starts on the thin one, final fit there.
 /// `simpler` are fits of the structures that it contains; it never ends worse than they do. A start other than rest is
 /// fitted where the record does not show rest: kept where y moves before u does if it lowers the criterion, where
-/// nothing is seen before u moves if it lowers it by 10.
+/// nothing is seen before u moves if it lowers it by 6, and beside a drift by 10.
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
                   const std::vector<Fit>& simpler);
 
@@ -53,8 +53,9 @@ void polish(const FitContext& context, Fit& fit);
 bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 
 /// n ln(sse/n) + p ln n (Schwarz 1978) with n the number of independent samples that the residuals are worth, in place
-/// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant.
-double information_criterion(const Fit& fit, double independent_samples);
+/// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant. Nor is what
+/// lies below `least_variance`, where that is known of the noise.
+double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
 
 struct Choice {
     int index = -1;  ///< into the fits; -1: none is determined
@@ -67,8 +68,8 @@ bool looks_integrating(const Fit& fit);
 
 /// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 6 of it (within 10
 /// of one with a zero, an unseen start or an unstable pole) and its fit, too, lies within what noise explains: a
-/// hundredth of y's deviation, and what so few more parameters take up of noise as strong as the best fit's residual
-/// (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.
+/// hundredth of y's deviation, and up to three more for what so few more parameters take up of noise as strong as the
+/// best fit's residual (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
               double independent_samples);
 

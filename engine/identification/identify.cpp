@@ -211,6 +211,21 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
     warnings.push_back({"structure-mismatch", detail});
 }
 
+/// At the oscillation a lag much longer than its period looks like an integrator: the static gain comes from the
+/// structure alone.
+void warn_extrapolated_gain(const RecordedCycle& cycle, const Fit& fit, std::vector<Warning>& warnings) {
+    constexpr double kFar = 2;
+    const Structure structure = fit.form.structure;
+    if (is_integrating(structure) || structure == Structure::unstable) return;
+    const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();
+    if (lag * cycle.omega() < kFar) return;
+    warnings.push_back({"gain-from-oscillation",
+                        "The relay's oscillation shows the plant where its lags times omega are " +
+                            number_text(lag * cycle.omega(), 2) +
+                            ": the static gain K is extrapolated by the model's structure. The design rests on what is "
+                            "measured near the oscillation; a step test shows the gain."});
+}
+
 double steady_misfit(const CleanRecord& r, const RecordedCycle& cycle, const Fit& fit) {
     double squares = 0;
     int n = 0;
@@ -263,6 +278,7 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     if (options.model != ModelChoice::automatic)
         search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
 
+    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), warnings);
     const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());

@@ -105,29 +105,27 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
     }
 }
 
-/// The variance of K with the choice of structure left open: the mean over all structures of the same kind, weighed by
-/// Akaike's criterion, of their own variances and squared distances from the chosen one (Buckland, Burnham and Augustin
-/// 1997; Burnham and Anderson 2002, section 4.3).
-double unconditional_variance(const Search& search, const std::vector<FittedPlant>& plants) {
+/// The variance of K with the choice of structure left open: the widest of own variance and squared distance from the
+/// chosen one's K, over the structures of the same kind that Akaike's criterion does not tell from it (less than 4 apart:
+/// Burnham and Anderson 2002, section 2.6).
+double open_choice_variance(const Search& search, const std::vector<FittedPlant>& plants) {
+    constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const double log_n = std::log(search.independent), K = plants[chosen].values.at("K");
     const auto akaike = [&](std::size_t i) {
         return search.criteria[i] + (2 - log_n) * search.fits[i].form.parameters();
     };
-    double weights = 0, variance = 0;
+    double widest = std::pow(plants[chosen].standard_errors.at("K"), 2);
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const Fit& fit = search.fits[i];
         if (!fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
             is_integrating(fit.form.structure) != is_integrating(search.fits[chosen].form.structure))
             continue;
-        const double weight = std::exp(-0.5 * std::max(-50.0, akaike(i) - akaike(chosen)));
         const double own = plants[i].standard_errors.at("K"), apart = plants[i].values.at("K") - K;
-        if (own > std::abs(plants[i].values.at("K"))) continue;
-        weights += weight;
-        variance += weight * (own * own + apart * apart);
+        if (akaike(i) - akaike(chosen) > kOpen || own > std::abs(plants[i].values.at("K"))) continue;
+        widest = std::max(widest, own * own + apart * apart);
     }
-    const double own = plants[chosen].standard_errors.at("K");
-    return weights > 0 ? std::max(own * own, variance / weights) : own * own;
+    return widest;
 }
 
 void widen_gain(FittedPlant& plant, double variance) {
@@ -157,7 +155,7 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
     }
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     if (search.fits[chosen].form.structure != Structure::unstable)
-        widen_gain(plants[chosen], unconditional_variance(search, plants));
+        widen_gain(plants[chosen], open_choice_variance(search, plants));
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });

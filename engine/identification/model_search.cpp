@@ -62,8 +62,10 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false, 1};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
+    // The noise is known to some ten per cent.
+    const double least = 0.8 * search.context.noise * search.context.noise;
     for (const Fit& fit : search.fits) {
-        search.criteria.push_back(information_criterion(fit, search.independent));
+        search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
     }
     search.choice = choose(search.fits, search.criteria, search.percents, search.independent);

@@ -17,10 +17,11 @@ struct Record {
     std::vector<double> t;  ///< time in the user's unit, any start
     std::vector<double> u;  ///< controller output (plant input)
     std::vector<double> y;  ///< measurement
-    std::vector<double> r;  ///< set point, in y's unit; empty: not in the record
+    std::vector<double> r = {};  ///< set point, in y's unit; empty: not in the record
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
-    std::optional<std::array<double, 2>> u_limits;  ///< low < high: what reaches the plant of a u that was logged before its limiter
+    /// low < high: what reaches the plant of a u that was logged before its limiter.
+    std::optional<std::array<double, 2>> u_limits = {};
     std::vector<int> line;         ///< of each sample in the file that it comes from, for sentences; empty: no file
 };
 

@@ -12,8 +12,9 @@ enum class Start {
     moving,   ///< y moves there
 };
 
-/// y moves where its slope over the rows before the first change of u exceeds five of its standard errors (the
-/// correlation of the noise counted) and, kept up until the end of the record, would be a twentieth of y's range.
+/// y moves where its slope over the rows before the first change of u exceeds five of its standard errors, and either
+/// takes it by 3 % of its range and four times what scatters about the line, or exceeds five errors with the
+/// correlation of that scatter counted and would take it by 5 % until the end of the record.
 Start start_of(const CleanRecord& record);
 
 }  // namespace tunewright

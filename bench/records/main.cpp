@@ -1,4 +1,4 @@
-// identify FIRST COUNT [--show KIND] [--family N] [--test N] [--noise N]: made records from seeds FIRST on, judged, and
+// records FIRST COUNT [--show KIND] [--family N] [--test N] [--noise N]: made records from seeds FIRST on, judged, and
 // the table of what came out. KIND: silent, unstable, above, refused, uncovered, seed.
 #include <algorithm>
 #include <atomic>

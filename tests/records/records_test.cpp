@@ -1,0 +1,99 @@
+// Bounds that hold over made records: no wrong gain in silence, no unstable design without a warning, honest intervals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/plant/linear_plant.h"
+#include "tests/records/judgement.h"
+
+namespace tunewright::records {
+namespace {
+
+/// A step of one lag of 80 s behind `order` equal lags, sampled every second.
+MadeRecord slow_step(std::uint64_t seed) {
+    Random random(seed);
+    MadeRecord made;
+    made.plant.family = Family::spread_lags;
+    made.plant.K = random.uniform(0.5, 2);
+    made.plant.lags.assign(static_cast<std::size_t>(3 + random.below(4)), random.uniform(12, 20));
+    made.plant.lags.push_back(80);
+    made.noise_std = random.uniform(0.001, 0.009);
+    const int rest = 5 + random.below(41), rows = rest + 600;
+    RunningPlant running(made.plant, 0.25);
+    double y = 0;
+    for (int row = 0; row < rows; ++row) {
+        const double u = row >= rest ? 1 : 0;
+        made.record.t.push_back(row);
+        made.record.u.push_back(20 + 10 * u);
+        made.record.y.push_back(y + made.plant.K * made.noise_std * random.normal());
+        for (int k = 0; k < 4; ++k) y = running.advance(u, 0);
+    }
+    made.plant.K /= 10;
+    return made;
+}
+
+TEST(MadeRecords, AStepThatBeginsAtRestKeepsItsGainWhateverItsLags) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const MadeRecord made = slow_step(seed);
+        const Judgement j = judge(made);
+        ASSERT_FALSE(j.refused) << seed << " " << j.refusal;
+        EXPECT_LT(j.K_error(), 0.03) << seed << " " << made.text() << "\n" << j.detail;
+        EXPECT_EQ(j.detail.find("does not start at rest"), std::string::npos) << seed;
+        ASSERT_TRUE(j.Ms_true) << seed << " " << j.detail;
+        EXPECT_LE(*j.Ms_true, 1.25 * j.Ms_asked) << seed;
+    }
+}
+
+TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
+    int records = 0, silent = 0, designed = 0, above = 0, unstable = 0;
+    for (std::uint64_t seed = 1; seed <= 2 * kFamilies * kTests * kNoises; seed += 3) {
+        const MadeRecord made = make_record(seed);
+        const Judgement j = judge(made);
+        ++records;
+        if (j.refused) continue;
+        silent += j.wrong_in_silence();
+        if (!j.designed || j.warned_badly) continue;
+        ++designed;
+        unstable += !j.Ms_true;
+        above += j.Ms_true && *j.Ms_true > 1.25 * j.Ms_asked;
+        EXPECT_TRUE(j.Ms_true) << seed << " " << made.text() << "\n" << j.detail;
+    }
+    EXPECT_EQ(records, 480);
+    EXPECT_LE(silent, 0.01 * records);
+    EXPECT_LE(above, 0.015 * designed);
+}
+
+/// The share of step tests whose stated 95 % interval holds K.
+double coverage(double noise, double pole, int seeds) {
+    int covered = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        Random random(static_cast<std::uint64_t>(7000 + seed));
+        const double K = 1.5, T = random.uniform(8, 16), L = random.uniform(0.5, 6);
+        Record record;
+        double state = random.normal();
+        for (int i = 0; i < 400; ++i) {
+            const double t = 0.25 * i, after = t - 10 - L;
+            state = pole * state + std::sqrt(1 - pole * pole) * random.normal();
+            record.t.push_back(t);
+            record.u.push_back(t < 10 ? 0 : 1);
+            record.y.push_back((after > 0 ? K * -std::expm1(-after / T) : 0) + noise * state);
+        }
+        const auto model = identify(record, {}, {});
+        if (!model || !model->standard_errors.contains("K")) continue;
+        const auto plant = LinearPlant::make(model->plant);
+        covered += std::abs(plant->low_frequency_gain() - K) <= 1.96 * model->standard_errors.at("K");
+    }
+    return static_cast<double>(covered) / seeds;
+}
+
+TEST(MadeRecords, StatedIntervalsOfTheGainHoldIt) {
+    // 200 seeds: the standard deviation of a share of 95 % is 1.5 %.
+    for (const double noise : {0.01, 0.05}) {
+        EXPECT_GE(coverage(noise, 0, 200), 0.90) << noise;
+        EXPECT_LE(coverage(noise, 0, 200), 0.99) << noise;
+    }
+    for (const double pole : {0.8, 0.97}) EXPECT_GE(coverage(0.03, pole, 200), 0.85) << pole;
+}
+
+}  // namespace
+}  // namespace tunewright::records

@@ -193,6 +193,26 @@ SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n) {
     return result;
 }
 
+double balanced_norm(std::span<const double> matrix, int n) {
+    Matrix A = as_matrix(matrix, n);
+    // A state without a way out or in can be given any unit: its couplings vanish, and with them those of the next.
+    bool removed = true;
+    while (removed) {
+        removed = false;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double own = std::abs(A(i, i)), row = A.row(i).cwiseAbs().sum() - own,
+                         column = A.col(i).cwiseAbs().sum() - own;
+            if ((row > 0) == (column > 0)) continue;
+            A.row(i).setZero();
+            A.col(i).setZero();
+            A(i, i) = own;
+            removed = true;
+        }
+    }
+    balance(A);
+    return n > 0 ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0;
+}
+
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     const Matrix result = as_matrix(matrix, n).exp();
     return {result.data(), result.data() + result.size()};

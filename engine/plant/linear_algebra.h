@@ -37,6 +37,11 @@ std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<co
 std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
                                         double D, int n, std::complex<double> s);
 
+/// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
+/// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
+/// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
+double balanced_norm(std::span<const double> matrix, int n);
+
 /// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n);
 

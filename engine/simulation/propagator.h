@@ -24,6 +24,8 @@ public:
 
     /// The step of length h0 2^level, computed once by doubling.
     const ExactStep& level(int level);
+    /// The step of any length h > 0.
+    ExactStep step(double h) const;
     /// A step of length first.h + second.h.
     ExactStep compose(const ExactStep& first, const ExactStep& second) const;
 
@@ -35,11 +37,9 @@ public:
     double h0() const { return h0_; }
 
 private:
-    ExactStep first_step() const;
-
     int n_;
     std::vector<double> F_, G_, b_;
-    double h0_;
+    double h0_, norm_;
     std::vector<ExactStep> levels_;
 };
 

@@ -1,0 +1,70 @@
+#include "engine/measured_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/simulation/indices.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kMostRefinements = 5;
+constexpr double kHalvedSteps = 1.0 / 16;  // of a tolerance, where the error is of order 4
+constexpr double kTail = 1e-6;             // of the integral of t |e|, left after the run's end
+constexpr std::size_t kMostNodes = 1000000;
+
+struct Indices {
+    ErrorIntegrals error;
+    double TV = 0;
+};
+
+/// Integrals are compared where they exist: up to a horizon, or where integral action ends them.
+Indices indices_of(const LinearResponse& response, const ResponseOptions& options, double target) {
+    return {error_integrals(response.nodes, target,
+                            options.horizon ? std::nullopt : response.error_integral_final),
+            total_variation(response.nodes)};
+}
+
+double relative(double coarse, double fine) {
+    const double size = std::max(std::abs(coarse), std::abs(fine));
+    return size > 0 ? std::abs(fine - coarse) / size : 0;
+}
+
+IndexErrors moved(const Indices& coarse, const Indices& fine) {
+    return {relative(coarse.error.IAE, fine.error.IAE), relative(coarse.error.ISE, fine.error.ISE),
+            relative(coarse.error.ITAE, fine.error.ITAE), relative(coarse.TV, fine.TV)};
+}
+
+}  // namespace
+
+bool as_promised(const IndexErrors& errors) {
+    return errors.IAE.value_or(0) <= kPromisedIae && errors.ISE.value_or(0) <= kPromisedIse &&
+           errors.ITAE.value_or(0) <= kPromisedItae && errors.TV.value_or(0) <= kPromisedTv;
+}
+
+MeasuredResponse measure(const std::function<LinearResponse(const ResponseOptions&)>& simulate, ResponseOptions options,
+                         double target) {
+    options.tail = kTail;
+    MeasuredResponse measured{simulate(options), {}};
+    if (!measured.response.settles) return measured;
+    Indices last = indices_of(measured.response, options, target);
+    StepSchedule finer;
+    for (int i = 0; i < kMostRefinements && measured.response.nodes.size() < kMostNodes; ++i) {
+        const StepSchedule& schedule = measured.response.schedule;
+        if (schedule.level.empty() && schedule.to_horizon == 0) {
+            options.tolerance *= kHalvedSteps;
+        } else {
+            finer = halved(schedule);
+            options.repeat = &finer;
+        }
+        LinearResponse response = simulate(options);
+        if (!response.settles) break;
+        const Indices now = indices_of(response, options, target);
+        measured = {std::move(response), moved(last, now)};
+        if (as_promised(measured.errors)) break;
+        last = now;
+    }
+    return measured;
+}
+
+}  // namespace tunewright

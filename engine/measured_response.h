@@ -1,0 +1,32 @@
+// A response on steps so short that the indices taken from it are as exact as promised, and how exact they are.
+//
+// A run is repeated with every step halved until no index moves by more than is promised of it. The interpolation
+// within a step and the indices' quadrature are both of order 4, so the finer run's own error is about a fifteenth of
+// the move: the move is a bound wherever halving the steps halves the error at least.
+#pragma once
+
+#include <functional>
+
+#include "engine/evaluate.h"
+#include "engine/simulation/linear_response.h"
+
+namespace tunewright {
+
+/// Relative errors that the indices of a measured response keep.
+inline constexpr double kPromisedIae = 1e-5, kPromisedIse = 1e-5, kPromisedItae = 2e-5, kPromisedTv = 5e-5;
+
+struct MeasuredResponse {
+    LinearResponse response;
+    IndexErrors errors;  ///< empty where there is nothing to compare: the response does not settle
+};
+
+/// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of
+/// the tolerance, which halves steps of order 4. `target` is what y is to reach. Without a horizon the integrals go to
+/// infinity.
+MeasuredResponse measure(const std::function<LinearResponse(const ResponseOptions&)>& simulate, ResponseOptions options,
+                         double target);
+
+/// Whether every error is within its promise.
+bool as_promised(const IndexErrors& errors);
+
+}  // namespace tunewright

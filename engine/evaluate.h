@@ -85,7 +85,7 @@ struct FrequencyTraces {
 };
 
 /// Relative errors of a response's indices: by how much each has moved when every step was last halved, its quadrature
-/// with it (measured_response.h). Empty where the response does not settle.
+/// with it (measured_response.h). Empty where the index has no value.
 struct IndexErrors {
     std::optional<double> IAE, ISE, ITAE, TV;
 };

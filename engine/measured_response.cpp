@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/performance_figures.h"
 #include "engine/simulation/indices.h"
 
 namespace tunewright {
@@ -14,15 +15,16 @@ constexpr double kTail = 1e-6;             // of the integral of t |e|, left aft
 constexpr std::size_t kMostNodes = 1000000;
 
 struct Indices {
-    ErrorIntegrals error;
+    std::optional<ErrorIntegrals> error;  // where they exist
     double TV = 0;
 };
 
-/// Integrals are compared where they exist: up to a horizon, or where integral action ends them.
 Indices indices_of(const LinearResponse& response, const ResponseOptions& options, double target) {
-    return {error_integrals(response.nodes, target,
-                            options.horizon ? std::nullopt : response.error_integral_final),
-            total_variation(response.nodes)};
+    Indices indices{std::nullopt, total_variation(response.nodes)};
+    if (why_no_integral(response, target, !options.horizon) == nullptr)
+        indices.error = error_integrals(response.nodes, target,
+                                        options.horizon ? std::nullopt : response.error_integral_final);
+    return indices;
 }
 
 double relative(double coarse, double fine) {
@@ -31,8 +33,13 @@ double relative(double coarse, double fine) {
 }
 
 IndexErrors moved(const Indices& coarse, const Indices& fine) {
-    return {relative(coarse.error.IAE, fine.error.IAE), relative(coarse.error.ISE, fine.error.ISE),
-            relative(coarse.error.ITAE, fine.error.ITAE), relative(coarse.TV, fine.TV)};
+    IndexErrors errors;
+    errors.TV = relative(coarse.TV, fine.TV);
+    if (!coarse.error || !fine.error) return errors;
+    errors.IAE = relative(coarse.error->IAE, fine.error->IAE);
+    errors.ISE = relative(coarse.error->ISE, fine.error->ISE);
+    errors.ITAE = relative(coarse.error->ITAE, fine.error->ITAE);
+    return errors;
 }
 
 }  // namespace

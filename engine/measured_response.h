@@ -17,7 +17,7 @@ inline constexpr double kPromisedIae = 1e-5, kPromisedIse = 1e-5, kPromisedItae 
 
 struct MeasuredResponse {
     LinearResponse response;
-    IndexErrors errors;  ///< empty where there is nothing to compare: the response does not settle
+    IndexErrors errors;  ///< of the indices that exist
 };
 
 /// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of

@@ -18,7 +18,9 @@ void all_null(Figures& figures, std::initializer_list<const char*> names, const 
     for (const char* name : names) figures.why_null[name] = reason;
 }
 
-/// Where the error comes to rest decides whether its integrals exist.
+}  // namespace
+
+// Where the error comes to rest decides.
 const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity) {
     if (!to_infinity) return nullptr;
     if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
@@ -28,8 +30,6 @@ const char* why_no_integral(const LinearResponse& response, double target, bool 
         return "The error does not go to 0 (no integral action), so its integral is infinite; give a horizon.";
     return nullptr;
 }
-
-}  // namespace
 
 Performance no_performance(const std::string& reason) {
     Performance performance;

@@ -286,7 +286,7 @@ const Description<IndexErrors>& index_errors_contract() {
             .field("ISE", &E::ISE, figure(), "Promised: 1e-5 or less.")
             .field("ITAE", &E::ITAE, figure(), "Promised: 2e-5 or less.")
             .field("TV", &E::TV, figure(), "Promised: 5e-5 or less.")
-            .why_null("The response does not settle, or was checked step by step instead (a nonlinear plant's).");
+            .why_null("The index has no value, or was checked step by step instead (on a nonlinear plant).");
         return d;
     }();
     return description;
@@ -296,9 +296,9 @@ const Description<Verification>& verification_contract() {
     static const auto description = [] {
         using V = Verification;
         Description<V> d("Verification", "How the figures were checked.");
-        d.field("setpoint_errors", &V::setpoint_errors, object(index_errors_contract()),
+        d.field("setpoint_errors", &V::setpoint_errors, answer(index_errors_contract()),
                 "How exact the indices of the set-point response are.")
-            .field("load_errors", &V::load_errors, object(index_errors_contract()),
+            .field("load_errors", &V::load_errors, answer(index_errors_contract()),
                    "How exact the indices of the load response are.")
             .field("iae_step_halving", &V::iae_step_halving, figure(),
                    "Relative change of the load IAE when every time step is halved.")

@@ -206,18 +206,6 @@ private:
         push(t, x, seen(t, false));
     }
 
-    static void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                        std::vector<double>& scratch) {
-        const Index n = x.size();
-        for (Index i = 0; i < n; ++i) {
-            double sum = step.constant[i];
-            for (Index j = 0; j < 4; ++j) sum += step.Gamma[j][i] * v[j];
-            for (Index j = 0; j < n; ++j) sum += step.Phi[i * n + j] * x[j];
-            scratch[i] = sum;
-        }
-        x.swap(scratch);
-    }
-
     void remember(double t, const std::vector<double>& x, Signal e) {
         const double u = dot(system_.M, x) + system_.N * e.value;
         const double y_model = x[Index(system_.plant_states)];

@@ -110,15 +110,16 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
     return whole;
 }
 
-void Propagator::advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                         std::vector<double>& scratch) const {
+void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
+             std::vector<double>& scratch) {
+    const Index n = x.size();
     const double *row = step.Phi.data(), *in = x.data();
     const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
                  *g3 = step.Gamma[3].data();
-    for (int i = 0; i < n_; ++i, row += n_) {
-        double sum = step.constant[Index(i)] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
-        for (int j = 0; j < n_; ++j) sum += row[j] * in[j];
-        scratch[Index(i)] = sum;
+    for (Index i = 0; i < n; ++i, row += n) {
+        double sum = step.constant[i] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
+        for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
+        scratch[i] = sum;
     }
     x.swap(scratch);
 }

@@ -18,6 +18,10 @@ struct ExactStep {
 /// v over a step as Taylor coefficients from values and slopes at both ends (cubic Hermite).
 std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
 
+/// x := Phi x + Gamma v + constant. `scratch` has as many entries as x.
+void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
+             std::vector<double>& scratch);
+
 class Propagator {
 public:
     Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0);
@@ -28,10 +32,6 @@ public:
     ExactStep step(double h) const;
     /// A step of length first.h + second.h.
     ExactStep compose(const ExactStep& first, const ExactStep& second) const;
-
-    /// x := Phi x + Gamma v + constant. `scratch` has n entries.
-    void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                 std::vector<double>& scratch) const;
 
     int states() const { return n_; }
     double h0() const { return h0_; }

@@ -7,6 +7,7 @@
 
 #include "engine/plant/linear_algebra.h"
 #include "engine/simulation/delayed_signal.h"
+#include "engine/simulation/error_tail.h"
 #include "engine/simulation/long_step.h"
 #include "engine/simulation/propagator.h"
 #include "engine/simulation/steady_state.h"
@@ -22,8 +23,7 @@ constexpr int kMaxEchoes = 2000;
 constexpr int kRepetitions = 20;      // of a step that sees its own end through the scaled integral
 constexpr double kConverged = 1e-10;  // of the response's size
 constexpr double kEscaped = 1e6;      // of the response's scale: it grows without bound
-constexpr double kRounding = 1e-10;   // of the absolute error's integral: what is left below it is none
-constexpr double kOnTheHorizon = 1e-9;
+constexpr double kOnTheHorizon = 1e-9;  // of a step
 
 double hermite_midpoint(double h, double a, double slope_a, double b, double slope_b) {
     return 0.5 * (a + b) + h * (slope_a - slope_b) / 8;
@@ -137,7 +137,7 @@ private:
     }
 
     void push(const ResponseNode& node) {
-        if (options_.tail && !response_.nodes.empty()) add_moments(response_.nodes.back(), node);
+        if (options_.tail && !response_.nodes.empty()) tail_.add(response_.nodes.back(), node, system_.in.r);
         response_.nodes.push_back(node);
         if (scaling_ != nullptr) excesses_.push_back(excess_);
         largest_y_ = std::max(largest_y_, std::abs(node.y - steady_.y));
@@ -147,30 +147,16 @@ private:
             last_unsettled_ = node.t;
     }
 
-    /// Of the absolute error, by trapezoids: what is left of the integrals is judged by them.
-    void add_moments(const ResponseNode& a, const ResponseNode& b) {
-        const double h = b.t - a.t, ea = std::abs(system_.in.r - a.y), eb = std::abs(system_.in.r - b.y);
-        absolute_error_ += 0.5 * h * (ea + eb);
-        first_moment_ += 0.5 * h * (a.t * ea + b.t * eb);
-    }
-
     bool finished() const {
         const double t = response_.nodes.back().t;
         if (options_.horizon) return t >= *options_.horizon;
         if (t < last_unsettled_ + std::max(2 * system_.s.L, 0.25 * last_unsettled_) || t <= 0) return false;
         // A slow tail that still has integral to add must at least have the sign to add it.
         if (!steady_.error_integral) return true;
-        const double rest = std::abs(error_integral_left());
-        const double error = system_.in.r - response_.nodes.back().y;
-        const double whole = std::max(std::abs(*steady_.error_integral), absolute_error_);
-        if (error_integral_left() * error < 0 && rest > options_.settled * whole) return false;
-        return !options_.tail || little_is_left(rest, std::abs(error), t);
-    }
-
-    /// Of the integral of t times the absolute error, whose tail is taken as one exponential.
-    bool little_is_left(double rest, double error, double t) const {
-        if (rest <= kRounding * absolute_error_) return true;
-        return rest * (t * error + rest) <= *options_.tail * first_moment_ * error;
+        const double rest = error_integral_left(), error = system_.in.r - response_.nodes.back().y;
+        const double whole = std::max(std::abs(*steady_.error_integral), tail_.absolute_error());
+        if (rest * error < 0 && std::abs(rest) > options_.settled * whole) return false;
+        return !options_.tail || tail_.little_is_left(rest, error, t, *options_.tail);
     }
 
     /// From now to infinity. Scaled, the integral's state has that to go: near the end it sees the error as it is.
@@ -308,7 +294,7 @@ private:
     bool take_short_step(const ExactStep& step, double end, ResponseNode& node) {
         const double L = system_.s.L, slack = 1e-9 * propagator_.h0(), t = end - step.h;
         const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(end - L, false, slack);
-        propagator_.advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
+        advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
         node = node_at(system_, end, x_, v1);
         if (scaling_ != nullptr) add_excess(step.h, node);
         return true;
@@ -350,7 +336,8 @@ private:
         step.start(history_.at(time() - system_.s.L, true, 1e-9 * propagator_.h0()),
                    {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
         return settle(step.h(), false, node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
-            const Signal v = step.finish(start_, {into_u_ * added, into_u_ * excess_.value}, x);
+            const Signal v =
+                step.finish(start_, {into_u_ * added, into_u_ * excess_.value, into_u_ * excess_.slope}, x);
             if (scaling_ != nullptr) x[Index(system_.s.integral_state)] += added;
             at_end = node_at(system_, end, x, v);
         });
@@ -361,7 +348,7 @@ private:
         const Signal before = excess_;
         return settle(step.h, shortest, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
             x = x_;
-            propagator_.advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope),
+            advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope),
                                 x, scratch_);
             at_end = node_at(system_, end, x, {});
         });
@@ -429,7 +416,7 @@ private:
     double ticks_ = 0;  // since t = 0, in units of h0: exact
     double longest_step_ = std::numeric_limits<double>::infinity();
     double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
-    double absolute_error_ = 0, first_moment_ = 0;  // integrals of |e| and t |e| so far
+    ErrorTail tail_;
 };
 
 }  // namespace

@@ -37,11 +37,18 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         system.MH += s.M[Index(i)] * s.H[Index(i)] * in.r;
         system.YH += s.Y[Index(i)] * s.H[Index(i)] * in.r;
     }
+    system.MFF.assign(Index(n), 0);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) system.MFF[Index(j)] += system.MF[Index(i)] * s.F[Index(i * n + j)];
+        system.MFG += system.MF[Index(i)] * s.G[Index(i)];
+        system.MFH += system.MF[Index(i)] * s.H[Index(i)] * in.r;
+    }
+    system.b[Index(n)] = -in.r;
     if (!system.delayed) {
         // v is the load alone here, with the algebraic loop solved.
         for (int i = 0; i < system.n; ++i) system.b[Index(i)] += system.G[Index(i)] * in.d;
-        // The integral of y also sees what the set point feeds through the plant's direct term.
-        system.b[Index(n)] = s.Z * (s.R * in.r + in.d);
+        // The error's integral also sees what the set point feeds through the plant's direct term.
+        system.b[Index(n)] = s.Z * (s.R * in.r + in.d) - in.r;
     }
     return system;
 }
@@ -63,7 +70,7 @@ ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<d
         node.y += s.Y[Index(i)] * xi;
         node.y_slope += system.YF[Index(i)] * xi;
     }
-    node.error_integral = system.in.r * t - x[Index(s.n)];
+    node.error_integral = -x[Index(s.n)];
     return node;
 }
 

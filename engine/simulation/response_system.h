@@ -1,4 +1,4 @@
-// The equations that a response is stepped with: the delay system, the integral of y and the constant inputs.
+// The equations that a response is stepped with: the delay system, the integral of y - r and the constant inputs.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace tunewright {
 
-/// The delay system with one more state, the integral of y, and without the constant inputs.
+/// The delay system with one more state, the integral of y - r, and without the constant inputs.
 struct ResponseSystem {
     DelaySystem s;
     int n = 0;
     std::vector<double> F, G, b;
-    // u = Mu x + N v + u0, u' = Mdu x + Ndu v + N v' + du0, the same for y.
-    std::vector<double> MF, YF;
-    double MG = 0, YG = 0, MH = 0, YH = 0;
+    // u' = MF x + MG v + N v' + MH, u'' = MFF x + MFG v + MG v' + N v'' + MFH; y' like u'.
+    std::vector<double> MF, MFF, YF;
+    double MG = 0, MFG = 0, YG = 0, MH = 0, MFH = 0, YH = 0;
     StepInputs in;
     bool delayed = false;
 };

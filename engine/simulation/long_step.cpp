@@ -8,6 +8,16 @@ using Index = std::size_t;
 
 namespace {
 
+using Cubic = std::array<double, 4>;
+
+Cubic derivative(const Cubic& c) { return {c[1], c[2], c[3], 0}; }
+
+void add_product(const std::vector<double>& F, const std::vector<double>& x, std::vector<double>& sum) {
+    const Index n = x.size();
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) sum[i] += F[i * n + j] * x[j];
+}
+
 /// Of length (2^(level - level_of_L) - 1) L.
 ExactStep beyond_L(Propagator& propagator, int level, int level_of_L) {
     const ExactStep over_L = propagator.level(level_of_L);
@@ -30,11 +40,34 @@ LongStep::LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep res
 void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch,
                      Start& start) const {
     start.x = x;
-    advance(over_L_, hermite_taylor(over_L_.h, v0.value, v0.slope, w0.value, w0.slope), start.x, scratch);
+    start.rate = system_->b;
+    add_input(v0.value, start.rate);
+    add_product(system_->F, x, start.rate);
+    start.curvature.assign(x.size(), 0.0);
+    add_input(v0.slope, start.curvature);
+    add_product(system_->F, start.rate, start.curvature);
+    const Cubic over_L = hermite_taylor(over_L_.h, v0.value, v0.slope, w0.value, w0.slope);
+    advance(over_L_, over_L, start.x, scratch);
+    advance_rate(over_L_, derivative(over_L), start.rate, scratch);
+    advance_rate(over_L_, derivative(derivative(over_L)), start.curvature, scratch);
+    add_input(-w0.slope, start.curvature);
     const Cubic known = cubic(w0.value, {});
     advance(rest_, known, start.x, scratch);
+    to_end(known, start, scratch);
     start.v_end = delayed_end(known);
-    start.w_end = output(start.x, known, true);
+    start.w_end = output(start, known);
+    start.w_end[0] += system_->s.R * system_->in.r + system_->in.d;
+}
+
+/// The derivatives over the rest of the step; v' jumps at its beginning to the cubic's.
+void LongStep::to_end(const Cubic& c, Start& states, std::vector<double>& scratch) const {
+    add_input(c[1], states.curvature);
+    advance_rate(rest_, derivative(c), states.rate, scratch);
+    advance_rate(rest_, derivative(derivative(c)), states.curvature, scratch);
+}
+
+void LongStep::add_input(double v, std::vector<double>& rate) const {
+    for (Index i = 0; i < rate.size(); ++i) rate[i] += system_->G[i] * v;
 }
 
 Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double>& x) const {
@@ -64,34 +97,28 @@ Signal LongStep::delayed_end(const Cubic& c) const {
     return {c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)), c[1] + s * (c[2] + s * c[3] / 2)};
 }
 
-/// w, w' and w'' at the end from the states and the delayed signal there; the constant inputs only where asked.
-LongStep::Jet LongStep::output(const std::vector<double>& x, const Cubic& c, bool with_inputs) const {
+/// w, w' and w'' at the end, without the constant inputs.
+LongStep::Jet LongStep::output(const Start& at_end, const Cubic& c) const {
     const DelaySystem& s = system_->s;
     const Signal v = delayed_end(c);
-    const double v2 = c[2] + rest_.h * c[3];
-    Jet w{s.N * v.value, system_->MG * v.value + s.N * v.slope,
-          system_->MFG * v.value + system_->MG * v.slope + s.N * v2};
-    if (with_inputs) {
-        w[0] += s.R * system_->in.r + system_->in.d;
-        w[1] += system_->MH;
-        w[2] += system_->MFH;
-    }
+    Jet w{s.N * v.value, s.N * v.slope, s.N * (c[2] + rest_.h * c[3])};
     for (Index i = 0; i < Index(s.n); ++i) {
-        w[0] += s.M[i] * x[i];
-        w[1] += system_->MF[i] * x[i];
-        w[2] += system_->MFF[i] * x[i];
+        w[0] += s.M[i] * at_end.x[i];
+        w[1] += s.M[i] * at_end.rate[i];
+        w[2] += s.M[i] * at_end.curvature[i];
     }
     return w;
 }
 
 LongStep::Effect LongStep::effect(const Jet& end) const {
-    Effect e;
     const Cubic c = cubic(0, end);
-    e.x.assign(Index(system_->n), 0);
-    for (Index j = 0; j < 4; ++j)
-        for (Index i = 0; i < e.x.size(); ++i) e.x[i] += rest_.Gamma[j][i] * c[j];
-    e.v = delayed_end(c);
-    e.out = output(e.x, c, false);
+    const Index n = Index(system_->n);
+    Start states;
+    std::vector<double> scratch(n);
+    for (auto* vector : {&states.x, &states.rate, &states.curvature}) vector->assign(n, 0.0);
+    advance_rate(rest_, c, states.x, scratch);
+    to_end(c, states, scratch);
+    Effect e{states.x, delayed_end(c), output(states, c)};
     e.out[1] *= h_;
     e.out[2] *= h_ * h_;
     return e;

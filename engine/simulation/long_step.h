@@ -5,6 +5,8 @@
 // integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
 // (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
 // for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
+// w' and w'' come from the states' derivatives, stepped like the states: as F x + G v they would be differences of large
+// numbers, whose rounding the step's length magnifies.
 #pragma once
 
 #include <array>
@@ -31,7 +33,7 @@ public:
     struct Start {
         Signal v_end;  ///< the delayed signal at the end, as far as it follows from what is known now
         Jet w_end{};   ///< the same of the output
-        std::vector<double> x;
+        std::vector<double> x, rate, curvature;  ///< the same of the states and their derivatives
     };
     void start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch, Start& start) const;
 
@@ -49,8 +51,10 @@ private:
 
     Cubic cubic(double w0, const Jet& end) const;
     Signal delayed_end(const Cubic& c) const;
-    Jet output(const std::vector<double>& x, const Cubic& c, bool with_inputs) const;
+    Jet output(const Start& at_end, const Cubic& c) const;
     Effect effect(const Jet& end) const;
+    void to_end(const Cubic& c, Start& states, std::vector<double>& scratch) const;
+    void add_input(double v, std::vector<double>& rate) const;
     void invert();
 
     const ResponseSystem* system_;

@@ -112,12 +112,18 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
 
 void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
              std::vector<double>& scratch) {
+    advance_rate(step, v, x, scratch);
+    for (Index i = 0; i < x.size(); ++i) x[i] += step.constant[i];
+}
+
+void advance_rate(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
+                  std::vector<double>& scratch) {
     const Index n = x.size();
     const double *row = step.Phi.data(), *in = x.data();
     const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
                  *g3 = step.Gamma[3].data();
     for (Index i = 0; i < n; ++i, row += n) {
-        double sum = step.constant[i] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
+        double sum = g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
         for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
         scratch[i] = sum;
     }

@@ -37,12 +37,6 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         system.MH += s.M[Index(i)] * s.H[Index(i)] * in.r;
         system.YH += s.Y[Index(i)] * s.H[Index(i)] * in.r;
     }
-    system.MFF.assign(Index(n), 0);
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) system.MFF[Index(j)] += system.MF[Index(i)] * s.F[Index(i * n + j)];
-        system.MFG += system.MF[Index(i)] * s.G[Index(i)];
-        system.MFH += system.MF[Index(i)] * s.H[Index(i)] * in.r;
-    }
     system.b[Index(n)] = -in.r;
     if (!system.delayed) {
         // v is the load alone here, with the algebraic loop solved.

@@ -14,9 +14,9 @@ struct ResponseSystem {
     DelaySystem s;
     int n = 0;
     std::vector<double> F, G, b;
-    // u' = MF x + MG v + N v' + MH, u'' = MFF x + MFG v + MG v' + N v'' + MFH; y' like u'.
-    std::vector<double> MF, MFF, YF;
-    double MG = 0, MFG = 0, YG = 0, MH = 0, MFH = 0, YH = 0;
+    // u' = MF x + MG v + N v' + MH, y' = YF x + YG v + Z v' + YH.
+    std::vector<double> MF, YF;
+    double MG = 0, YG = 0, MH = 0, YH = 0;
     StepInputs in;
     bool delayed = false;
 };

@@ -93,10 +93,10 @@ struct IndexErrors {
 /// How the figures were checked; empty where a check does not apply.
 struct Verification {
     IndexErrors setpoint_errors, load_errors;
-    std::optional<double> iae_step_halving;    ///< that of the load IAE
+    std::optional<double> iae_step_halving;     ///< that of the load IAE
     std::optional<bool> load_error_keeps_sign;  ///< then its IAE is exactly |d| Ti/|Kp|; with integral action only
-    std::optional<double> ie_identity;         ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
-    std::optional<double> ms_grid_difference;  ///< relative difference of Ms on an independent grid
+    std::optional<double> ie_identity;          ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
+    std::optional<double> ms_grid_difference;   ///< relative difference of Ms on an independent grid
     std::optional<bool> stability_methods_agree;
 };
 

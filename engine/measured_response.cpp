@@ -22,8 +22,8 @@ struct Indices {
 Indices indices_of(const LinearResponse& response, const ResponseOptions& options, double target) {
     Indices indices{std::nullopt, total_variation(response.nodes)};
     if (why_no_integral(response, target, !options.horizon) == nullptr)
-        indices.error = error_integrals(response.nodes, target,
-                                        options.horizon ? std::nullopt : response.error_integral_final);
+        indices.error =
+            error_integrals(response.nodes, target, options.horizon ? std::nullopt : response.error_integral_final);
     return indices;
 }
 

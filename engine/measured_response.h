@@ -2,7 +2,8 @@
 //
 // A run is repeated with every step halved until no index moves by more than is promised of it. The interpolation
 // within a step and the indices' quadrature are both of order 4, so the finer run's own error is about a fifteenth of
-// the move: the move is a bound wherever halving the steps halves the error at least.
+// the move: the move bounds it wherever halving the steps halves the error at least. What the tail beyond a run's end
+// may hold comes to 1e-6 at most, below which nothing is claimed. The tests hold 105 loops of all kinds to both.
 #pragma once
 
 #include <functional>

@@ -281,7 +281,7 @@ const Description<IndexErrors>& index_errors_contract() {
         using E = IndexErrors;
         Description<E> d("IndexErrors",
                          "Relative change of each index when every time step, and its quadrature with it, was last "
-                         "halved: more than the error that is left.");
+                         "halved: the error that is left is below it or 1e-6, whichever is larger.");
         d.field("IAE", &E::IAE, figure(), "Promised: 1e-5 or less.")
             .field("ISE", &E::ISE, figure(), "Promised: 1e-5 or less.")
             .field("ITAE", &E::ITAE, figure(), "Promised: 2e-5 or less.")

@@ -130,8 +130,8 @@ double scale_of_y(const LinearPlant& plant, const StepInputs& in, const OutputLi
 struct Stride {
     double h = 0;
     bool longer_than_L = false;
-    ExactStep whole;  // of length h; or, beyond L, of length L
-    ExactStep rest;   // h - L, at a limit
+    ExactStep whole;                   // of length h; or, beyond L, of length L
+    ExactStep rest;                    // h - L, at a limit
     std::optional<LongStep> implicit;  // within the limits, beyond L
 };
 

@@ -72,8 +72,7 @@ void LongStep::add_input(double v, std::vector<double>& rate) const {
 
 Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double>& x) const {
     // The unknowns are w, h w' and h^2 w'' at the end: known part + effects of the unknowns.
-    const Jet known{start.w_end[0] + added[0], h_ * (start.w_end[1] + added[1]),
-                    h_ * h_ * (start.w_end[2] + added[2])};
+    const Jet known{start.w_end[0] + added[0], h_ * (start.w_end[1] + added[1]), h_ * h_ * (start.w_end[2] + added[2])};
     Signal v = start.v_end;
     x = start.x;
     for (Index k = 0; k < 3; ++k) {

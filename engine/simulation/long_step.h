@@ -5,8 +5,8 @@
 // integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
 // (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
 // for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
-// w' and w'' come from the states' derivatives, stepped like the states: as F x + G v they would be differences of large
-// numbers, whose rounding the step's length magnifies.
+// w' and w'' come from the states' derivatives, stepped like the states: as F x + G v they would be differences of
+// large numbers, whose rounding the step's length magnifies.
 #pragma once
 
 #include <array>

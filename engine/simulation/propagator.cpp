@@ -66,7 +66,8 @@ Propagator::Propagator(int n, std::vector<double> F, std::vector<double> G, std:
 
 ExactStep Propagator::step(double h) const {
     // Taylor series on a step short enough for it (norm <= 1/2 in the states' own units), then doubling up to h.
-    const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / 0.5))));
+    const int halvings = std::max(
+        0, static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / 0.5))));
     ExactStep step;
     step.h = std::ldexp(h, -halvings);
     step.Phi.resize(Index(n_ * n_));

@@ -20,9 +20,9 @@ using Index = std::size_t;
 constexpr int kFirstEchoes = 2;     // the kinks at L and 2L are always met with the shortest step
 constexpr int kRetardedEchoes = 4;  // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
 constexpr int kMaxEchoes = 2000;
-constexpr int kRepetitions = 20;      // of a step that sees its own end through the scaled integral
-constexpr double kConverged = 1e-10;  // of the response's size
-constexpr double kEscaped = 1e6;      // of the response's scale: it grows without bound
+constexpr int kRepetitions = 20;        // of a step that sees its own end through the scaled integral
+constexpr double kConverged = 1e-10;    // of the response's size
+constexpr double kEscaped = 1e6;        // of the response's scale: it grows without bound
 constexpr double kOnTheHorizon = 1e-9;  // of a step
 
 double hermite_midpoint(double h, double a, double slope_a, double b, double slope_b) {
@@ -171,8 +171,8 @@ private:
         return std::move(response_);
     }
 
-    /// Whether a step of the present level ends on the horizon or beyond it. Steps longer than the dead time, which have
-    /// only some lengths, give way to shorter ones there.
+    /// Whether a step of the present level ends on the horizon or beyond it. Steps longer than the dead time, which
+    /// have only some lengths, give way to shorter ones there.
     bool reaches_horizon() {
         if (!options_.horizon) return false;
         const double left = (*options_.horizon - time()) / propagator_.h0();
@@ -275,7 +275,7 @@ private:
         ResponseNode node;
         const ExactStep* exact = long_ahead() ? nullptr : &propagator_.level(level_);
         const double end = time() + std::ldexp(propagator_.h0(), level_);
-        const bool taken = exact == nullptr    ? take_long_step(end, node)
+        const bool taken = exact == nullptr  ? take_long_step(end, node)
                            : system_.delayed ? take_short_step(*exact, end, node)
                                              : take_closed_step(*exact, end, level_ == 0, node);
         if (!taken) return false;
@@ -348,8 +348,8 @@ private:
         const Signal before = excess_;
         return settle(step.h, shortest, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
             x = x_;
-            advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope),
-                                x, scratch_);
+            advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope), x,
+                    scratch_);
             at_end = node_at(system_, end, x, {});
         });
     }

@@ -25,7 +25,7 @@ constexpr const char* kNoTime =
     "The plant is known by points of its frequency response alone, which have no response over time.";
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
 constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
-constexpr double kSettledForFigures = 1e-6;
+constexpr double kSettledForFigures = 3e-7;
 constexpr int kMostNonlinearSteps = 20000;  // a stalled integral may need any number
 
 Error at_field(Error error, const char* prefix) {

@@ -23,8 +23,9 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
 
-/// Roots of a real polynomial (descending powers, leading coefficient non-zero), with conjugate pairs as above.
-/// Eigenvalues of the scaled and balanced companion matrix, polished by Newton steps where these lower the residual.
+/// Roots of a real polynomial (descending powers, leading coefficient non-zero), conjugate pairs as above, multiple
+/// ones on one point: eigenvalues of the scaled, balanced companion matrix, polished where Newton steps lower the
+/// residual.
 std::vector<std::complex<double>> polynomial_roots(std::span<const double> coefficients);
 
 /// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer

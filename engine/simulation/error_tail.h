@@ -18,7 +18,7 @@ public:
     bool little_is_left(double rest, double e, double t, double fraction) const;
 
 private:
-    double absolute_error_ = 0, first_moment_ = 0;
+    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // the last: of |y|
 };
 
 }  // namespace tunewright

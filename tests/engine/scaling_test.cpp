@@ -135,7 +135,7 @@ void scales(const std::string& method, const std::string& controller,
 }
 
 void rules_compare(const Evaluation& one, const Evaluation& other, Units s) {
-    same_settings(one, other, s, {1e-9});
+    same_settings(one, other, s, {1e-6});
     same_answer(one, other, s, {1e-6});
 }
 

@@ -273,31 +273,33 @@ private:
     /// False: the step is too long for the scaled integral, and nothing has happened.
     bool take_step() {
         ResponseNode node;
-        const ExactStep* exact = long_ahead() ? nullptr : &propagator_.level(level_);
-        const double end = time() + std::ldexp(propagator_.h0(), level_);
-        const bool taken = exact == nullptr  ? take_long_step(end, node)
-                           : system_.delayed ? take_short_step(*exact, end, node)
-                                             : take_closed_step(*exact, end, level_ == 0, node);
-        if (!taken) return false;
-        const bool in_segment = exact != nullptr && system_.delayed;
+        if (system_.delayed && level_ > level_of_L_) {
+            if (!take_long_step(node)) return false;
+            count_step();
+            push(node);
+            return true;
+        }
+        const ExactStep& step = propagator_.level(level_);
+        const double end = time() + step.h;
+        if (system_.delayed)
+            take_short_step(step, end, node);
+        else if (!take_closed_step(step, end, level_ == 0, node))
+            return false;
         count_step();
         push(node);
-        if (!in_segment) return true;
+        if (!system_.delayed) return true;
         offset_ += 1L << level_;
         if (offset_ == (1L << level_of_L_)) end_segment();
         return true;
     }
 
-    bool long_ahead() const { return system_.delayed && level_ > level_of_L_; }
-
     /// Up to the dead time: the delayed signal is known.
-    bool take_short_step(const ExactStep& step, double end, ResponseNode& node) {
+    void take_short_step(const ExactStep& step, double end, ResponseNode& node) {
         const double L = system_.s.L, slack = 1e-9 * propagator_.h0(), t = end - step.h;
         const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(end - L, false, slack);
         advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
         node = node_at(system_, end, x_, v1);
         if (scaling_ != nullptr) add_excess(step.h, node);
-        return true;
     }
 
     void count_step() {
@@ -330,8 +332,9 @@ private:
     }
 
     /// Longer than the dead time.
-    bool take_long_step(double end, ResponseNode& node) {
+    bool take_long_step(ResponseNode& node) {
         const LongStep& step = long_step();
+        const double end = time() + step.h();
         const ResponseNode& now = response_.nodes.back();
         step.start(history_.at(time() - system_.s.L, true, 1e-9 * propagator_.h0()),
                    {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);

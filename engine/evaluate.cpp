@@ -114,10 +114,11 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     evaluation.verification.iae_step_halving = of_load.errors.IAE;
     if (to_infinity && !o.actuator)
         verify_integral(evaluation.verification, load, evaluation.performance.load.IAE, !delta_r);
-    if (!as_promised(of_setpoint.errors) || !as_promised(of_load.errors))
-        evaluation.warnings.push_back({"coarse-figures",
-                                       "Halving the time steps still moves an index by more than is promised; "
-                                       "verification tells by how much."});
+    if (!as_promised(of_setpoint) || !as_promised(of_load))
+        evaluation.warnings.push_back(
+            {"coarse-figures",
+             "Halving the time steps still moves an index by more than is promised, or could not be tried; "
+             "verification tells by how much."});
     if (delta_r) {
         evaluation.nonlinear = nonlinear_figures(loop, *delta_r);
         warn_of_nonlinearity(evaluation, setpoint, load, o);

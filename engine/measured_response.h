@@ -21,13 +21,14 @@ struct MeasuredResponse {
     IndexErrors errors;  ///< of the indices that exist
 };
 
-/// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of
-/// the tolerance, which halves steps of order 4. `target` is what y is to reach. Without a horizon the integrals go to
-/// infinity.
-MeasuredResponse measure(const std::function<LinearResponse(const ResponseOptions&)>& simulate, ResponseOptions options,
-                         double target);
+using Simulate = std::function<LinearResponse(const ResponseOptions&)>;
 
-/// Whether every error is within its promise.
-bool as_promised(const IndexErrors& errors);
+/// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of
+/// the tolerance (which halves steps of order 4) or less. `target` is what y is to reach. Without a horizon the
+/// integrals go to infinity.
+MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target);
+
+/// Whether every error is known and within its promise; true of a response that does not settle, which promises none.
+bool as_promised(const MeasuredResponse& measured);
 
 }  // namespace tunewright

@@ -234,7 +234,7 @@ private:
     bool escaped() const { return std::abs(now_.out.y.value) > kEscaped * scale_y_; }
 
     bool finished() const {
-        if (options_.horizon) return now_.t >= *options_.horizon;
+        if (options_.horizon) return now_.t + slack() >= *options_.horizon;
         if (!rest_.exists) return false;
         const double quiet = std::max(2 * loop_.dead_time(), 0.25 * last_unsettled_);
         if (now_.t < last_unsettled_ + quiet || now_.t <= 0) return false;

@@ -84,11 +84,19 @@ struct FrequencyTraces {
     std::vector<double> omega, L_re, L_im, L_phase_deg, S_abs, T_abs, CS_abs;
 };
 
+/// Relative errors of a response's indices: by how much each has moved when every step was last halved, its quadrature
+/// with it (measured_response.h). Empty where the index has no value.
+struct IndexErrors {
+    std::optional<double> IAE, ISE, ITAE, TV;
+};
+
 /// How the figures were checked; empty where a check does not apply.
 struct Verification {
-    std::optional<double> iae_step_halving;    ///< relative change of the load IAE when the time step is halved
-    std::optional<double> ie_identity;         ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
-    std::optional<double> ms_grid_difference;  ///< relative difference of Ms on an independent grid
+    IndexErrors setpoint_errors, load_errors;
+    std::optional<double> iae_step_halving;     ///< that of the load IAE
+    std::optional<bool> load_error_keeps_sign;  ///< then its IAE is exactly |d| Ti/|Kp|; with integral action only
+    std::optional<double> ie_identity;          ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
+    std::optional<double> ms_grid_difference;   ///< relative difference of Ms on an independent grid
     std::optional<bool> stability_methods_agree;
 };
 

@@ -11,24 +11,25 @@ namespace tunewright {
 namespace {
 
 constexpr double kSettlingBand = 0.02;
+constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
 
 template <class Figures>
 void all_null(Figures& figures, std::initializer_list<const char*> names, const std::string& reason) {
     for (const char* name : names) figures.why_null[name] = reason;
 }
 
-/// Where the error comes to rest decides whether its integrals exist.
+}  // namespace
+
+// Where the error comes to rest decides.
 const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity) {
     if (!to_infinity) return nullptr;
     if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
-    const double scale = std::max(std::abs(target), std::abs(response.y_final));
-    if (std::abs(target - response.y_final) > 1e-9 * std::max(scale, 1e-300) &&
-        std::abs(target - response.y_final) > 1e-14)
+    double scale = std::abs(target);
+    for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
+    if (std::abs(target - response.y_final) > kAtTarget * scale)
         return "The error does not go to 0 (no integral action), so its integral is infinite; give a horizon.";
     return nullptr;
 }
-
-}  // namespace
 
 Performance no_performance(const std::string& reason) {
     Performance performance;

@@ -14,6 +14,9 @@ LoadPerformance load_figures(const LinearResponse& response, bool to_infinity);
 /// The loop must be stable; `noise.sample_time` 0 takes the loop's own (loop/noise.h).
 NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise);
 
+/// Why the integrals of target - y have no value; null where they have one.
+const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity);
+
 /// Every figure empty, for one reason.
 Performance no_performance(const std::string& reason);
 

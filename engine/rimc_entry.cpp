@@ -1,6 +1,7 @@
 #include "engine/rimc_entry.h"
 
 #include "engine/loop/imc_loop.h"
+#include "engine/measured_response.h"
 #include "engine/performance_figures.h"
 #include "engine/robustness_figures.h"
 #include "engine/simulation/imc_response.h"
@@ -30,10 +31,14 @@ FullController evaluated(const ImcController& controller, const LinearPlant& pla
     ResponseOptions how;
     how.settled = kSettledForFigures;
     how.horizon = options.horizon;
-    const LinearResponse load = simulate_imc(plant, controller, {0, options.load_step}, how);
+    const auto simulate = [&](const StepInputs& in) {
+        const auto run = [&](const ResponseOptions& finer) { return simulate_imc(plant, controller, in, finer); };
+        return measure(run, how, in.r).response;
+    };
+    const LinearResponse load = simulate({0, options.load_step});
     full.load = load_figures(load, !options.horizon);
     if (options.points < 2) return full;
-    full.responses = traces_of(simulate_imc(plant, controller, {options.setpoint_step, 0}, how), load, options);
+    full.responses = traces_of(simulate({options.setpoint_step, 0}), load, options);
     return full;
 }
 

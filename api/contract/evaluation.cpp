@@ -276,12 +276,35 @@ const Description<NonlinearFigures>& nonlinear_contract() {
     return description;
 }
 
+const Description<IndexErrors>& index_errors_contract() {
+    static const auto description = [] {
+        using E = IndexErrors;
+        Description<E> d("IndexErrors",
+                         "Relative change of each index when every time step, and its quadrature with it, was last "
+                         "halved: the error that is left is below it or 1e-6, whichever is larger.");
+        d.field("IAE", &E::IAE, figure(), "Promised: 1e-5 or less.")
+            .field("ISE", &E::ISE, figure(), "Promised: 1e-5 or less.")
+            .field("ITAE", &E::ITAE, figure(), "Promised: 2e-5 or less.")
+            .field("TV", &E::TV, figure(), "Promised: 5e-5 or less.")
+            .why_null("The index has no value, or was checked step by step instead (on a nonlinear plant).");
+        return d;
+    }();
+    return description;
+}
+
 const Description<Verification>& verification_contract() {
     static const auto description = [] {
         using V = Verification;
         Description<V> d("Verification", "How the figures were checked.");
-        d.field("iae_step_halving", &V::iae_step_halving, figure(),
-                "Relative change of the load IAE when the time step is halved.")
+        d.field("setpoint_errors", &V::setpoint_errors, answer(index_errors_contract()),
+                "How exact the indices of the set-point response are.")
+            .field("load_errors", &V::load_errors, answer(index_errors_contract()),
+                   "How exact the indices of the load response are.")
+            .field("iae_step_halving", &V::iae_step_halving, figure(),
+                   "Relative change of the load IAE when every time step is halved.")
+            .field("load_error_keeps_sign", &V::load_error_keeps_sign, truth_figure(),
+                   "Whether the error after the load step keeps its sign: then its IAE is exactly d Ti/Kp (in "
+                   "magnitude), however slow the tail.")
             .field("ie_identity", &V::ie_identity, figure(), "Relative difference of the integral of y and d Ti/Kp.")
             .field("ms_grid_difference", &V::ms_grid_difference, figure(),
                    "Relative difference of Ms on an independent grid.")

@@ -13,6 +13,7 @@ const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
 const Description<NonlinearFigures>& nonlinear_contract();
 const Description<LinearisedResponse>& linear_contract();
+const Description<IndexErrors>& index_errors_contract();
 const Description<Verification>& verification_contract();
 
 const Description<RegionFigures>& region_contract();

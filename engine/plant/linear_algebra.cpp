@@ -8,6 +8,8 @@
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "engine/plant/multiple_roots.h"
+
 namespace tunewright {
 namespace {
 
@@ -40,6 +42,36 @@ void balance(Matrix& A) {
             }
         }
     }
+}
+
+struct Factors {
+    Eigen::VectorXd rows, columns;
+};
+
+// Factors of rows and columns, powers of two, that bring the logarithms of the entries together in the sense of least
+// squares (Curtis and Reid 1972): whatever units equations and unknowns are in, what remains is the same matrix, so
+// that "singular" means singular.
+Factors equilibrate(Matrix& A) {
+    constexpr int kMostSweeps = 100;
+    constexpr double kSettled = 0.05;
+    const auto n = A.rows();
+    const Matrix exponents = A.unaryExpr([](double a) { return a == 0 ? 0.0 : static_cast<double>(std::ilogb(a)); });
+    const Matrix entries = A.unaryExpr([](double a) { return a == 0 ? 0.0 : 1.0; });
+    const Eigen::VectorXd in_row = entries.rowwise().sum().cwiseMax(1),
+                          in_column = entries.colwise().sum().transpose().cwiseMax(1);
+    const Eigen::VectorXd row_sum = exponents.rowwise().sum(), column_sum = exponents.colwise().sum().transpose();
+    Eigen::VectorXd rows = Eigen::VectorXd::Zero(n), columns = rows;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        const Eigen::VectorXd next = -(row_sum + entries * columns).cwiseQuotient(in_row);
+        const double change = (next - rows).cwiseAbs().maxCoeff();
+        rows = next;
+        columns = -(column_sum + entries.transpose() * rows).cwiseQuotient(in_column);
+        if (change < kSettled) break;
+    }
+    const auto power = [](double exponent) { return std::ldexp(1.0, static_cast<int>(std::lround(exponent))); };
+    Factors factors{rows.unaryExpr(power), columns.unaryExpr(power)};
+    A = factors.rows.asDiagonal() * A * factors.columns.asDiagonal();
+    return factors;
 }
 
 // Conjugate pairs as neighbours with exactly conjugate values, real ones with exactly zero imaginary part.
@@ -121,6 +153,7 @@ std::vector<Complex> polynomial_roots(std::span<const double> coefficients) {
     std::vector<Complex> roots = paired(Eigen::EigenSolver<Matrix>(companion, false).eigenvalues());
     for (auto& root : roots) root *= scale;
     polish(coefficients, roots);
+    merge_multiple_roots(coefficients, roots);
     return roots;
 }
 
@@ -193,31 +226,37 @@ SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n) {
     return result;
 }
 
+double balanced_norm(std::span<const double> matrix, int n) {
+    Matrix A = as_matrix(matrix, n);
+    // A state without a way out or in can be given any unit: its couplings vanish, and with them those of the next.
+    bool removed = true;
+    while (removed) {
+        removed = false;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double own = std::abs(A(i, i)), row = A.row(i).cwiseAbs().sum() - own,
+                         column = A.col(i).cwiseAbs().sum() - own;
+            if ((row > 0) == (column > 0)) continue;
+            A.row(i).setZero();
+            A.col(i).setZero();
+            A(i, i) = own;
+            removed = true;
+        }
+    }
+    balance(A);
+    return n > 0 ? A.cwiseAbs().rowwise().sum().maxCoeff() : 0;
+}
+
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     const Matrix result = as_matrix(matrix, n).exp();
     return {result.data(), result.data() + result.size()};
 }
 
 std::optional<std::vector<double>> solve(std::span<const double> matrix, std::span<const double> b, int n) {
-    // Units may lie many decades apart: rows and columns are brought to size one first, so that "singular" means
-    // singular.
     Matrix A = as_matrix(matrix, n);
-    Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(b.data(), n), columns = Eigen::VectorXd::Ones(n);
-    for (int round = 0; round < 3; ++round)
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const double row = A.row(i).cwiseAbs().maxCoeff();
-            if (row > 0) {
-                A.row(i) /= row;
-                right(i) /= row;
-            }
-            const double column = A.col(i).cwiseAbs().maxCoeff();
-            if (column > 0) {
-                A.col(i) /= column;
-                columns(i) /= column;
-            }
-        }
+    const auto [rows, columns] = equilibrate(A);
     const Eigen::FullPivLU<Matrix> lu(A);
     if (!lu.isInvertible()) return std::nullopt;
+    const Eigen::VectorXd right = rows.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
     const Eigen::VectorXd x = columns.cwiseProduct(Eigen::VectorXd(lu.solve(right)));
     return std::vector<double>(x.data(), x.data() + x.size());
 }

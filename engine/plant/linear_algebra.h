@@ -23,8 +23,9 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
 
-/// Roots of a real polynomial (descending powers, leading coefficient non-zero), with conjugate pairs as above.
-/// Eigenvalues of the scaled and balanced companion matrix, polished by Newton steps where these lower the residual.
+/// Roots of a real polynomial (descending powers, leading coefficient non-zero), conjugate pairs as above, multiple
+/// ones on one point: eigenvalues of the scaled, balanced companion matrix, polished where Newton steps lower the
+/// residual.
 std::vector<std::complex<double>> polynomial_roots(std::span<const double> coefficients);
 
 /// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer
@@ -36,6 +37,11 @@ std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<co
 /// C (sI - A)^-1 B + D by solving the linear system.
 std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
                                         double D, int n, std::complex<double> s);
+
+/// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
+/// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
+/// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
+double balanced_norm(std::span<const double> matrix, int n);
 
 /// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n);

@@ -13,6 +13,7 @@ namespace {
 using Index = std::size_t;
 
 constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
+constexpr double kUsualTolerance = 1e-6;  // at which these hold
 constexpr double kStepsPerResonance = 4;  // per 1/|p| of a complex pole
 constexpr int kCorrections = 6;           // of a step that is longer than a dead time and sees its own end
 
@@ -114,14 +115,21 @@ public:
         const double x = c.lambda / c.tau - 1;
         const double d0 = c.lambda * c.lambda / c.tau + c.theta + c.tau * x * x * std::expm1(-c.theta / c.tau);
         response_.error_integral_final = response_.u_final * c.kp * d0;
-        // Once what dead times bring back is smooth, only lambda and resonances say how far a cubic reaches.
+        // Once what dead times bring back is smooth, only lambda and resonances say how far a cubic reaches: its error
+        // is of order 4.
+        const double shorter = std::pow(options.tolerance / kUsualTolerance, 0.25);
         long_step_ = c.lambda / kStepsPerLambda;
         for (const auto pole : plant.poles())
             if (pole.imag() != 0) long_step_ = std::min(long_step_, 1 / (kStepsPerResonance * std::abs(pole)));
-        step_ = std::min(long_step_, (L_ + theta_) / kStepsPerDeadTime);
+        step_ = shorter * std::min(long_step_, (L_ + theta_) / kStepsPerDeadTime);
+        long_step_ *= shorter;
         for (int i = 0; i <= 3; ++i)
             for (int j = 0; i + j <= 3; ++j) events_.push_back(i * L_ + j * theta_);
         std::ranges::sort(events_);
+        if (const auto end = options.horizon.value_or(events_.back()); end < events_.back()) {
+            std::erase_if(events_, [end](double t) { return t >= end; });
+            events_.push_back(end);
+        }
         slack_ = 1e-9 * step_;
     }
 
@@ -141,7 +149,9 @@ public:
             push(memory_.back().t, x, seen(memory_.back().t, true));  // u's slope may jump here
         }
         while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
-            take_step(x, long_step_, memory_.back().t + long_step_);
+            const double now = memory_.back().t, left = options_.horizon.value_or(now + 2 * long_step_) - now;
+            const bool last = left <= long_step_ * (1 + 1e-9);
+            take_step(x, last ? left : long_step_, last ? *options_.horizon : now + long_step_);
             if (finished()) return std::move(response_);
         }
         response_.settles = false;
@@ -204,18 +214,6 @@ private:
         }
         x = next;
         push(t, x, seen(t, false));
-    }
-
-    static void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                        std::vector<double>& scratch) {
-        const Index n = x.size();
-        for (Index i = 0; i < n; ++i) {
-            double sum = step.constant[i];
-            for (Index j = 0; j < 4; ++j) sum += step.Gamma[j][i] * v[j];
-            for (Index j = 0; j < n; ++j) sum += step.Phi[i * n + j] * x[j];
-            scratch[i] = sum;
-        }
-        x.swap(scratch);
     }
 
     void remember(double t, const std::vector<double>& x, Signal e) {

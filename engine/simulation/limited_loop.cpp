@@ -51,6 +51,7 @@ LimitedLoop::Equations LimitedLoop::equations(Region region) const {
         e.F[n * wide + i] = s.Y[i];
         e.b[i] = s.H[i] * in_.r;
     }
+    e.b[n] = -in_.r;
     const double u = limit(region);
     if (region != Region::inside && !std::isfinite(u)) return {};
     if (region != Region::inside && s.integral_state >= 0) {
@@ -99,18 +100,6 @@ LoopOutput LimitedLoop::output(Region region, const std::vector<double>& x, Sign
     out.y = {dot(s.Y, x) + s.Z * v.value, dot(s.Y, rate) + s.Z * v.slope};
     out.u = inside ? out.command : Signal{limit(region), 0};
     return out;
-}
-
-Signal LimitedLoop::command_effect(const std::vector<double>& x, Signal v) const {
-    const DelaySystem& s = system_;
-    const Index n = Index(s.n);
-    Signal effect{dot(s.M, x) + s.N * v.value, s.N * v.slope};
-    for (Index i = 0; i < n; ++i) {
-        double rate = s.G[i] * v.value;
-        for (Index j = 0; j < n; ++j) rate += s.F[i * n + j] * x[j];
-        effect.slope += s.M[i] * rate;
-    }
-    return effect;
 }
 
 Region LimitedLoop::region(const std::vector<double>& x, Signal v) const {

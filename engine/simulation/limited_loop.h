@@ -20,7 +20,7 @@ struct LoopOutput {
     Signal u;        ///< after them
 };
 
-/// The delay system of `make_delay_system` with one more state, the integral of y, and the tracking term.
+/// The delay system of `make_delay_system` with one more state, the integral of y - r, and the tracking term.
 class LimitedLoop {
 public:
     LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
@@ -38,9 +38,6 @@ public:
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
     LoopOutput output(Region region, const std::vector<double>& x, Signal v) const;
-    /// What x and v alone add to the command within the limits, without the constant inputs.
-    Signal command_effect(const std::vector<double>& x, Signal v) const;
-
     /// The exact step of length h; without dead time its Gamma is 0: the delayed signal is inside.
     ExactStep step(Region region, double h) const;
 

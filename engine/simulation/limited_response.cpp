@@ -7,7 +7,9 @@
 #include <map>
 
 #include "engine/plant/linear_algebra.h"
+#include "engine/simulation/error_tail.h"
 #include "engine/simulation/limited_loop.h"
+#include "engine/simulation/long_step.h"
 #include "engine/simulation/steady_state.h"
 
 namespace tunewright {
@@ -128,12 +130,9 @@ double scale_of_y(const LinearPlant& plant, const StepInputs& in, const OutputLi
 struct Stride {
     double h = 0;
     bool longer_than_L = false;
-    ExactStep whole;  // of length h; or, beyond L, of length L
-    ExactStep rest;   // h - L
-    struct Effect {   // of the command's still unknown value or slope at the end
-        std::vector<double> x;
-        Signal v, command;
-    } value, slope;
+    ExactStep whole;                   // of length h; or, beyond L, of length L
+    ExactStep rest;                    // h - L, at a limit
+    std::optional<LongStep> implicit;  // within the limits, beyond L
 };
 
 struct Point {
@@ -148,7 +147,7 @@ public:
     Run(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in, const OutputLimits& limits,
         const ResponseOptions& options)
         : loop_(plant, controller, in, limits),
-          algebra_(loop_.states(), {}, {}, {}, 1),
+          system_(make_response_system(plant, controller, in)),
           filter_(controller.filter),
           in_(in),
           limits_(limits),
@@ -207,12 +206,14 @@ private:
                           .y_slope = p.out.y.slope,
                           .u = p.out.u.value,
                           .u_slope = p.out.u.slope,
-                          .error_integral = in_.r * p.t - p.x.back()};
+                          .error_integral = -p.x.back()};
         response_.nodes.push_back(node);
     }
 
     void note(const Point& p) {
         push(p);
+        if (const auto& nodes = response_.nodes; options_.tail && nodes.size() > 1)
+            tail_.add(nodes[nodes.size() - 2], nodes.back(), in_.r);
         const double dy = std::abs(p.out.y.value - rest_.y), du = std::abs(p.out.u.value - rest_.u);
         largest_y_ = std::max(largest_y_, dy);
         largest_u_ = std::max(largest_u_, du);
@@ -233,7 +234,7 @@ private:
     bool escaped() const { return std::abs(now_.out.y.value) > kEscaped * scale_y_; }
 
     bool finished() const {
-        if (options_.horizon) return now_.t >= *options_.horizon;
+        if (options_.horizon) return now_.t + slack() >= *options_.horizon;
         if (!rest_.exists) return false;
         const double quiet = std::max(2 * loop_.dead_time(), 0.25 * last_unsettled_);
         if (now_.t < last_unsettled_ + quiet || now_.t <= 0) return false;
@@ -241,8 +242,11 @@ private:
         if (!remaining) return true;
         // A slow tail that still has integral to add must at least have the sign to add it.
         const double so_far = response_.nodes.back().error_integral;
-        return *remaining * (in_.r - now_.out.y.value) >= 0 ||
-               std::abs(*remaining) <= options_.settled * (std::abs(so_far) + std::abs(*remaining));
+        const double error = in_.r - now_.out.y.value;
+        if (*remaining * error < 0 &&
+            std::abs(*remaining) > options_.settled * (std::abs(so_far) + std::abs(*remaining)))
+            return false;
+        return !options_.tail || tail_.little_is_left(*remaining, error, now_.t, *options_.tail);
     }
 
     /// To infinity, once the loop stays within the limits: what the integral's state has yet to change.
@@ -271,19 +275,10 @@ private:
         stride.longer_than_L = loop_.delayed() && h > L * (1 + 1e-9);
         stride.whole = loop_.step(region_, stride.longer_than_L ? L : h);
         if (!stride.longer_than_L) return stride;
-        stride.rest = loop_.step(region_, h - L);
-        const auto effect = [&](double value, double slope) {
-            Stride::Effect e;
-            const auto c = hermite_taylor(h, 0, 0, value, slope);
-            e.x.assign(Index(loop_.states()), 0.0);
-            for (Index j = 0; j < 4; ++j)
-                for (Index i = 0; i < e.x.size(); ++i) e.x[i] += stride.rest.Gamma[j][i] * c[j];
-            e.v = {value_at(c, h - L), slope_at(c, h - L)};
-            e.command = loop_.command_effect(e.x, e.v);
-            return e;
-        };
-        stride.value = effect(1, 0);
-        stride.slope = effect(0, 1);
+        if (region_ == Region::inside)
+            stride.implicit.emplace(system_, stride.whole, loop_.step(region_, h - L));
+        else
+            stride.rest = loop_.step(region_, h - L);
         return stride;
     }
 
@@ -299,7 +294,7 @@ private:
         to.t = from.t + stride.h;
         to.x = from.x;
         if (!loop_.delayed()) {
-            algebra_.advance(stride.whole, {}, to.x, scratch_);
+            tunewright::advance(stride.whole, {}, to.x, scratch_);
             to.out = loop_.output(region_, to.x, {});
             return 0;
         }
@@ -308,32 +303,17 @@ private:
         const Signal w0 = {from.out.u.value + in_.d, from.out.u.slope};
         const Signal v1 = stride.longer_than_L ? w0 : history_.at(start + first, false, slack());
         const double missed = miss(first, v0, history_.at(start + 0.5 * first, true, slack()), v1);
-        algebra_.advance(stride.whole, hermite_taylor(first, v0.value, v0.slope, v1.value, v1.slope), to.x, scratch_);
-        to.out = loop_.output(region_, to.x, stride.longer_than_L ? advance_beyond_L(stride, w0, to.x) : v1);
-        return missed;
-    }
-
-    /// The part of a stride that sees the stride's own output; gives the delayed signal at the end.
-    Signal advance_beyond_L(const Stride& stride, Signal w0, std::vector<double>& x) {
-        const double h = stride.h, s = h - loop_.dead_time();
-        if (region_ != Region::inside) {
-            algebra_.advance(stride.rest, {w0.value, 0, 0, 0}, x, scratch_);
-            return {w0.value, 0};
+        if (stride.implicit) {
+            stride.implicit->start(v0, w0, from.x, scratch_, start_);
+            to.out = loop_.output(region_, to.x, stride.implicit->finish(start_, {}, to.x));
+            return missed;
         }
-        // The cubic with w1 = w0, w1' = 0 first; then the changes of end value and slope that the output asks for.
-        const auto c = hermite_taylor(h, w0.value, w0.slope, w0.value, 0);
-        algebra_.advance(stride.rest, c, x, scratch_);
-        Signal v{value_at(c, s), slope_at(c, s)};
-        const Signal command = loop_.output(region_, x, v).command;
-        const Signal gap{command.value + in_.d - w0.value, command.slope};
-        const double a11 = 1 - stride.value.command.value, a12 = -stride.slope.command.value,
-                     a21 = -stride.value.command.slope, a22 = 1 - stride.slope.command.slope;
-        const double determinant = a11 * a22 - a12 * a21;
-        const double dw = (a22 * gap.value - a12 * gap.slope) / determinant,
-                     dslope = (a11 * gap.slope - a21 * gap.value) / determinant;
-        for (Index i = 0; i < x.size(); ++i) x[i] += stride.value.x[i] * dw + stride.slope.x[i] * dslope;
-        return {v.value + stride.value.v.value * dw + stride.slope.v.value * dslope,
-                v.slope + stride.value.v.slope * dw + stride.slope.v.slope * dslope};
+        tunewright::advance(stride.whole, hermite_taylor(first, v0.value, v0.slope, v1.value, v1.slope), to.x,
+                            scratch_);
+        // At a limit what the plant gets is constant.
+        if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x, scratch_);
+        to.out = loop_.output(region_, to.x, stride.longer_than_L ? Signal{w0.value, 0} : v1);
+        return missed;
     }
 
     /// Relative to the local deviation from rest.
@@ -454,7 +434,7 @@ private:
     }
 
     LimitedLoop loop_;
-    Propagator algebra_;  // applies steps; the matrices come from the loop
+    ResponseSystem system_;  // within the limits
     Filter filter_;
     StepInputs in_;
     OutputLimits limits_;
@@ -465,12 +445,14 @@ private:
     History history_;
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
     std::map<double, int> breaks_;
+    LongStep::Start start_;
     std::vector<double> scratch_;
     double h0_ = 1;
     int level_ = 0, echoes_ = kRetardedEchoes;
     Region region_ = Region::inside;
     Point now_, middle_, end_;
     double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, last_unsettled_ = 0;
+    ErrorTail tail_;
 };
 
 }  // namespace

@@ -31,13 +31,18 @@ struct StepInputs {
 struct StepSchedule {
     double h0 = 0;
     std::vector<signed char> level;
+    int to_horizon = 0;  ///< after these, as many equal steps up to the horizon
 };
+
+/// The same instants and those halfway between them.
+StepSchedule halved(const StepSchedule& schedule);
 
 struct ResponseOptions {
     double tolerance = 1e-6;        ///< of the interpolation, relative to the local deviation from the final value
     double settled = 1e-6;          ///< stops when y and u stay within this fraction of their largest deviation
-    std::optional<double> horizon;  ///< stops here instead
-    int max_steps = 60000;
+    std::optional<double> tail;     ///< and not before less than this fraction of the integral of t |e| is left
+    std::optional<double> horizon;  ///< stops exactly here instead
+    int max_steps = 60000;          ///< counts only where the run chooses its steps itself
     const StepSchedule* repeat = nullptr;
 };
 

@@ -1,4 +1,12 @@
 // A step that is longer than the dead time.
+//
+// Its last part sees the step's own, still unknown output w: a cubic through w at the start and through w, w' and w''
+// at the end, all three from the states there. Once the dead time and the plant's lags are short beside the step, an
+// integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
+// (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
+// for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
+// w' and w'' come from the states' derivatives, stepped like the states: as F x + G v they would be differences of
+// large numbers, whose rounding the step's length magnifies.
 #pragma once
 
 #include <array>
@@ -9,43 +17,51 @@
 
 namespace tunewright {
 
-/// Its last part sees the step's own, still unknown output. Linear in value and slope at the end.
 class LongStep {
 public:
-    /// Of length h0 2^level; the dead time is h0 2^level_of_L. `system` must live as long as this.
+    /// First the dead time, then the rest: exact steps of the system's states. `system` must live as long as this.
+    LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep rest);
+    /// Of length h0 2^level; the dead time is h0 2^level_of_L.
     LongStep(const ResponseSystem& system, Propagator& propagator, int level, int level_of_L);
 
     double h() const { return h_; }
 
+    /// Value and first two derivatives.
+    using Jet = std::array<double, 3>;
+
     /// What a step starts from, before its output is known.
     struct Start {
-        Signal v_end, w_end;  ///< at the end, as far as they follow from what is known now
-        std::vector<double> x;
+        Signal v_end;  ///< the delayed signal at the end, as far as it follows from what is known now
+        Jet w_end{};   ///< the same of the output
+        std::vector<double> x, rate, curvature;  ///< the same of the states and their derivatives
     };
     void start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch, Start& start) const;
 
     /// Puts the states at the step's end into x; gives the delayed signal there. `added` is what the controller's
     /// output gets on top at the end, not from x.
-    Signal finish(const Start& start, Signal added, std::vector<double>& x) const;
+    Signal finish(const Start& start, const Jet& added, std::vector<double>& x) const;
 
 private:
     struct Effect {
         std::vector<double> x;
-        Signal v, out;
+        Signal v;
+        Jet out{};
     };
+    using Cubic = std::array<double, 4>;  // Taylor coefficients at the start
 
-    std::array<double, 4> taylor(const std::array<double, 4>& ends) const {
-        return hermite_taylor(h_, ends[0], ends[1], ends[2], ends[3]);
-    }
-    Signal at_end(const std::array<double, 4>& ends) const;
-    Signal output(const std::vector<double>& x, Signal v, bool with_inputs) const;
-    Effect effect(const std::array<double, 4>& ends) const;
+    Cubic cubic(double w0, const Jet& end) const;
+    Signal delayed_end(const Cubic& c) const;
+    Jet output(const Start& at_end, const Cubic& c) const;
+    Effect effect(const Jet& end) const;
+    void to_end(const Cubic& c, Start& states, std::vector<double>& scratch) const;
+    void add_input(double v, std::vector<double>& rate) const;
+    void invert();
 
-    const ResponseSystem& system_;
-    Propagator& propagator_;
+    const ResponseSystem* system_;
     ExactStep over_L_, rest_;
     double h_ = 0;
-    Effect end_value_, end_slope_;
+    std::array<Effect, 3> effects_;     // of value, slope and curvature at the end
+    std::array<double, 9> solution_{};  // (1 - effects on the output)^-1, row by row
 };
 
 }  // namespace tunewright

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "engine/plant/linear_algebra.h"
 
 namespace tunewright {
 namespace {
@@ -33,19 +36,38 @@ std::vector<double> phi_action(const std::vector<double>& F, std::vector<double>
     double factor = 1;
     for (int i = 1; i <= k; ++i) factor *= h / i;
     for (double& value : x) value *= factor;
-    std::vector<double> sum = x, next(x.size());
-    for (int m = 1; m < 40; ++m) {
+    std::vector<double> sum = x, next(x.size()), largest(x.size());
+    // Each component by itself: they may be in units far apart.
+    for (Index i = 0; i < x.size(); ++i) largest[i] = std::abs(x[i]);
+    bool adds = true;
+    for (int m = 1; adds && m < 40; ++m) {
         multiply(F, x, next, n);
-        double largest = 0, total = 0;
+        adds = false;
         for (Index i = 0; i < x.size(); ++i) {
             x[i] = next[i] * h / (m + k);
             sum[i] += x[i];
-            largest = std::max(largest, std::abs(x[i]));
-            total = std::max(total, std::abs(sum[i]));
+            largest[i] = std::max(largest[i], std::abs(x[i]));
+            adds = adds || std::abs(x[i]) > 1e-18 * largest[i];
         }
-        if (largest <= 1e-18 * total) break;
     }
     return sum;
+}
+
+/// x := Phi x + Gamma v + constant, which may be null.
+void add_step(const ExactStep& step, const double* constant, const std::array<double, 4>& v, std::vector<double>& x,
+              std::vector<double>& scratch) {
+    const Index n = x.size();
+    const double *row = step.Phi.data(), *in = x.data();
+    const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
+                 *g3 = step.Gamma[3].data();
+    double* out = scratch.data();
+    for (Index i = 0; i < n; ++i, row += n) {
+        double sum =
+            (constant != nullptr ? constant[i] : 0) + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
+        for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
+        out[i] = sum;
+    }
+    x.swap(scratch);
 }
 
 }  // namespace
@@ -57,19 +79,14 @@ std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double 
 }
 
 Propagator::Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0)
-    : n_(n), F_(std::move(F)), G_(std::move(G)), b_(std::move(b)), h0_(h0) {}
+    : n_(n), F_(std::move(F)), G_(std::move(G)), b_(std::move(b)), h0_(h0), norm_(balanced_norm(F_, n)) {}
 
-ExactStep Propagator::first_step() const {
-    // Taylor series on a step short enough for it (norm <= 1/2), then doubling up to h0.
-    double norm = 0;
-    for (int i = 0; i < n_; ++i) {
-        double sum = 0;
-        for (int j = 0; j < n_; ++j) sum += std::abs(F_[Index(i * n_ + j)]);
-        norm = std::max(norm, sum);
-    }
-    const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(std::max(norm * h0_, 1e-300) / 0.5))));
+ExactStep Propagator::step(double h) const {
+    // Taylor series on a step short enough for it (norm <= 1/2 in the states' own units), then doubling up to h.
+    const int halvings = std::max(
+        0, static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / 0.5))));
     ExactStep step;
-    step.h = std::ldexp(h0_, -halvings);
+    step.h = std::ldexp(h, -halvings);
     step.Phi.resize(Index(n_ * n_));
     std::vector<double> unit(Index(n_), 0.0);
     for (int j = 0; j < n_; ++j) {
@@ -85,7 +102,7 @@ ExactStep Propagator::first_step() const {
 }
 
 const ExactStep& Propagator::level(int level) {
-    if (levels_.empty()) levels_.push_back(first_step());
+    if (levels_.empty()) levels_.push_back(step(h0_));
     while (static_cast<int>(levels_.size()) <= level) levels_.push_back(compose(levels_.back(), levels_.back()));
     return levels_[Index(level)];
 }
@@ -111,17 +128,14 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
     return whole;
 }
 
-void Propagator::advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                         std::vector<double>& scratch) const {
-    const double *row = step.Phi.data(), *in = x.data();
-    const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
-                 *g3 = step.Gamma[3].data();
-    for (int i = 0; i < n_; ++i, row += n_) {
-        double sum = step.constant[Index(i)] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
-        for (int j = 0; j < n_; ++j) sum += row[j] * in[j];
-        scratch[Index(i)] = sum;
-    }
-    x.swap(scratch);
+void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
+             std::vector<double>& scratch) {
+    add_step(step, step.constant.data(), v, x, scratch);
+}
+
+void advance_rate(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& rate,
+                  std::vector<double>& scratch) {
+    add_step(step, nullptr, v, rate, scratch);
 }
 
 }  // namespace tunewright

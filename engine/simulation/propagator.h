@@ -18,28 +18,32 @@ struct ExactStep {
 /// v over a step as Taylor coefficients from values and slopes at both ends (cubic Hermite).
 std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
 
+/// x := Phi x + Gamma v + constant. `scratch` has as many entries as x.
+void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
+             std::vector<double>& scratch);
+
+/// The same for a derivative of x, without the constant: v are the Taylor coefficients of the derivative of the input.
+void advance_rate(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& rate,
+                  std::vector<double>& scratch);
+
 class Propagator {
 public:
     Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0);
 
     /// The step of length h0 2^level, computed once by doubling.
     const ExactStep& level(int level);
+    /// The step of any length h > 0.
+    ExactStep step(double h) const;
     /// A step of length first.h + second.h.
     ExactStep compose(const ExactStep& first, const ExactStep& second) const;
-
-    /// x := Phi x + Gamma v + constant. `scratch` has n entries.
-    void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-                 std::vector<double>& scratch) const;
 
     int states() const { return n_; }
     double h0() const { return h0_; }
 
 private:
-    ExactStep first_step() const;
-
     int n_;
     std::vector<double> F_, G_, b_;
-    double h0_;
+    double h0_, norm_;
     std::vector<ExactStep> levels_;
 };
 

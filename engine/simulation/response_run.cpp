@@ -7,6 +7,7 @@
 
 #include "engine/plant/linear_algebra.h"
 #include "engine/simulation/delayed_signal.h"
+#include "engine/simulation/error_tail.h"
 #include "engine/simulation/long_step.h"
 #include "engine/simulation/propagator.h"
 #include "engine/simulation/steady_state.h"
@@ -19,9 +20,10 @@ using Index = std::size_t;
 constexpr int kFirstEchoes = 2;     // the kinks at L and 2L are always met with the shortest step
 constexpr int kRetardedEchoes = 4;  // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
 constexpr int kMaxEchoes = 2000;
-constexpr int kRepetitions = 20;      // of a step that sees its own end through the scaled integral
-constexpr double kConverged = 1e-10;  // of the response's size
-constexpr double kEscaped = 1e6;      // of the response's scale: it grows without bound
+constexpr int kRepetitions = 20;        // of a step that sees its own end through the scaled integral
+constexpr double kConverged = 1e-10;    // of the response's size
+constexpr double kEscaped = 1e6;        // of the response's scale: it grows without bound
+constexpr double kOnTheHorizon = 1e-9;  // of a step
 
 double hermite_midpoint(double h, double a, double slope_a, double b, double slope_b) {
     return 0.5 * (a + b) + h * (slope_a - slope_b) / 8;
@@ -52,6 +54,9 @@ public:
         // An unstable plant's own modes amplify what a step gets wrong: no step may be long for them.
         for (const auto pole : plant.poles())
             if (pole.real() > 0) longest_step_ = std::min(longest_step_, 0.25 / pole.real());
+        // Before t = 0 everything is 0: that is the first deviation from where the loop comes to rest.
+        largest_y_ = std::abs(steady_.y);
+        largest_u_ = std::abs(steady_.u);
         response_.y_final = steady_.y;
         response_.u_final = steady_.u;
         response_.error_integral_final = steady_.error_integral;
@@ -64,11 +69,15 @@ public:
         scale(first);
         push(first);
         response_.schedule.h0 = propagator_.h0();
-        for (int step = 0; step < options_.max_steps; ++step) {
-            const bool more = options_.repeat == nullptr || step < static_cast<int>(options_.repeat->level.size());
-            if (!more || finished()) return ended();
+        for (int step = 0; options_.repeat != nullptr || step < options_.max_steps; ++step) {
+            const bool over = options_.repeat != nullptr && step == static_cast<int>(options_.repeat->level.size());
+            if (!over && finished()) return ended();
             if (escaped()) break;
-            choose_level(step);
+            if (!over) choose_level(step);
+            if (over || reaches_horizon()) {
+                go_to_horizon();
+                return ended();
+            }
             while (!take_step()) --level_;
             response_.schedule.level.push_back(static_cast<signed char>(level_));
         }
@@ -120,7 +129,7 @@ private:
             for (int i = 0; i < system_.s.n; ++i)
                 fastest = std::max(fastest, std::abs(system_.s.F[Index(i * system_.s.n + i)]));
             for (const auto pole : eigenvalues(system_.s.F, system_.s.n)) fastest = std::max(fastest, std::abs(pole));
-            return 0.25 / std::max(fastest, 1e-300);
+            return 0.25 / std::max(fastest, std::numeric_limits<double>::min());
         }
         const double wanted = fastest > 0 ? std::min(system_.s.L / 8, 0.25 / fastest) : system_.s.L / 8;
         level_of_L_ = std::clamp(static_cast<int>(std::ceil(std::log2(system_.s.L / wanted))), 3, 30);
@@ -128,6 +137,7 @@ private:
     }
 
     void push(const ResponseNode& node) {
+        if (options_.tail && !response_.nodes.empty()) tail_.add(response_.nodes.back(), node, system_.in.r);
         response_.nodes.push_back(node);
         if (scaling_ != nullptr) excesses_.push_back(excess_);
         largest_y_ = std::max(largest_y_, std::abs(node.y - steady_.y));
@@ -143,9 +153,10 @@ private:
         if (t < last_unsettled_ + std::max(2 * system_.s.L, 0.25 * last_unsettled_) || t <= 0) return false;
         // A slow tail that still has integral to add must at least have the sign to add it.
         if (!steady_.error_integral) return true;
-        const double rest = error_integral_left();
-        const double error = system_.in.r - response_.nodes.back().y;
-        return rest * error >= 0 || std::abs(rest) <= options_.settled * std::abs(*steady_.error_integral);
+        const double rest = error_integral_left(), error = system_.in.r - response_.nodes.back().y;
+        const double whole = std::max(std::abs(*steady_.error_integral), tail_.absolute_error());
+        if (rest * error < 0 && std::abs(rest) > options_.settled * whole) return false;
+        return !options_.tail || tail_.little_is_left(rest, error, t, *options_.tail);
     }
 
     /// From now to infinity. Scaled, the integral's state has that to go: near the end it sees the error as it is.
@@ -157,25 +168,35 @@ private:
     LinearResponse ended() {
         if (scaling_ != nullptr && steady_.error_integral)
             response_.error_integral_final = response_.nodes.back().error_integral + error_integral_left();
-        if (options_.horizon) end_at(*options_.horizon);
         return std::move(response_);
     }
 
-    /// Cuts the last step.
-    void end_at(double t) {
-        auto& nodes = response_.nodes;
-        if (nodes.size() < 2 || nodes.back().t <= t) return;
-        const ResponseNode& a = nodes[nodes.size() - 2];
-        ResponseNode& b = nodes.back();
-        const double s = t - a.t;
-        const auto y = hermite_taylor(b.t - a.t, a.y, a.y_slope, b.y, b.y_slope),
-                   u = hermite_taylor(b.t - a.t, a.u, a.u_slope, b.u, b.u_slope);
-        const auto value = [s](const std::array<double, 4>& c) {
-            return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6));
-        };
-        const auto slope = [s](const std::array<double, 4>& c) { return c[1] + s * (c[2] + s * c[3] / 2); };
-        const double under_y = s * (y[0] + s * (y[1] / 2 + s * (y[2] / 6 + s * y[3] / 24)));
-        b = {t, value(y), slope(y), value(u), slope(u), a.error_integral + system_.in.r * s - under_y};
+    /// Whether a step of the present level ends on the horizon or beyond it. Steps longer than the dead time, which
+    /// have only some lengths, give way to shorter ones there.
+    bool reaches_horizon() {
+        if (!options_.horizon) return false;
+        const double left = (*options_.horizon - time()) / propagator_.h0();
+        while (system_.delayed && level_ > level_of_L_ && std::ldexp(1.0, level_) > left) --level_;
+        return std::ldexp(1.0, level_) * (1 + kOnTheHorizon) >= left;
+    }
+
+    /// The last steps, which end exactly there: one, or as many as a repetition asks for.
+    void go_to_horizon() {
+        if (!options_.horizon) return;
+        const double from = time(), left = *options_.horizon - from;
+        if (!(left > kOnTheHorizon * propagator_.h0())) return;
+        const int parts = options_.repeat != nullptr ? options_.repeat->to_horizon : 1;
+        const ExactStep step = propagator_.step(left / parts);
+        for (int i = 1; i <= parts; ++i) {
+            const double end = i == parts ? *options_.horizon : from + step.h * i;
+            ResponseNode node;
+            if (system_.delayed)
+                take_short_step(step, end, node);
+            else
+                take_closed_step(step, end, true, node);
+            push(node);
+        }
+        response_.schedule.to_horizon = parts;
     }
 
     bool echoes_are_over() const {
@@ -251,24 +272,34 @@ private:
 
     /// False: the step is too long for the scaled integral, and nothing has happened.
     bool take_step() {
-        if (!system_.delayed || level_ > level_of_L_) {
-            ResponseNode node;
-            if (!(system_.delayed ? take_long_step(node) : take_closed_step(node))) return false;
+        ResponseNode node;
+        if (system_.delayed && level_ > level_of_L_) {
+            if (!take_long_step(node)) return false;
             count_step();
             push(node);
             return true;
         }
-        count_step();
         const ExactStep& step = propagator_.level(level_);
-        const double L = system_.s.L, slack = 1e-9 * propagator_.h0(), t = time() - step.h;
-        const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(t + step.h - L, false, slack);
-        propagator_.advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
-        ResponseNode node = node_at(system_, time(), x_, v1);
-        if (scaling_ != nullptr) add_excess(step.h, node);
+        const double end = time() + step.h;
+        if (system_.delayed)
+            take_short_step(step, end, node);
+        else if (!take_closed_step(step, end, level_ == 0, node))
+            return false;
+        count_step();
         push(node);
+        if (!system_.delayed) return true;
         offset_ += 1L << level_;
         if (offset_ == (1L << level_of_L_)) end_segment();
         return true;
+    }
+
+    /// Up to the dead time: the delayed signal is known.
+    void take_short_step(const ExactStep& step, double end, ResponseNode& node) {
+        const double L = system_.s.L, slack = 1e-9 * propagator_.h0(), t = end - step.h;
+        const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(end - L, false, slack);
+        advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
+        node = node_at(system_, end, x_, v1);
+        if (scaling_ != nullptr) add_excess(step.h, node);
     }
 
     void count_step() {
@@ -303,34 +334,34 @@ private:
     /// Longer than the dead time.
     bool take_long_step(ResponseNode& node) {
         const LongStep& step = long_step();
+        const double end = time() + step.h();
         const ResponseNode& now = response_.nodes.back();
-        const double end = time() + std::ldexp(propagator_.h0(), level_);
         step.start(history_.at(time() - system_.s.L, true, 1e-9 * propagator_.h0()),
                    {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
-        return settle(step.h(), node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
-            const Signal v = step.finish(start_, {into_u_ * added, into_u_ * excess_.value}, x);
+        return settle(step.h(), false, node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
+            const Signal v =
+                step.finish(start_, {into_u_ * added, into_u_ * excess_.value, into_u_ * excess_.slope}, x);
             if (scaling_ != nullptr) x[Index(system_.s.integral_state)] += added;
             at_end = node_at(system_, end, x, v);
         });
     }
 
     /// Without dead time.
-    bool take_closed_step(ResponseNode& node) {
-        const ExactStep& step = propagator_.level(level_);
-        const double end = time() + step.h;
+    bool take_closed_step(const ExactStep& step, double end, bool shortest, ResponseNode& node) {
         const Signal before = excess_;
-        return settle(step.h, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
+        return settle(step.h, shortest, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
             x = x_;
-            propagator_.advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope),
-                                x, scratch_);
+            advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope), x,
+                    scratch_);
             at_end = node_at(system_, end, x, {});
         });
     }
 
     /// Finds the end of a step whose y depends on the integral's own input by repetition: `try_end` goes to the end
-    /// with the excess assumed there. False where that does not converge, which a shorter step cures.
+    /// with the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is
+    /// taken as it comes.
     template <class TryEnd>
-    bool settle(double h, ResponseNode& node, const TryEnd& try_end) {
+    bool settle(double h, bool shortest, ResponseNode& node, const TryEnd& try_end) {
         end_x_.resize(x_.size());
         const Signal before = excess_;
         if (scaling_ == nullptr) {
@@ -349,8 +380,10 @@ private:
             x_.swap(end_x_);
             return true;
         }
-        excess_ = before;
-        if (level_ > 0) return false;
+        if (!shortest) {
+            excess_ = before;
+            return false;
+        }
         x_.swap(end_x_);
         return true;
     }
@@ -386,6 +419,7 @@ private:
     double ticks_ = 0;  // since t = 0, in units of h0: exact
     double longest_step_ = std::numeric_limits<double>::infinity();
     double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
+    ErrorTail tail_;
 };
 
 }  // namespace

@@ -37,11 +37,12 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         system.MH += s.M[Index(i)] * s.H[Index(i)] * in.r;
         system.YH += s.Y[Index(i)] * s.H[Index(i)] * in.r;
     }
+    system.b[Index(n)] = -in.r;
     if (!system.delayed) {
         // v is the load alone here, with the algebraic loop solved.
         for (int i = 0; i < system.n; ++i) system.b[Index(i)] += system.G[Index(i)] * in.d;
-        // The integral of y also sees what the set point feeds through the plant's direct term.
-        system.b[Index(n)] = s.Z * (s.R * in.r + in.d);
+        // The error's integral also sees what the set point feeds through the plant's direct term.
+        system.b[Index(n)] = s.Z * (s.R * in.r + in.d) - in.r;
     }
     return system;
 }
@@ -63,7 +64,7 @@ ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<d
         node.y += s.Y[Index(i)] * xi;
         node.y_slope += system.YF[Index(i)] * xi;
     }
-    node.error_integral = system.in.r * t - x[Index(s.n)];
+    node.error_integral = -x[Index(s.n)];
     return node;
 }
 

@@ -1,4 +1,4 @@
-// The equations that a response is stepped with: the delay system, the integral of y and the constant inputs.
+// The equations that a response is stepped with: the delay system, the integral of y - r and the constant inputs.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace tunewright {
 
-/// The delay system with one more state, the integral of y, and without the constant inputs.
+/// The delay system with one more state, the integral of y - r, and without the constant inputs.
 struct ResponseSystem {
     DelaySystem s;
     int n = 0;
     std::vector<double> F, G, b;
-    // u = Mu x + N v + u0, u' = Mdu x + Ndu v + N v' + du0, the same for y.
+    // u' = MF x + MG v + N v' + MH, y' = YF x + YG v + Z v' + YH.
     std::vector<double> MF, YF;
     double MG = 0, YG = 0, MH = 0, YH = 0;
     StepInputs in;

@@ -147,14 +147,21 @@ void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
                               "; do not use it."});
 }
 
+/// In percent, rounded down and never to all or to nothing.
+std::string share(double fraction) {
+    if (fraction > 0.999) return "more than 99.9 %";
+    if (fraction < 0.001) return "less than 0.1 %";
+    return text(std::floor(1000 * fraction + 1e-9) / 10) + " %";
+}
+
 void add_region(Evaluation& evaluation, const PlantFamily& family) {
     evaluation.region = region_figures(family, gains(evaluation.controller));
     if (!evaluation.robustness.stable || evaluation.region->worst_Ms) return;
     evaluation.warnings.push_back(
-        {"unstable-in-region", "The loop is stable on the nominal plant but not on every plant that it must serve (" +
-                                   text(100 * evaluation.region->stable_fraction) +
-                                   " % of the region are stable). Ask for less, or use robust, which holds its limits "
-                                   "on all of them."});
+        {"unstable-in-region", "The loop is stable on the nominal plant but not on every plant that it must serve: " +
+                                   share(evaluation.region->stable_fraction) +
+                                   " of those looked at are stable, and worst_plant is not. Ask for less, or use "
+                                   "robust, which holds its limits on all of them."});
 }
 
 }  // namespace

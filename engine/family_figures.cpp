@@ -22,11 +22,14 @@ RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
         return std::isfinite(value);
     };
     const auto points = region.spread(kRegionSamples);
-    int stable = 0;
+    double looked_at = static_cast<double>(points.size()), stable = 0;
     for (const auto& z : points) stable += look(z) ? 1 : 0;
-    result.stable_fraction = double(stable) / static_cast<double>(points.size());
+    const bool all_stable = std::isfinite(result.worst.badness);
     for (const auto& z : region.ends()) look(z);
     if (std::isfinite(result.worst.badness)) result.worst = find_worst(region, badness, {result.worst.z});
+    // An unstable plant that the samples missed counts as one more, so that 1 always means that none is known.
+    if (all_stable && !std::isfinite(result.worst.badness)) looked_at += 1;
+    result.stable_fraction = stable / looked_at;
     return result;
 }
 

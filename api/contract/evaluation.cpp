@@ -322,8 +322,10 @@ const Description<RegionFigures>& region_contract() {
         Description<R> d("Region",
                          "The controller on all plants that it must serve: of a set, of uncertainty ranges, or of the "
                          "95 % confidence region of a record.");
-        d.field("stable_fraction", &R::stable_fraction, only_answered(number()),
-                "Fraction of the plants (of the region's volume) whose loop is stable, 0 to 1.")
+        d.field(
+             "stable_fraction", &R::stable_fraction, only_answered(number()),
+             "Fraction of the plants (of the region's volume, by samples) whose loop is stable, 0 to 1; 1 only where "
+             "no unstable one was found.")
             .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all plants looked at.")
             .field("worst_plant", &R::worst_plant, only_answered(one_of(plant_contract())),
                    "The plant of that Ms, or one whose loop is unstable.")

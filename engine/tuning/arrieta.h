@@ -6,7 +6,8 @@
 namespace tunewright {
 
 /// Option Ms: "free" (no limit: the least J_rd) or a number from 1.4 to 2, which Ms on the model then is about. Table 1
-/// at its levels, Eq. 9 in between, with b3 corrected and c3 as printed (see arrieta_rule.h).
+/// at its levels, Eq. 9 in between, with b3 corrected and c3 refitted, or as printed with option c3 = "printed" (see
+/// arrieta_rule.h).
 TuningMethod arrieta_ms_method();
 
 /// Option degradation: how much of the combined performance I_perf may be given up (tradeoff.h). Table 2 at its levels

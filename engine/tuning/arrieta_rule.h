@@ -41,8 +41,9 @@ enum class ArrietaC3 {
 };
 
 /// Eq. 9 for any Ms between the lowest and the highest. b3 is read 1.3870 M^2 - 4.7810 M + 4.9470: with the printed
-/// 0.3870 it is off Table 1 by 2 to 4, with 1.3870 by 0.04. The printed c3 is off by 0.014 at both ends, the refitted
-/// one by 0.002; on Ms that is 1.7 % at most (tau = 0.1).
+/// 0.3870 it is off Table 1 by 2 to 4, with 1.3870 by 0.04. The printed c3 is off by 0.014 at both ends, where Td then
+/// jumps by 38 to 48 % (tau = 0.1); the refitted one is off by 0.002 there and by 0.006 at most, 3.2 % of Td. On Ms the
+/// two differ by 1.7 % at most (tau = 0.1).
 ArrietaConstants arrieta_equation_9(double Ms, ArrietaC3 c3);
 
 /// PID with b = 1, c = 0 and the derivative of the measurement filtered with Tf = Td/10 (Eq. 1). `model` has T > 0, L >

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "engine/tuning/amigo.h"
@@ -40,7 +41,30 @@ Expected<std::optional<FilterRule>> explicit_filter(const MethodOptions& options
     return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = *ratio});
 }
 
-/// The contract's filter rule. Error: a plant with neither dead time nor lags has no natural filter time.
+constexpr double kLeastResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
+
+/// The sum of the lags minus the leads, kept from vanishing where the leads cancel it; 0 without lags.
+double filter_basis(const LinearPlant& plant) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const auto pole : plant.poles())
+        if (pole.real() < 0) shortest = std::min(shortest, (-1.0 / pole).real());
+    return std::isfinite(shortest) ? std::max(plant.lag_sum(), kLeastResidence * shortest) : 0;
+}
+
+/// A plant with neither dead time nor lags has no natural filter time.
+Error no_filter_time(const TuningProblem& problem) {
+    const double L = problem.linear.dead_time();
+    const std::string what =
+        L > 0 ? "This plant has no lags, and its identified dead time of " + shown(L) +
+                    " counts as none because its standard error is " + shown(problem.dead_time_std.value_or(0)) +
+                    ". Nothing suggests a filter time. "
+              : "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
+                "a filter time. ";
+    return {ErrorKind::unbounded_optimum, "filter",
+            what + "Give filter {\"Tf\": ...}, e.g. the sampling time or the time constant of the sensor."};
+}
+
+/// The contract's filter rule. Error: `no_filter_time`.
 Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptions& options, bool pid) {
     const auto given = explicit_filter(options, pid);
     if (!given) return given.error();
@@ -50,12 +74,9 @@ Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptio
     const bool dead_time = plant.dead_time() > problem.dead_time_std.value_or(0);
     if (dead_time || plant.has_right_half_plane_zero() || plant.pole_excess() >= 3)
         return FilterRule{.Tf = std::nullopt, .Tf_over_Td = 0.1};
-    const double T_ar = plant.lag_sum();
-    if (T_ar > 0) return FilterRule{.Tf = 0.05 * T_ar, .Tf_over_Td = std::nullopt};
-    return Error{ErrorKind::unbounded_optimum, "filter",
-                 "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
-                 "a filter time. "
-                 "Give filter {\"Tf\": ...}, e.g. the sampling time or the time constant of the sensor."};
+    const double basis = filter_basis(plant);
+    if (basis > 0) return FilterRule{.Tf = 0.05 * basis, .Tf_over_Td = std::nullopt};
+    return no_filter_time(problem);
 }
 
 /// Low gain of the right sign must push the output towards the set point: K/T of the plant's first slope decides.

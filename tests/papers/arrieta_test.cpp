@@ -169,9 +169,16 @@ TEST(Arrieta, TheMethodTakesTheTableAtItsLevelsAndEquation9InBetween) {
         EXPECT_NEAR(*at_level.evaluation->robustness.Ms / row["Ms_table1"]["1.6"].get<double>(), 1, 1e-3);
         EXPECT_EQ(*at_level.tradeoff->constants, "Table 1, column Ms = 1.6");
         const auto between = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", 1.7}}));
-        EXPECT_NEAR(*between.evaluation->robustness.Ms / row["Ms_eq9_b3"]["1.7"].get<double>(), 1, 1e-3);
+        EXPECT_NEAR(*between.evaluation->robustness.Ms / row["Ms_eq9_b3_c3"]["1.7"].get<double>(), 1, 1e-3);
         EXPECT_EQ(between.tradeoff->constants->substr(0, 16), "Eq. 9 at Ms = 1.");
+        EXPECT_TRUE(
+            between.tradeoff->constants->ends_with("c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic "
+                                                   "through Table 1)"));
         EXPECT_EQ(*between.tradeoff->Ms_design, 1.7);
+        const auto printed =
+            entry(scaled_model(tau), request("arrieta_ms", {{"Ms", 1.7}, {"c3", std::string("printed")}}));
+        EXPECT_NEAR(*printed.evaluation->robustness.Ms / row["Ms_eq9_b3"]["1.7"].get<double>(), 1, 1e-3);
+        EXPECT_TRUE(printed.tradeoff->constants->ends_with("c3 as printed"));
         const auto free = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", std::string("free")}}));
         EXPECT_NEAR(*free.evaluation->robustness.Ms / row["free"]["Ms"].get<double>(), 1, 1e-3);
         EXPECT_EQ(*free.tradeoff->model.I_perf, 1);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/loop/loop.h"
+#include "engine/loop/peaks.h"
 #include "engine/tuning/arrieta_rule.h"
 #include "engine/tuning/method.h"
 #include "engine/tuning/tradeoff.h"
@@ -108,6 +110,53 @@ TEST(ArrietaRule, TheSmallestMsWithTheDegradationIsTaken) {
             EXPECT_GT(degradation_on(model, arrieta_pid(arrieta_equation_9(smaller, ArrietaC3::refitted), model)), 0.4);
         }
     }
+}
+
+// Eq. 9 is a least-squares quadratic through four columns: what is left at a column is its residual, not a jump.
+TEST(ArrietaRule, SettingsDoNotJumpAtTheLevelsOfMs) {
+    for (const ArrietaLevel& column : arrieta_Ms_levels())
+        for (const double tau : {0.1, 0.15, 0.3, 0.7, 1.2, 2.0})
+            for (const double beside : {-1e-6, 1e-6}) {
+                const double Ms = column.level + beside;
+                if (Ms < kArrietaLowestMs || Ms > kArrietaHighestMs) continue;
+                const auto at = tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", column.level}}),
+                           near = tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", Ms}});
+                ASSERT_TRUE(at && near);
+                EXPECT_NEAR(near->controller.Kp / at->controller.Kp, 1, 0.007) << Ms << " " << tau;
+                EXPECT_NEAR(near->controller.Ti / at->controller.Ti, 1, 0.011) << Ms << " " << tau;
+                EXPECT_NEAR(near->controller.Td / at->controller.Td, 1, 0.033) << Ms << " " << tau;
+            }
+}
+
+TEST(ArrietaRule, ThePrintedC3IsTakenWhereItIsAskedFor) {
+    const Fopdt model{1, 1, 0.1};
+    const Given printed = {{"Ms", 1.99}, {"c3", std::string("printed")}};
+    const Given refitted = {{"Ms", 1.99}, {"c3", std::string("refitted")}};
+    const auto as_printed = tuned(model, "arrieta_ms", printed);
+    ASSERT_TRUE(as_printed);
+    // Td/T = a3 tau^b3 + c3, Eq. 9 by hand at M = 1.99, tau = 0.1.
+    const double a3 = 0.1875 * 1.99 * 1.99 - 0.7735 * 1.99 + 1.0740;
+    const double b3 = 1.3870 * 1.99 * 1.99 - 4.7810 * 1.99 + 4.9470;
+    const double power = a3 * std::pow(0.1, b3);
+    EXPECT_NEAR(as_printed->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4733 * 1.99 + 0.4032, 1e-12);
+    EXPECT_THAT(as_printed->arrieta->constants, HasSubstr("c3 as printed"));
+    const auto by_default = tuned(model, "arrieta_ms", {{"Ms", 1.99}});
+    EXPECT_NEAR(by_default->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4320 * 1.99 + 0.3330, 1e-12);
+    EXPECT_EQ(by_default->controller.Td, tuned(model, "arrieta_ms", refitted)->controller.Td);
+    EXPECT_THAT(by_default->arrieta->constants, HasSubstr("c3 = 0.1331 M^2 - 0.4320 M + 0.3330"));
+}
+
+// Over the whole range, in between the levels too: the Ms achieved on the model is the one asked for within 2.5 %.
+TEST(ArrietaRule, MsOnTheModelIsTheOneAskedFor) {
+    for (int i = 0; i <= 24; ++i)
+        for (const double tau : {0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0}) {
+            const double Ms = 1.4 + 0.025 * i;
+            const auto answer = tuned(Fopdt{1, 1, tau}, "arrieta_ms", {{"Ms", Ms}});
+            ASSERT_TRUE(answer);
+            const LinearPlant model = *LinearPlant::make(Fopdt{1, 1, tau});
+            const auto loop = Loop::make(model, to_parallel(answer->controller));
+            EXPECT_NEAR(find_peaks(*loop, make_peak_grid(*loop)).S.value / Ms, 1, 0.025) << Ms << " " << tau;
+        }
 }
 
 TEST(ArrietaRule, WarnsOutsideItsRange) {

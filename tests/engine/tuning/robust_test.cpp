@@ -172,6 +172,25 @@ TEST(Robust, DefaultFilterFollowsTheContract) {
     EXPECT_NEAR(identified->controller.filter.Tf, 0.2, 1e-12) << "a dead time within its standard error counts as none";
 }
 
+TEST(Robust, AnIdentifiedPlantWithLagsHasAFilterWhateverItsLeads) {
+    const auto identified = [](const Plant& plant, double L_std) {
+        return robust_method().tune(TuningProblem{plant, *LinearPlant::make(plant), L_std}, {}, {});
+    };
+    // Two lags, 1 and 2, and a lead that is shorter, almost as long, as long and longer than their sum; L = 2.4 is not
+    // known from 0.
+    for (const auto& [lead, Tf] :
+         {std::pair{1.5, 0.05 * 1.5}, {2.8, 0.05 * 0.2}, {3.0, 0.05 * 0.1}, {10.0, 0.05 * 0.1}}) {
+        const auto tuned = identified(TransferFunction{{lead, 1}, {2, 3, 1}, 2.4}, 3);
+        ASSERT_TRUE(tuned.has_value()) << lead << ": " << tuned.error().message;
+        EXPECT_NEAR(tuned->controller.filter.Tf, Tf, 1e-9) << lead;
+    }
+    const auto without_lags = identified(Ipdt{.K = 1, .L = 2.4}, 3);
+    ASSERT_FALSE(without_lags.has_value());
+    EXPECT_EQ(without_lags.error().kind, ErrorKind::unbounded_optimum);
+    EXPECT_NE(without_lags.error().message.find("identified dead time of 2.4"), std::string::npos)
+        << without_lags.error().message;
+}
+
 TEST(Robust, StopsWithTheBestSoFar) {
     std::stop_source source;
     RunControl control;

@@ -62,6 +62,9 @@ struct Fit {
     /// A change of (searched, linear) that the record neither asks for nor rules out, one standard deviation long: what
     /// a drift too small to be found would do. Empty: none.
     std::vector<double> doubt;
+    /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
+    /// estimator than least squares knows it. Empty: J tells it.
+    std::vector<std::vector<double>> deviations;
 };
 
 /// The data of a least-squares problem. The referred record and anchors must outlive it.

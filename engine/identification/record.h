@@ -11,11 +11,12 @@ namespace tunewright {
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
-/// hold). Lengths are equal.
+/// hold). Lengths are equal; that of r too, where it is given.
 struct Record {
     std::vector<double> t;  ///< time in the user's unit, any start
     std::vector<double> u;  ///< controller output (plant input)
     std::vector<double> y;  ///< measurement
+    std::vector<double> r;  ///< set point, in y's unit; empty: not in the record
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
     std::vector<int> line;         ///< of each sample in the file that it comes from, for sentences; empty: no file

@@ -126,6 +126,14 @@ Eigen::MatrixXd deviations_of(const Fit& fit, double variance, double grid, doub
     return deviations;
 }
 
+Eigen::MatrixXd given_deviations(const Fit& fit) {
+    const int m = fit.form.parameters();
+    Eigen::MatrixXd deviations(static_cast<Eigen::Index>(fit.deviations.size()), m);
+    for (std::size_t k = 0; k < fit.deviations.size(); ++k)
+        deviations.row(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::RowVectorXd>(fit.deviations[k].data(), m);
+    return deviations;
+}
+
 }  // namespace
 
 namespace {
@@ -190,7 +198,9 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
-    const Eigen::MatrixXd deviations = deviations_of(fit, residual_variance(fit, quantisation), quantisation, noise);
+    const Eigen::MatrixXd deviations =
+        fit.deviations.empty() ? deviations_of(fit, residual_variance(fit, quantisation), quantisation, noise)
+                               : given_deviations(fit);
     const std::vector<int> places = fit.form.searched();
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

@@ -41,11 +41,18 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
     return 2 * tracking > clean.samples() ? std::vector<double>{} : r;
 }
 
-/// A set point of which only the moves are known.
-std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, int samples) {
-    std::vector<double> w(static_cast<std::size_t>(samples), 0.0);
+/// Feedback shows from row to row: of a long record the beginning is looked at, and every so many rows are fitted.
+CleanRecord beginning(const CleanRecord& record) {
+    return record.samples() <= kMostFitted ? record
+                                           : first_part(record, record.t[static_cast<std::size_t>(kMostFitted - 1)]);
+}
+
+/// A set point of which only the moves are known; `length` is that of the part of the record in which they were seen.
+std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, double length, const CleanRecord& record) {
+    std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
     for (const OutsideMove& move : moves) {
-        for (int i = move.row; i < samples; ++i) w[static_cast<std::size_t>(i)] += move.size;
+        const auto from = std::lower_bound(record.t.begin(), record.t.end(), move.time * length) - record.t.begin();
+        for (auto i = static_cast<std::size_t>(from); i < w.size(); ++i) w[i] += move.size;
     }
     return w;
 }
@@ -69,51 +76,97 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
                 " or so (twice what y moves here) and record it as column r."};
 }
 
-/// The search's structures by instrumental variables; the chosen one's mismatch.
+/// A search's structures by instrumental variables, with what each leaves.
 struct Refined {
     Search search;
-    double mismatch = 0, gain_error = 0;
+    std::vector<double> mismatch, gain_error;
+
+    std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
+constexpr double kMisfit = 25, kUnknownGain = 0.5;
+
 std::optional<Refined> refined(Search search, const CleanRecord& record, const SetPointPart& part,
-                                        std::stop_token stop) {
-    if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) return std::nullopt;
+                               std::stop_token stop) {
+    if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
-    Refined out{std::move(search), 0, 0};
+    Refined out{std::move(search), {}, {}};
     for (std::size_t i = 0; i < out.search.fits.size(); ++i) {
         Fit& fit = out.search.fits[i];
-        const bool chosen = static_cast<int>(i) == out.search.choice.index;
+        out.mismatch.push_back(0), out.gain_error.push_back(1);
         if (!fit.determined) continue;
         std::optional<InstrumentFit> better = fit_by_instrument(record, part, fit, stop);
-        if (!better && chosen) return std::nullopt;
         fit.determined = better.has_value();
         if (!better) continue;
         fit = std::move(better->fit);
         out.search.percents[i] = fit_percent(record, fit);
-        if (chosen) out.mismatch = better->mismatch, out.gain_error = better->gain_error;
+        out.mismatch[i] = better->mismatch, out.gain_error[i] = better->gain_error;
     }
     return out;
 }
 
+bool usable(const Refined& r, std::size_t i) {
+    constexpr double kKnownGain = 0.3;
+    return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain;
+}
+
+/// Where the structure that least squares preferred does not do, the one whose residual the set point explains least.
+void choose_again(Refined& r) {
+    constexpr double kPrice = 3;
+    if (usable(r, r.chosen())) return;
+    double least = 0;
+    int best = -1;
+    for (std::size_t i = 0; i < r.search.fits.size(); ++i) {
+        const double cost = r.mismatch[i] + kPrice * r.search.fits[i].form.parameters();
+        if (!usable(r, i) || (best >= 0 && cost >= least)) continue;
+        best = static_cast<int>(i), least = cost;
+    }
+    if (best < 0) return;
+    r.search.choice = {best, std::string(name_of(r.search.fits[static_cast<std::size_t>(best)].form.structure)) +
+                                 ": of the structures whose gain the set point's moves tell, the one that leaves least "
+                                 "of what they did."};
+}
+
+/// The gain's standard error over its size; 0 where it is not known.
+double gain_error(const IdentifiedModel& model) {
+    const auto error = model.standard_errors.find("K");
+    if (error == model.standard_errors.end()) return 0;
+    const double K = std::visit(
+        [](const auto& plant) {
+            using P = std::decay_t<decltype(plant)>;
+            if constexpr (std::is_same_v<P, TransferFunction>)
+                return plant.num.empty() ? 0.0 : plant.num.back();
+            else if constexpr (requires { plant.K; })
+                return static_cast<double>(plant.K);
+            else
+                return 0.0;
+        },
+        model.plant);
+    return error->second / std::max(std::abs(K), 1e-300);
+}
+
 }  // namespace
 
-Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const Record& as_given) {
+Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Record& as_given) {
     constexpr double kFollows = 0.05, kPlain = 10;
     if (!as_given.r.empty() && as_given.r.size() != as_given.t.size()) {
         return Error{ErrorKind::invalid_argument, "record/r",
                      "r has " + std::to_string(as_given.r.size()) + " values and t " +
                          std::to_string(as_given.t.size()) + "; give columns of equal length."};
     }
-    const RecordKind kind = record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
+    const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
     if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
-    const std::optional<Feedback> feedback = find_feedback(record);
+    const CleanRecord seen = beginning(full), record = every_few(full, kMostFitted);
+    const std::optional<Feedback> feedback = find_feedback(seen);
     const std::vector<double> r = set_point_at_samples(record, as_given);
     LoopRecord loop;
     if (!r.empty()) {
         loop.part = set_point_part(input_at_samples(record), r);
         loop.told.used = LoopExcitation::set_point;
     } else if (feedback && !feedback->outside.empty()) {
-        loop.part = set_point_part(input_at_samples(record), steps_at_samples(feedback->outside, record.samples()));
+        loop.part =
+            set_point_part(input_at_samples(record),
+                           steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record));
         loop.told.used = LoopExcitation::outside_moves;
     }
     const bool follows = loop.part && loop.part->share > kFollows && loop.part->strength > kPlain;
@@ -126,27 +179,59 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const R
 
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control) {
-    constexpr double kWeak = 4, kUnknown = 0.5, kPlainlyLess = 10;
+    constexpr double kWeak = 4, kPlainlyLess = 10;
     if (!loop.part) return nothing_outside(full, loop, "and nothing but feedback moves u");
     if (loop.part->strength < kWeak)
-        return nothing_outside(full, loop, "and moves of the set point explain too little of u (" +
-                                               number_text(100 * loop.part->share, 2) + " %)");
-    const CleanRecord& record = full;
+        return nothing_outside(
+            full, loop,
+            "and moves of the set point explain too little of u (" + number_text(100 * loop.part->share, 2) + " %)");
+    const CleanRecord record = every_few(full, kMostFitted);
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
     auto direct = refined(search_models(record, model, false, control), record, *loop.part, control.stop);
     if (control.stop.stop_requested()) return cancelled();
     auto two_stage =
         refined(search_models(driven_by(*loop.part, record), model, false, control), record, *loop.part, control.stop);
     if (control.stop.stop_requested()) return cancelled();
-    const bool second = two_stage && (!direct || two_stage->mismatch + kPlainlyLess < direct->mismatch);
-    std::optional<Refined>& best = second ? two_stage : direct;
-    if (!best) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
-    if (!(best->gain_error < kUnknown)) {
+    for (std::optional<Refined>* one : {&direct, &two_stage}) {
+        if (*one) choose_again(**one);
+    }
+    const auto better = [&](const Refined& a, const Refined& b) {
+        if (usable(a, a.chosen()) != usable(b, b.chosen())) return usable(a, a.chosen());
+        return a.mismatch[a.chosen()] + kPlainlyLess < b.mismatch[b.chosen()];
+    };
+    std::optional<Refined>& best = two_stage && (!direct || better(*two_stage, *direct)) ? two_stage : direct;
+    const bool follows = best && best->search.chosen().determined &&
+                         (best->mismatch[best->chosen()] < kMisfit || responds(full, best->search.chosen()));
+    if (!follows) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
+    const double error = best->gain_error[best->chosen()];
+    if (!(error < kUnknownGain)) {
         return nothing_outside(full, loop,
                                "and the moves from outside the loop leave the gain unknown (its standard error is " +
-                                   number_text(100 * best->gain_error, 2) + " % of it)");
+                                   number_text(100 * error, 2) + " % of it)");
     }
     return searched_model(std::move(best->search), full);
+}
+
+void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
+    constexpr double kHardly = 0.005, kPlainly = 0.15, kLess = 0.8, kUnknown = 0.5;
+    const double restless = restlessness(beginning(full));
+    if (restless < kHardly) return;
+    const CleanRecord record = every_few(full, kMostFitted);
+    const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y);
+    const double left = 1 - model.fit_percent / 100, unexplained = left * left;
+    if (!law) return;
+    const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
+    const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1);
+    if (!in_doubt) return;
+    LoopRecord loop;
+    loop.told.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
+                         " % of its variance, where the model explains " +
+                         number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
+    model.data_quality.closed_loop = loop.told;
+    model.warnings.insert(model.warnings.begin(),
+                          {"closed-loop", "A controller seems to move u in answer to y: " + loop.told.evidence +
+                                              " Then the model may be the controller's inverse in place of the plant: "
+                                              "step u in manual, or step the set point and record it as column r."});
 }
 
 void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {

@@ -27,6 +27,11 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const R
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control);
 
+/// Where no feedback was found: warns (closed-loop) if u is restless, and filters of y explain more of u than the model
+/// explains of y, while the model is in doubt (its gain unknown) or u plainly moves as no test does. So it is in loops
+/// whose controller sees another noise than the record shows.
+void doubt_open_loop(const CleanRecord& record, IdentifiedModel& model);
+
 /// Fills data_quality.closed_loop and adds warning closed-loop.
 void tell_loop(const LoopRecord& loop, IdentifiedModel& model);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/identification/record_kind.h"
+#include "engine/identification/statistics.h"
 
 namespace tunewright {
 namespace {
@@ -238,7 +239,7 @@ bool on_few_levels(std::vector<double> u) {
 bool switches_between_two(const CleanRecord& r) { return two_levels(input_levels(r)).switch_time.size() >= 3; }
 
 /// Moves that the law of the controller leaves over, far beyond what it leaves elsewhere; the first of a few in a row.
-std::vector<OutsideMove> outside_moves(const Moves& m, const Predictions& p) {
+std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, const Predictions& p) {
     constexpr double kFar = 10, kOfRange = 0.01;
     constexpr int kApart = 8;
     const double law = p.by_y.coefficient[p.y_column];
@@ -249,10 +250,32 @@ std::vector<OutsideMove> outside_moves(const Moves& m, const Predictions& p) {
         const double left = p.by_y.residual[i];
         if (std::abs(left) < std::max(kFar * p.by_y.scale, kOfRange)) continue;
         const int j = static_cast<int>(i) + p.first;
-        if (j - last >= kApart) found.push_back({m.row[j], -left / law});
+        if (j - last >= kApart) found.push_back({r.t[m.row[j]], -left / law});
         last = j;
     }
     return found;
+}
+
+bool unevenly_spaced(const Moves& m) {
+    constexpr double kOff = 0.1;
+    if (!m.every_row) return false;
+    const std::vector<double> spacings(m.dt.begin() + 1, m.dt.end());
+    const double usual = median(spacings);
+    const auto off =
+        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - usual) > kOff * usual; });
+    return 5 * off > static_cast<std::ptrdiff_t>(spacings.size());
+}
+
+/// The record's moves, where they could be a controller's.
+std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<double>& u) {
+    if (r.changes() < kFewestMoves || r.samples() < 3 * kFewestMoves) return std::nullopt;
+    const RecordKind kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
+    if (kind == RecordKind::relay || on_few_levels(u) || switches_between_two(r)) return std::nullopt;
+    int moved = 0;
+    for (int i = 1; i < r.samples(); ++i) moved += u[i] != u[i - 1] ? 1 : 0;
+    Moves moves = moves_of(r, u, moved);
+    if (moves.size() < 2 * kFewestMoves || on_ramps(moves)) return std::nullopt;
+    return moves;
 }
 
 }  // namespace
@@ -268,32 +291,41 @@ std::vector<double> input_at_samples(const CleanRecord& r) {
     return u;
 }
 
-std::optional<Feedback> find_feedback(const CleanRecord& r) {
-    constexpr double kNoNews = 1e-6, kExact = 0.03, kMoreThanChance = 1.6, kNewsInY = 0.8, kByNews = 0.3, kQuiet = 3e-4, kLawIsPlain = 0.5;
-    if (r.changes() < kFewestMoves || r.samples() < 3 * kFewestMoves) return std::nullopt;
-    const RecordKind kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
+double restlessness(const CleanRecord& r) {
+    constexpr double kOften = 0.1;
     const std::vector<double> u = input_at_samples(r);
-    if (kind == RecordKind::relay || on_few_levels(u) || switches_between_two(r)) return std::nullopt;
-    int moved = 0;
-    for (int i = 1; i < r.samples(); ++i) moved += u[i] != u[i - 1] ? 1 : 0;
-    const Moves moves = moves_of(r, u, moved);
-    if (moves.size() < 2 * kFewestMoves || on_ramps(moves)) return std::nullopt;
+    const std::optional<Moves> moves = possible_moves(r, u);
+    if (!moves || moves->size() < kOften * r.samples()) return 0;
+    const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
+    return compare(p.by_u, p.by_u).a / std::max(deviation(u), 1e-150);
+}
+
+std::optional<Feedback> find_feedback(const CleanRecord& r) {
+    constexpr double kNoNews = 1e-6, kExact = 0.03, kMoreThanChance = 1.6, kMoreUneven = 3, kNewsInY = 0.8,
+                     kByNews = 0.3, kQuiet = 3e-4, kLawIsPlain = 0.5;
+    const std::vector<double> u = input_at_samples(r);
+    const std::optional<Moves> possible = possible_moves(r, u);
+    if (!possible) return std::nullopt;
+    const Moves& moves = *possible;
     const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
     const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
     if (same.a < kNoNews) return std::nullopt;
     const bool at_once = same.ratio() <= past.ratio();
     const double ratio = std::min(same.ratio(), past.ratio());
     const double n = static_cast<double>(p.by_u.residual.size());
-    if (ratio > std::exp(-kMoreThanChance * std::sqrt(p.coefficients / n))) return std::nullopt;
-    if (ratio > kExact) {
+    const double margin = unevenly_spaced(moves) ? kMoreUneven : kMoreThanChance;
+    if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
+    const bool exact = ratio < kExact;
+    if (!exact || !moves.every_row) {
         const NewsOfY y = news_of_y(r, u);
         const Errors of_y = compare(y.by_y, y.by_both);
-        if (of_y.b < kQuiet || of_y.ratio() < kNewsInY) return std::nullopt;
+        if (of_y.b < kQuiet) return std::nullopt;
+        if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
         const double told = told_by_news(moves, p, y);
-        if (1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
+        if (!exact && 1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
     }
     Feedback feedback{same.a, at_once ? same.b : past.b, at_once, {}};
-    if (same.ratio() < kLawIsPlain) feedback.outside = outside_moves(moves, p);
+    if (same.ratio() < kLawIsPlain) feedback.outside = outside_moves(r, moves, p);
     return feedback;
 }
 

@@ -275,13 +275,12 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     const Expected<std::optional<LoopRecord>> loop = find_loop(*clean, record);
     if (!loop) return loop.error();
     const bool by_formula = options.method == IdentifyMethod::relay_fourier;
-    Expected<IdentifiedModel> model = by_formula ? by_relay_formulas(*clean, options)
-                                      : options.method == IdentifyMethod::two_point
-                                          ? by_two_points(*clean, options)
+    Expected<IdentifiedModel> model = by_formula                                    ? by_relay_formulas(*clean, options)
+                                      : options.method == IdentifyMethod::two_point ? by_two_points(*clean, options)
                                       : *loop ? identify_in_loop(*clean, **loop, options.model, control)
                                               : by_output_error(*clean, options, control);
     if (!model) return model;
-    if (*loop) tell_loop(**loop, *model);
+    *loop ? tell_loop(**loop, *model) : doubt_open_loop(*clean, *model);
     add_excited_band(*clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});

@@ -168,13 +168,29 @@ double mismatch_of(const SetPointPart& part, const Equations& here, const Vector
     return share / std::max(1e-12, 1 - share) * effective_samples({e.data(), static_cast<std::size_t>(e.size())});
 }
 
+/// How much wider than by white residuals the gain's error is by what the stretches of the record pull at it, each for
+/// itself: a load that stepped once is no noise that goes on all the time.
+double pulled_apart(const Equations& here, const MatrixXd& inverse, double variance, Index gain) {
+    constexpr Index kStretches = 12;
+    const Index length = here.e.size() / kStretches;
+    const VectorXd row = here.Z * inverse.row(gain).transpose();
+    double squares = 0;
+    for (Index b = 0; b < kStretches; ++b) {
+        const double pull = row.segment(b * length, length).dot(here.e.segment(b * length, length));
+        squares += pull * pull;
+    }
+    squares *= static_cast<double>(kStretches) / (kStretches - 1);
+    return squares / std::max(variance * row.squaredNorm(), 1e-300);
+}
+
 /// Rows: principal axes of the covariance, one standard deviation long.
 std::vector<std::vector<double>> deviations_of(const Equations& here, const std::vector<Index>& free, Index all,
-                                               double inflation) {
+                                               Index gain, double inflation) {
     const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
-    const double variance = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m)) * inflation;
+    const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
     const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();
+    const double variance = white * std::max(inflation, pulled_apart(here, inverse, white, gain));
     const MatrixXd covariance = variance * inverse * (here.Z.transpose() * here.Z) * inverse.transpose();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
     std::vector<std::vector<double>> rows;
@@ -194,7 +210,7 @@ std::vector<std::vector<double>> deviations_of(const Equations& here, const std:
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
                                                std::stop_token stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
-    constexpr double kSmall = 1e-6, kUsualMismatch = 20;
+    constexpr double kSmall = 1e-6, kUsualMismatch = 8;
     Problem problem(record, part);
     const ShapeBounds bounds = shape_bounds(record, start.form.structure);
     Fit fit = start;
@@ -232,8 +248,10 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
     out.fit.model.assign(problem.model.begin(), problem.model.end());
     out.fit.residual.assign(problem.e.begin(), problem.e.end());
     out.fit.sse = problem.e.squaredNorm();
-    out.fit.deviations = deviations_of(here, free, problem.J.cols(), std::max(1.0, out.mismatch / kUsualMismatch));
     const auto gain = fit.form.searched().size();
+    const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
+    out.fit.deviations =
+        deviations_of(here, free, problem.J.cols(), place, std::max(1.0, out.mismatch / kUsualMismatch));
     double squares = 0;
     for (const auto& row : out.fit.deviations) squares += row[gain] * row[gain];
     out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), 1e-300);

@@ -74,8 +74,7 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
     SetPointPart part;
     const Eigen::VectorXd explained = best * coefficient;
     for (const double value : explained) part.u.push_back(value - explained[0]);
-    for (Eigen::Index k = 1; k < best.cols(); ++k)
-        part.filtered.emplace_back(best.col(k).begin(), best.col(k).end());
+    for (Eigen::Index k = 1; k < best.cols(); ++k) part.filtered.emplace_back(best.col(k).begin(), best.col(k).end());
     part.share = std::clamp(1 - least / std::max(total, 1e-300), 0.0, 1.0);
     const double independent = effective_samples({rest.data(), static_cast<std::size_t>(n)});
     const double freedom = std::max(1.0, independent - kFilters - 3);

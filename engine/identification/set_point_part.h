@@ -12,7 +12,7 @@ namespace tunewright {
 /// Laguerre filters of one pole (Wahlberg 1991), the pole that leaves least. The filter needs to be near only: what
 /// it misses makes the instrument weaker, not wrong.
 struct SetPointPart {
-    std::vector<double> u;                     ///< at the samples, from 0 at the first, dimensionless
+    std::vector<double> u;                      ///< at the samples, from 0 at the first, dimensionless
     std::vector<std::vector<double>> filtered;  ///< the set point and its filtered versions, at the samples
     double share = 0;                           ///< of the variance of u
     double strength = 0;                        ///< F ratio, rest counted as the independent samples it is worth

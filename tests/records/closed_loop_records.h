@@ -97,21 +97,25 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     const int fine = 10;
     const double step = spacing / fine;
     const int clock_kind = dice.whole(0, 5);
-    const int clock = clock_kind <= 2 ? fine : clock_kind == 3 ? fine * dice.whole(2, 6) : clock_kind == 4 ? 2 : fine / 2;
+    const int clock = clock_kind <= 2   ? fine
+                      : clock_kind == 3 ? fine * dice.whole(2, 6)
+                      : clock_kind == 4 ? 2
+                                        : fine / 2;
     const double h = clock * step;
     const double y_filter = dice.chance(0.2) ? dice.between(0.1, 0.5) * plant.L + h : 0;
 
     // lambda tuning, from brisk to sluggish, of plant, clock and filter together
     const double lag = plant.T1 + plant.T2 / 2, dead = plant.L + plant.T2 / 2 + 1.5 * h + y_filter;
     const double lambda = std::max(dice.log_between(0.8, 4) * dead, 0.1 * plant.T1);
+    double weight = dice.chance(0.25) ? 0 : 1;
     const int kind = dice.whole(0, 9);  // 0, 1: P; 2 to 7: PI; 8, 9: PID
     const double rate = plant.integrating ? plant.K : plant.K / plant.T1;
     out.Kp = 1 / (rate * (lambda + dead));
     out.Ti = plant.integrating ? 4 * (lambda + dead) : std::min(lag, 4 * (lambda + dead));
-    if (kind <= 1) out.Ti = 0, out.Kp *= 0.8;
+    if (kind <= 1) out.Ti = 0, out.Kp *= 0.8, weight = 1;
     if (kind >= 8) out.Td = dice.between(0.1, 0.3) * std::max(plant.L, plant.T2);
     const double filter = out.Td / dice.between(3, 8) + h;
-    const double weight = dice.chance(0.25) ? 0 : 1;
+
     const bool on_error = dice.chance(0.3);  // derivative action on the error, else on y
 
     // magnitudes: y moves by about `swing`
@@ -154,8 +158,7 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
             double seen = y_here + noise * dice.normal();
             if (y_grid > 0 && seen_rounded) seen = y_grid * std::round(seen / y_grid);
             logged = seen;
-            if (y_filter > 0)
-                filtered += -std::expm1(-h / y_filter) * (seen - filtered), seen = filtered;
+            if (y_filter > 0) filtered += -std::expm1(-h / y_filter) * (seen - filtered), seen = filtered;
             const double error = r - seen;
             const double change = -(seen - before) + (on_error ? r - r_before : 0);
             slope += (h / (filter + h)) * (change / h - slope);
@@ -178,8 +181,11 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
         }
         y_true = run.advance(u + load);
     }
-    out.what = "seed " + std::to_string(seed) + (kind <= 1 ? " P" : kind <= 7 ? " PI" : " PID") + " clock " +
-               std::to_string(clock) + "/10 T1/dt " + std::to_string(plant.T1 / spacing) + " L/T1 " +
+    out.what = "seed " + std::to_string(seed) +
+               (kind <= 1   ? " P"
+                : kind <= 7 ? " PI"
+                            : " PID") +
+               " clock " + std::to_string(clock) + "/10 T1/dt " + std::to_string(plant.T1 / spacing) + " L/T1 " +
                std::to_string(plant.L / plant.T1) + (plant.integrating ? " integrating" : "") + " rows " +
                std::to_string(rows) + " noise " + std::to_string(noise / swing) + " wander " +
                std::to_string(wander / swing) + " weight " + std::to_string(weight) + " own_noise " +
@@ -189,8 +195,8 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     return out;
 }
 
-/// A test in which nothing moves u in answer to y: steps, staircases, bumps, ramps, pseudo-random levels, sines, heaters
-/// by pulse width, slewing and lagging valves; with noise, drift, rounding, dead bands, uneven times.
+/// A test in which nothing moves u in answer to y: steps, staircases, bumps, ramps, pseudo-random levels, sines,
+/// heaters by pulse width, slewing and lagging valves; with noise, drift, rounding, dead bands, uneven times.
 inline SimulatedTest open_loop_test(unsigned seed) {
     Dice dice(seed + 7'000'000u);
     SimulatedTest out;
@@ -200,8 +206,9 @@ inline SimulatedTest open_loop_test(unsigned seed) {
     const LoopPlant plant = out.plant = random_plant(dice, spacing * dice.log_between(0.1, 1.5));
     const double size = dice.log_between(0.1, 50);
     const int shape = dice.whole(0, 12);
-    static const char* const kNames[] = {"step",  "staircase", "bump",      "doublet", "prbs",  "levels", "ramp",
-                                         "sine",  "multisine", "chirp",     "pwm",     "stairs and ramps", "slow pwm"};
+    static const char* const kNames[] = {"step",    "staircase", "bump",      "doublet", "prbs", "levels",
+                                         "ramp",    "sine",      "multisine", "chirp",   "pwm",  "stairs and ramps",
+                                         "slow pwm"};
     const double clock = spacing * std::round(dice.log_between(1, 60));
     double level = 0, next = end * dice.between(0.02, 0.2);
     const double first = next;
@@ -221,7 +228,8 @@ inline SimulatedTest open_loop_test(unsigned seed) {
     const double y_grid = dice.chance(0.3) ? swing * dice.log_between(0.001, 0.05) : 0;
     const double band = dice.chance(0.1) ? 0.1 * size : 0;  // of a sticking valve, downstream of u
     const bool uneven = dice.chance(0.2), late = dice.chance(0.2);
-    const double load = dice.chance(0.15) ? size * dice.between(-0.4, 0.4) : 0, load_time = end * dice.between(0.3, 0.9);
+    const double load = dice.chance(0.15) ? size * dice.between(-0.4, 0.4) : 0,
+                 load_time = end * dice.between(0.3, 0.9);
     const double wander = dice.chance(0.2) ? swing * dice.log_between(0.005, 0.1) : 0;
     const double keep = std::exp(-step / (plant.T1 * dice.log_between(0.2, 5)));
 
@@ -238,8 +246,10 @@ inline SimulatedTest open_loop_test(unsigned seed) {
                     level += size / steps * dice.between(0.3, 1) * (shape == 1 || dice.chance(0.7) ? 1 : -1);
                     next += (end - first) / steps, ++moves;
                 }
-                if (shape == 1) target = level;
-                else target += std::clamp(level - target, -size * step / (0.1 * end), size * step / (0.1 * end));
+                if (shape == 1)
+                    target = level;
+                else
+                    target += std::clamp(level - target, -size * step / (0.1 * end), size * step / (0.1 * end));
                 break;
             case 2: target = t >= first && t < first + 0.3 * end ? size : 0; break;
             case 3: target = t < first ? 0 : t < first + 0.2 * end ? size : t < first + 0.4 * end ? -size : 0; break;
@@ -262,9 +272,12 @@ inline SimulatedTest open_loop_test(unsigned seed) {
                 target = (t - (next - period)) < duty * period ? size : 0;
             }
         }
-        if (slew > 0) u += std::clamp(target - u, -slew * step, slew * step);
-        else if (lag > 0) u += -std::expm1(-step / lag) * (target - u);
-        else u = target;
+        if (slew > 0)
+            u += std::clamp(target - u, -slew * step, slew * step);
+        else if (lag > 0)
+            u += -std::expm1(-step / lag) * (target - u);
+        else
+            u = target;
         if (wander > 0) wandering = keep * wandering + std::sqrt(1 - keep * keep) * wander * dice.normal();
         if (i >= next_row) {
             const double white = dice.normal();

@@ -84,7 +84,7 @@ struct Refined {
     std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
-constexpr double kMisfit = 25, kUnknownGain = 0.5;
+constexpr double kMisfit = 25, kUnknownGain = 0.5, kNoError = 1e-5, kFits = 99;
 
 std::optional<Refined> refined(Search search, const CleanRecord& record, const SetPointPart& part,
                                std::stop_token stop) {
@@ -100,7 +100,9 @@ std::optional<Refined> refined(Search search, const CleanRecord& record, const S
         if (!better) continue;
         fit = std::move(better->fit);
         out.search.percents[i] = fit_percent(record, fit);
-        out.mismatch[i] = better->mismatch, out.gain_error[i] = better->gain_error;
+        // A gain without any error is one that nothing in the equations depends on.
+        const bool empty = better->gain_error < kNoError && out.search.percents[i] < kFits;
+        out.mismatch[i] = better->mismatch, out.gain_error[i] = empty ? 1 : better->gain_error;
     }
     return out;
 }
@@ -110,21 +112,20 @@ bool usable(const Refined& r, std::size_t i) {
     return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain;
 }
 
-/// Where the structure that least squares preferred does not do, the one whose residual the set point explains least.
+/// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
+/// or leaves plainly more.
 void choose_again(Refined& r) {
-    constexpr double kPrice = 3;
-    if (usable(r, r.chosen())) return;
-    double least = 0;
-    int best = -1;
+    constexpr double kPrice = 3, kPlainly = 6;
+    const auto cost = [&](std::size_t i) { return r.mismatch[i] + kPrice * r.search.fits[i].form.parameters(); };
+    std::size_t best = r.chosen();
     for (std::size_t i = 0; i < r.search.fits.size(); ++i) {
-        const double cost = r.mismatch[i] + kPrice * r.search.fits[i].form.parameters();
-        if (!usable(r, i) || (best >= 0 && cost >= least)) continue;
-        best = static_cast<int>(i), least = cost;
+        if (usable(r, i) && (!usable(r, best) || cost(i) < cost(best))) best = i;
     }
-    if (best < 0) return;
-    r.search.choice = {best, std::string(name_of(r.search.fits[static_cast<std::size_t>(best)].form.structure)) +
-                                 ": of the structures whose gain the set point's moves tell, the one that leaves least "
-                                 "of what they did."};
+    if (best == r.chosen() || (usable(r, r.chosen()) && cost(r.chosen()) < cost(best) + kPlainly)) return;
+    r.search.choice = {static_cast<int>(best),
+                       std::string(name_of(r.search.fits[best].form.structure)) +
+                           ": of the structures whose gain the set point's moves tell, the one that leaves least of "
+                           "what they did."};
 }
 
 /// The gain's standard error over its size; 0 where it is not known.
@@ -143,6 +144,15 @@ double gain_error(const IdentifiedModel& model) {
         },
         model.plant);
     return error->second / std::max(std::abs(K), 1e-300);
+}
+
+/// As the inverse of a proportional controller does.
+bool answers_at_once(const IdentifiedModel& model) {
+    constexpr double kRows = 2;
+    return std::any_of(model.candidates.begin(), model.candidates.end(), [&](const Candidate& candidate) {
+        const auto* lag = std::get_if<Fopdt>(&candidate.plant);
+        return lag != nullptr && std::abs(lag->T) + lag->L < kRows * model.data_quality.sample_time;
+    });
 }
 
 }  // namespace
@@ -213,7 +223,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
 }
 
 void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
-    constexpr double kHardly = 0.005, kPlainly = 0.15, kLess = 0.8, kUnknown = 0.5;
+    constexpr double kHardly = 0.005, kPlainly = 0.15, kUnknown = 0.33, kNearly = 0.95, kSomewhat = 0.01;
     const double restless = restlessness(beginning(full));
     if (restless < kHardly) return;
     const CleanRecord record = every_few(full, kMostFitted);
@@ -221,7 +231,8 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     const double left = 1 - model.fit_percent / 100, unexplained = left * left;
     if (!law) return;
     const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
-    const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1);
+    const bool at_once = by_law < kNearly && restless > kSomewhat && answers_at_once(model);
+    const bool in_doubt = error > kUnknown || (restless > kPlainly && by_law < 1) || at_once;
     if (!in_doubt) return;
     LoopRecord loop;
     loop.told.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +

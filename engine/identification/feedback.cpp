@@ -222,6 +222,22 @@ double told_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
     return errors.ratio();
 }
 
+/// A logger that writes u after its answer shows y and u of the same row as a controller would. The law of a plant is
+/// a lag with a gain; that of a controller has no lag of y, or, with integral action, no gain from u to y.
+bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
+    constexpr double kLag = 0.2, kGain = 0.7;
+    const int n = r.samples() - 2;
+    Eigen::MatrixXd X(n, 3);
+    Eigen::VectorXd z(n);
+    for (int i = 0; i < n; ++i) {
+        const int j = i + 2;
+        z[i] = r.y[j] - r.y[j - 1];
+        X.row(i) << r.y[j - 1] - r.y[j - 2], u[j] - u[j - 1], u[j - 1] - u[j - 2];
+    }
+    const Eigen::VectorXd c = regress(X, z).coefficient;
+    return c[0] > kLag && std::abs(c[1] + c[2]) > kGain * std::abs(c[1]);
+}
+
 bool on_few_levels(std::vector<double> u) {
     constexpr double kSame = 1e-3;
     std::sort(u.begin(), u.end());
@@ -295,7 +311,7 @@ double restlessness(const CleanRecord& r) {
     constexpr double kOften = 0.1;
     const std::vector<double> u = input_at_samples(r);
     const std::optional<Moves> moves = possible_moves(r, u);
-    if (!moves || moves->size() < kOften * r.samples()) return 0;
+    if (!moves || moves->size() < kOften * r.samples() || is_law_of_lag(r, u)) return 0;
     const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
     return compare(p.by_u, p.by_u).a / std::max(deviation(u), 1e-150);
 }
@@ -324,6 +340,7 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
         const double told = told_by_news(moves, p, y);
         if (!exact && 1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
     }
+    if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
     Feedback feedback{same.a, at_once ? same.b : past.b, at_once, {}};
     if (same.ratio() < kLawIsPlain) feedback.outside = outside_moves(r, moves, p);
     return feedback;

@@ -37,7 +37,8 @@ std::vector<double> input_at_samples(const CleanRecord& record);
 std::optional<Feedback> find_feedback(const CleanRecord& record);
 
 /// How restlessly u moves: the error of predicting its moves from its own past over u's standard deviation. 0 where u
-/// moves as tests do: in fewer than a tenth of the rows, on ramps, on two or three levels, as a relay.
+/// moves as tests do: in fewer than a tenth of the rows, on ramps, on two or three levels, as a relay; or where y
+/// follows u of the same row as a lag does.
 double restlessness(const CleanRecord& record);
 
 }  // namespace tunewright

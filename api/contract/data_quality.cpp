@@ -59,6 +59,22 @@ const Description<FalseReadings>& outliers_contract() {
     return description;
 }
 
+const Description<ClosedLoop>& closed_loop_contract() {
+    static const auto description = [] {
+        Description<ClosedLoop> d("ClosedLoop", "A controller moved u in answer to y; there only where it did.");
+        d.field("evidence", &ClosedLoop::evidence, sentence(), "What shows it, with its figures.")
+            .field(
+                "used", &ClosedLoop::used,
+                only_answered(choice<LoopExcitation>({{"set_point", LoopExcitation::set_point},
+                                                      {"outside_moves", LoopExcitation::outside_moves},
+                                                      {"none", LoopExcitation::none}})),
+                "What the model rests on: moves of the set point (r), moves of u that y does not explain, or neither.")
+            .field("share", &ClosedLoop::share, size(), "Of u's variance that these moves explain, 0 to 1.");
+        return d;
+    }();
+    return description;
+}
+
 }  // namespace
 
 const Description<DataQuality>& quality_contract() {
@@ -94,6 +110,8 @@ const Description<DataQuality>& quality_contract() {
                                                    [](const auto& levels) { return levels.empty(); }),
                    "Levels at which y is cut off flat.")
             .field("outliers", &Q::outliers, maybe(answer(outliers_contract())), "Readings that were left out.")
+            .field("closed_loop", &Q::closed_loop, maybe(answer(closed_loop_contract())),
+                   "Whether a controller moved u in answer to y, and what was done about it.")
             .field("notes", &Q::notes, list_of(sentence()), "Sentences.");
         return d;
     }();

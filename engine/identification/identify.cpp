@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/closed_loop.h"
 #include "engine/identification/data_quality.h"
 #include "engine/identification/diagnosis.h"
 #include "engine/identification/input_limits.h"
@@ -341,12 +342,15 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
     const Expected<CleanRecord> clean = clean_record(record);
     if (!clean) return clean.error();
     if (auto error = refuse_late_step(*clean)) return *error;
+    const Expected<std::optional<LoopRecord>> loop = find_loop(*clean, record);
+    if (!loop) return loop.error();
     const bool by_formula = options.method == IdentifyMethod::relay_fourier;
-    Expected<IdentifiedModel> model = by_formula ? by_relay_formulas(*clean, options)
-                                      : options.method == IdentifyMethod::two_point
-                                          ? by_two_points(*clean, options)
-                                          : by_fitting(record, *clean, options, control);
+    Expected<IdentifiedModel> model = by_formula                                    ? by_relay_formulas(*clean, options)
+                                      : options.method == IdentifyMethod::two_point ? by_two_points(*clean, options)
+                                      : *loop ? identify_in_loop(*clean, **loop, options.model, control)
+                                              : by_fitting(record, *clean, options, control);
     if (!model) return model;
+    *loop ? tell_loop(**loop, *model) : doubt_open_loop(*clean, *model);
     add_excited_band(*clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});

@@ -70,6 +70,16 @@ struct FalseReadings {
     std::vector<int> rows;  ///< the first 20, as the notes count rows
 };
 
+/// What else than feedback moved u in a loop's record, and was used.
+enum class LoopExcitation { set_point, outside_moves, none };
+
+/// A controller moved u in answer to y.
+struct ClosedLoop {
+    std::string evidence;  ///< one sentence
+    LoopExcitation used = LoopExcitation::none;
+    double share = 0;  ///< of u's variance that it explains, 0 to 1
+};
+
 /// What was found in the record and what was done about it. Named figures, sentences beside them. In the record's
 /// units.
 struct DataQuality {
@@ -91,6 +101,7 @@ struct DataQuality {
     int repeated_times = 0, backward_times = 0;
     std::vector<Saturation> saturation;
     std::optional<FalseReadings> outliers;
+    std::optional<ClosedLoop> closed_loop;
     std::vector<std::string> notes;
 };
 
@@ -130,6 +141,8 @@ struct IdentifiedModel {
 ///   gives standard errors.
 /// - Standard errors and covariance count correlated residuals as the few independent samples they are worth, and what
 ///   rounding of y does.
+/// - Where a controller moves u in answer to y, the model rests on what moves of the set point (column r, or plain
+///   kicks of u) do to u and y (closed_loop.h); without any, the record is refused. Warning closed-loop.
 /// - `fit` has at most 2,000 points; of more than 100,000 samples means over blocks are fitted. Warning codes:
 ///   diagnosis.h, model_answer.cpp, data_quality.h.
 ///

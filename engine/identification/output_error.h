@@ -59,6 +59,9 @@ struct Fit {
     std::vector<std::vector<double>> J;
     bool determined = false;  ///< the gain's column is independent of the others
     int iterations = 0;
+    /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
+    /// estimator than least squares knows it. Empty: J tells it.
+    std::vector<std::vector<double>> deviations;
 };
 
 /// The data of a least-squares problem. The referred record and anchors must outlive it.

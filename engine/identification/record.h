@@ -12,7 +12,7 @@ namespace tunewright {
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
-/// hold). Lengths are equal.
+/// hold). Lengths are equal; that of r too, where it is given.
 struct Record {
     std::vector<double> t;  ///< time in the user's unit, any start
     std::vector<double> u;  ///< controller output (plant input)

@@ -160,6 +160,14 @@ Eigen::MatrixXd deviations_of(const Fit& fit, std::span<const double> t, double 
     return deviations;
 }
 
+Eigen::MatrixXd given_deviations(const Fit& fit) {
+    const int m = fit.form.parameters();
+    Eigen::MatrixXd deviations(static_cast<Eigen::Index>(fit.deviations.size()), m);
+    for (std::size_t k = 0; k < fit.deviations.size(); ++k)
+        deviations.row(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::RowVectorXd>(fit.deviations[k].data(), m);
+    return deviations;
+}
+
 /// By Geyer's sum, for up to a few thousand samples.
 double summed_correlation_time(std::span<const double> series) {
     const int n = static_cast<int>(series.size());
@@ -220,7 +228,8 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
-    const Eigen::MatrixXd deviations = deviations_of(fit, record.t, quantisation, noise);
+    const Eigen::MatrixXd deviations =
+        fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise) : given_deviations(fit);
     const std::vector<int> places = fit.form.searched();
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

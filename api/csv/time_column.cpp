@@ -1,5 +1,6 @@
 #include "api/csv/time_column.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tunewright::api {
@@ -23,7 +24,23 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Fou
         return;
     }
     factor_ = 1 / *answer;
+    note_short_clock(text, layout, *columns.at[kTimeRole]);
     find_order(text, layout, columns);
+}
+
+// "00:05" may also be minutes and seconds.
+void TimeColumn::note_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column) {
+    CsvLines lines(text, layout);
+    CsvLine line;
+    while (lines.next(line)) {
+        if (column >= line.cells.size() || is_missing(line.cells[column])) continue;
+        const std::string_view cell = line.cells[column];
+        const auto stamp = read_time_stamp(cell);
+        if (stamp && !stamp->has_date && std::count(cell.begin(), cell.end(), ':') == 1)
+            notes_.push_back("Times such as " + quoted(cell) + " are read as hours and minutes; write 0:" +
+                             std::string(cell) + " for minutes and seconds.");
+        return;
+    }
 }
 
 // Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
@@ -95,7 +112,9 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     if (!seconds_per(unit) && column < layout.headings.size() &&
         match(split_heading(layout.headings[column]), kTimeRole)) {
         const std::string name = split_heading(layout.headings[column]).name;
-        if (name == "seconds" || name == "sec" || name == "ms" || name == "minutes") unit = name;
+        if (seconds_per(name) && name != "m" && name != "d") unit = name;
+        if (name == "millis" || name == "millis()") unit = "ms";
+        if (name == "micros") unit = "us";
     }
     if (!seconds_per(unit)) unit = profile.suffix;
     bool by_size = false;

@@ -260,12 +260,85 @@ bool is_data_of(const CsvLine& line, std::size_t usual, std::size_t width) {
     return is_data(line, usual) || (width > usual && is_data(line, width));
 }
 
-void find_pairs(std::string_view text, CsvLayout& layout) {
+CsvLayout pairs_layout(std::string_view text) {
+    CsvLayout layout;
     layout.headings = pair_keys(text);
-    if (layout.headings.empty()) return;
-    layout.pairs = true;
+    layout.pairs = !layout.headings.empty();
     layout.width = layout.headings.size();
     layout.data_line = 1;
+    return layout;
+}
+
+// The separator that a first line such as sep=; tells, which is then taken off.
+std::optional<char> told_separator(std::vector<Head>& heads) {
+    constexpr std::string_view kToldPrefix = "sep=";
+    if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) != 0) return std::nullopt;
+    const std::string_view line = heads.front().content;
+    const std::size_t sign = line.find('=') + 1;
+    const char separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
+    heads.erase(heads.begin());
+    return separator;
+}
+
+// LabVIEW's files end their head with this line.
+void drop_labview_head(std::vector<Head>& heads) {
+    for (std::size_t i = heads.size(); i-- > 0;) {
+        if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
+        heads.erase(heads.begin(), heads.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return;
+    }
+}
+
+// The headings in the comments right above the data, where there are no others.
+void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::const_iterator data,
+                             CsvLayout& layout) {
+    constexpr int kMostComments = 3;
+    for (int n = 0; n < kMostComments && layout.headings.empty() && data != heads.begin(); ++n) {
+        if (!(--data)->comment) return;
+        const auto found = commented_headings(*data, layout);
+        if (!found) continue;
+        take_headings(*found, layout);
+        layout.commented = true;
+        layout.narrow_heading_line = 0;
+    }
+}
+
+CsvLayout table_layout(std::string_view text) {
+    CsvLayout layout;
+    std::vector<Head> heads = first_lines(text);
+    const auto told = told_separator(heads);
+    drop_labview_head(heads);
+    layout.separator = told ? *told : find_separator(heads);
+
+    std::vector<CsvLine> lines;
+    for (const Head& head : heads) {
+        if (head.comment) continue;
+        lines.push_back({head.number, {}});
+        split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
+    }
+    layout.lines_of_text = static_cast<int>(lines.size());
+    const std::size_t usual = layout.width = usual_width(lines);
+    widen_to_headings(lines, layout);
+    const auto data = std::find_if(lines.begin(), lines.end(),
+                                   [&](const CsvLine& line) { return is_data_of(line, usual, layout.width); });
+    const std::vector<CsvLine> rows(data, lines.end());
+    find_headings({lines.begin(), data}, rows, layout);
+    if (data != lines.end()) {
+        layout.data_line = data->number;
+        for (const std::string_view cell : data->cells) layout.first.emplace_back(cell);
+        const auto head =
+            std::find_if(heads.begin(), heads.end(), [&](const Head& h) { return h.number == data->number; });
+        layout.data_at = head->at;
+        find_commented_headings(heads, head, layout);
+    }
+    if (!layout.headings.empty()) layout.width = layout.headings.size();
+
+    DecimalSignFinder finder;
+    for (const CsvLine& row : rows) {
+        for (const std::string_view cell : row.cells) finder.look_at(cell);
+    }
+    layout.sign = finder.found();
+    return layout;
 }
 
 // "+------+-----+" and "|---|---|".
@@ -299,65 +372,12 @@ bool is_comment(std::string_view content) {
 }
 
 CsvLayout find_layout(std::string_view text) {
-    CsvLayout layout;
-    find_pairs(text, layout);
-    if (layout.pairs) return layout;
-    std::vector<Head> heads = first_lines(text);
-    constexpr std::string_view kToldPrefix = "sep=";
-    bool told = false;
-    if (!heads.empty() && lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) == 0) {
-        const std::string_view line = heads.front().content;
-        const std::size_t sign = line.find('=') + 1;
-        layout.separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
-        told = true;
-        heads.erase(heads.begin());
-    }
-    // LabVIEW's files end their head with this line.
-    for (std::size_t i = heads.size(); i-- > 0;) {
-        if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
-        heads.erase(heads.begin(), heads.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        break;
-    }
-    if (!told) layout.separator = find_separator(heads);
-
-    std::vector<CsvLine> lines;
-    for (const Head& head : heads) {
-        if (head.comment) continue;
-        lines.push_back({head.number, {}});
-        split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
-    }
-    layout.lines_of_text = static_cast<int>(lines.size());
-    const std::size_t usual = layout.width = usual_width(lines);
-    widen_to_headings(lines, layout);
-    const auto data = std::find_if(lines.begin(), lines.end(),
-                                   [&](const CsvLine& line) { return is_data_of(line, usual, layout.width); });
-    const std::vector<CsvLine> rows(data, lines.end());
-    find_headings({lines.begin(), data}, rows, layout);
-    if (data != lines.end()) {
-        layout.data_line = data->number;
-        for (const std::string_view cell : data->cells) layout.first.emplace_back(cell);
-        const auto head =
-            std::find_if(heads.begin(), heads.end(), [&](const Head& h) { return h.number == data->number; });
-        layout.data_at = head->at;
-        constexpr int kMostComments = 3;
-        auto comment = head;
-        for (int n = 0; n < kMostComments && layout.headings.empty() && comment != heads.begin(); ++n) {
-            if (!(--comment)->comment) break;
-            auto found = commented_headings(*comment, layout);
-            if (!found) continue;
-            take_headings(*found, layout);
-            layout.commented = true;
-            layout.narrow_heading_line = 0;
-        }
-    }
-    if (!layout.headings.empty()) layout.width = layout.headings.size();
-
-    DecimalSignFinder finder;
-    for (auto line = data; line != lines.end(); ++line) {
-        for (const std::string_view cell : line->cells) finder.look_at(cell);
-    }
-    layout.sign = finder.found();
-    return layout;
+    CsvLayout table = table_layout(text);
+    const std::vector<std::string_view> headings(table.headings.begin(), table.headings.end());
+    // A remark such as "Kp=1 Ki=2" in the rows of a table makes them no log of pairs.
+    if (table.data_line > 0 && roles_named(headings) > 1) return table;
+    CsvLayout pairs = pairs_layout(text);
+    return pairs.pairs ? pairs : table;
 }
 
 CsvLines::CsvLines(std::string_view text, const CsvLayout& layout)

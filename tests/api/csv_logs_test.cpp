@@ -353,6 +353,13 @@ TEST(Csv, AClockOfTwoPartsIsSaidToBeHoursAndMinutes) {
     EXPECT_THAT(record.notes, Contains(HasSubstr("\"00:05\" are read as hours and minutes")));
 }
 
+TEST(Csv, RemarksThatNameSettingsMakeNoLogOfPairs) {
+    const auto read = read_csv_record("time,valve,temp,remark\n" + written("{t},{u},{y},Kp=1 Ki=2 Kd=0"), {});
+    ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
+    EXPECT_EQ(std::get<CsvRecord>(read).u.back(), 50);
+    EXPECT_NEAR(std::get<CsvRecord>(read).y.back(), samples().back().y, 0.01);
+}
+
 TEST(Csv, PlainTablesGetNoRemarks) {
     EXPECT_THAT(std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n1,1,3\n", {})).notes, IsEmpty());
 }

@@ -9,8 +9,6 @@
 namespace tunewright::api {
 namespace {
 
-constexpr int kProfiledLines = 5000;
-
 void look_at(std::string_view cell, DecimalSign sign, double& last, ColumnProfile& profile) {
     if (is_missing(cell)) {
         ++profile.missing;

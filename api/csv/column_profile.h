@@ -25,7 +25,9 @@ struct ColumnProfile {
     std::string first_text;                   ///< of the texts that are neither number nor stamp nor missing
 };
 
-/// Of the first 5,000 lines.
+constexpr int kProfiledLines = 5000;
+
+/// Of the first kProfiledLines lines.
 std::vector<ColumnProfile> profiles(std::string_view text, const CsvLayout& layout);
 
 /// Whether two columns of times differ by other than a constant: local time and UTC do not.

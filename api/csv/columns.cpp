@@ -184,7 +184,7 @@ private:
 
     void read_input_and_output() {
         Fits u = wanted(kInputRole) ? fits(kInputRole) : Fits{}, y = wanted(kOutputRole) ? fits(kOutputRole) : Fits{};
-        if (layout_.pairs || chosen_[kInputRole] || chosen_[kOutputRole]) keep_partners(u, y);
+        keep_partners(u, y);
         if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
         if (wanted(kInputRole)) take_fitting(kInputRole, u);
         if (wanted(kOutputRole)) take_fitting(kOutputRole, y);
@@ -192,34 +192,47 @@ private:
         refuse_strangers();
     }
 
-    // "heater_bed temp" belongs to "heater_bed pwm": the other one of a chosen column, and of several heaters in a log
-    // the only one that is driven.
+    // Of what names alone leave open: what moves, and what belongs together by its names. Tags of a table belong
+    // together where one of them was chosen; "heater_bed.temp" of a log, and "Temperature 1", anyway.
     void keep_partners(Fits& u, Fits& y) {
-        const auto beside = [&](std::size_t column, std::vector<std::size_t>& fits) {
-            const std::string own = stem(facts_.heading(column));
-            std::vector<std::size_t> kept;
-            for (const std::size_t i : fits) {
-                if (!own.empty() && stem(facts_.heading(i)) == own) kept.push_back(i);
-            }
-            if (kept.size() == 1) fits = std::move(kept);
+        keep_moving(u);
+        keep_moving(y);
+        const bool chosen = chosen_[kInputRole] || chosen_[kOutputRole];
+        const auto known = [&](Role role, const Fits& fits) {
+            return chosen_[role]           ? chosen_[role]
+                   : fits.best.size() == 1 ? std::optional(fits.best.front())
+                                           : std::nullopt;
         };
-        if (chosen_[kInputRole] && y.best.size() > 1) beside(*chosen_[kInputRole], y.best);
-        if (chosen_[kOutputRole] && u.best.size() > 1) beside(*chosen_[kOutputRole], u.best);
-        if (!layout_.pairs || u.best.size() < 2) return;
-        std::vector<std::size_t> driven;
-        for (const std::size_t i : u.best) {
-            if (profiles_[i].changes > 0) driven.push_back(i);
+        for (const auto same : {stem, number_behind}) {
+            if (same == stem && !layout_.pairs && !chosen) continue;
+            if (const auto column = known(kInputRole, u)) keep_beside(*column, same, y);
+            if (const auto column = known(kOutputRole, y)) keep_beside(*column, same, u);
         }
-        if (driven.size() != 1) return;
-        std::vector<std::size_t> rest;
-        for (const std::size_t i : u.best) {
-            if (i != driven.front()) rest.push_back(i);
+    }
+
+    void keep_beside(std::size_t column, std::string (*same)(const Heading&), Fits& fits) const {
+        const std::string own = same(facts_.heading(column));
+        std::vector<std::size_t> kept, rest;
+        for (const std::size_t i : fits.best) (same(facts_.heading(i)) == own ? kept : rest).push_back(i);
+        if (own.empty() || kept.size() != 1 || rest.empty()) return;
+        fits.best = std::move(kept);
+        fits.others.insert(fits.others.end(), rest.begin(), rest.end());
+    }
+
+    // What stands still is neither what was driven nor what answered.
+    void keep_moving(Fits& fits) {
+        if (fits.best.size() < 2) return;
+        std::vector<std::size_t> moving, rest;
+        int lines = 0;
+        for (const std::size_t i : fits.best) {
+            (profiles_[i].changes > 0 ? moving : rest).push_back(i);
+            lines = std::max(lines, profiles_[i].numbers);
         }
-        found_.notes.push_back(facts_.shown(rest) +
-                               (rest.size() == 1 ? " does not move and was" : " do not move and were") +
-                               " passed over.");
-        u.best = driven;
-        if (y.best.size() > 1) beside(driven.front(), y.best);
+        if (moving.empty() || rest.empty()) return;
+        const std::string until = lines < kProfiledLines ? "" : " in the first " + std::to_string(lines) + " lines";
+        found_.notes.push_back(facts_.shown(rest) + (rest.size() == 1 ? " does" : " do") + " not move" + until +
+                               " and " + (rest.size() == 1 ? "was" : "were") + " passed over.");
+        fits.best = std::move(moving);
     }
 
     // In a log of several heaters the one's temperature does not answer the other's power.
@@ -316,13 +329,9 @@ private:
             }
         }
         for (const Role role : {kOutputRole, kInputRole}) {
-            if (r.best.size() < 2 || !found_.at[role]) continue;
-            const std::string own = stem(facts_.heading(*found_.at[role]));
-            std::vector<std::size_t> kept;
-            for (const std::size_t i : r.best) {
-                if (!own.empty() && stem(facts_.heading(i)) == own) kept.push_back(i);
+            for (const auto same : {stem, number_behind}) {
+                if (found_.at[role]) keep_beside(*found_.at[role], same, r);
             }
-            if (!kept.empty()) r.best = kept;
         }
         if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
         if (r.best.empty()) return;

@@ -528,6 +528,13 @@ std::string stem(const Heading& heading) {
     return out;
 }
 
+std::string number_behind(const Heading& heading) {
+    if (heading.words.empty()) return {};
+    const std::string& last = heading.words.back();
+    const std::size_t at = last.find_last_not_of("0123456789");
+    return at == last.npos ? last : last.substr(at + 1);
+}
+
 bool is_beside_the_point(const Heading& heading) {
     static constexpr std::string_view kBeside[] = {"quality", "status",  "mode",    "alarm",   "validity", "qual",
                                                    "comment", "outside", "outdoor", "ambient", "event",    "auto",

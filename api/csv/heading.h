@@ -57,4 +57,7 @@ bool is_term_letter(const Heading& heading);
 /// What the heading says before the word that tells the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
 std::string stem(const Heading& heading);
 
+/// "heater 1" and "Temperature 1": the number behind the last word; "" for none.
+std::string number_behind(const Heading& heading);
+
 }  // namespace tunewright::api

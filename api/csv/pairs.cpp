@@ -151,6 +151,16 @@ std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
         out.push_back({"time", line.substr(at, end - at)});
         return end;
     }
+    // ESP-IDF: "I (1300) tag: ...", in milliseconds.
+    if (line.size() > at + 4 && std::string_view("IWEDV").find(line[at]) != line.npos &&
+        line.substr(at + 1, 2) == " (") {
+        const std::string_view number = number_at(line, at + 3);
+        const std::size_t end = at + 3 + number.size();
+        if (!number.empty() && end < line.size() && line[end] == ')') {
+            out.push_back({"time_ms", number});
+            return end + 1;
+        }
+    }
     constexpr std::string_view kStats = "Stats ";
     const bool stats = line.substr(at, kStats.size()) == kStats;
     if (stats) at += kStats.size();
@@ -174,7 +184,7 @@ std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
 void take_time_behind(std::string_view rest, std::vector<Pair>& out) {
     constexpr std::size_t kShortest = 10;
     rest = trimmed(rest);
-    if (rest.size() < kShortest || out.empty() || out.front().key == "time") return;
+    if (rest.size() < kShortest || out.empty() || out.front().key.starts_with("time")) return;
     if (std::all_of(rest.begin(), rest.end(), is_digit)) out.push_back({"time", rest});
 }
 
@@ -260,7 +270,7 @@ std::vector<std::string> pair_keys(std::string_view text) {
         stats += stat ? 1 : 0;
         split_pairs(content, pairs);
         const auto numbers = std::count_if(pairs.begin(), pairs.end(), [](const Pair& pair) {
-            return pair.key != "time" && pair.key != "number in front";
+            return pair.key != "time" && pair.key != "time_ms" && pair.key != "number in front";
         });
         if (numbers < 2) continue;
         ++with_pairs;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/number_text.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -125,6 +127,7 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
         }
     }
     const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
+    if (!given && !options.time_unit_given) note_unknown_unit(profile, options);
     if (!given || !answer) return;
     if (by_size)
         notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
@@ -133,6 +136,16 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     factor_ = *given / *answer;
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit +
                      (options.time_unit_given ? "." : "; set units.time to keep them."));
+}
+
+// A number of milliseconds is read as seconds where nobody tells its unit; a usual spacing of seconds is no reason to
+// ask.
+void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
+    constexpr double kUsual = 5;
+    if (profile.changes < 1 || !profile.rises || profile.least_step < kUsual) return;
+    notes_.push_back("The file tells no unit of time: the times are read as " + options.time_unit + ", " +
+                     tunewright::text(profile.least_step) +
+                     " or more apart. Name the column time_ms, or set units.time, if they are others.");
 }
 
 std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {

@@ -231,6 +231,10 @@ const std::vector<Log> kLogs = {
     {"set_point_of_the_same_tag", "Time,TIC101.PV,TIC101.SP,TIC101.OP,TIC102.SP\n" + written("{t},{y},40,{u},50"), 1,
      20, 40},
     {"plant_input_and_output", "time,input,output\n" + written("{t},{u},{y}")},
+    {"board_log", written("I ({ms}) pid: temp: {y}, output: {u}, setpoint: 40"), 1, 20, 40},
+    {"two_heaters_by_number",
+     "Time,Heater 1,Heater 2,Temperature 1,Temperature 2,Set Point 1,Set Point 2\n" + written("{t},{u},0,{y},{e},40,0"),
+     1, 20, 40, "\"Heater 2\" does not move and was passed over."},
     {"drawn_table",
      "+----+----+----+\n| time | u | y |\n+----+----+----+\n" + written("| {t} | {u} | {y} |") + "+----+----+----+\n"},
     {"markdown_table", "| time | u | y |\n|---|---|---|\n" + written("| {t} | {u} | {y} |")},
@@ -269,6 +273,7 @@ TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
         klipper("heater_bed: target=60 temp={y} pwm={duty} extruder: target=200 temp=199.5 pwm=0.5");
     std::string moving = both;
     moving.replace(moving.find("pwm=0.5"), 7, "pwm=0.4");
+    moving.replace(moving.find("temp=199.5"), 10, "temp=199.7");
     EXPECT_THAT(told(moving),
                 HasSubstr("columns/u: Several columns may be u (the controller output): \"heater_bed.pwm\" and "
                           "\"extruder.pwm\". Name one in columns.u."));
@@ -358,6 +363,17 @@ TEST(Csv, RemarksThatNameSettingsMakeNoLogOfPairs) {
     ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
     EXPECT_EQ(std::get<CsvRecord>(read).u.back(), 50);
     EXPECT_NEAR(std::get<CsvRecord>(read).y.back(), samples().back().y, 0.01);
+}
+
+TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
+    const auto notes = [](const CsvOptions& options) {
+        return std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n20,1,3\n40,1,3\n", options)).notes;
+    };
+    EXPECT_THAT(notes({}),
+                Contains(HasSubstr("The file tells no unit of time: the times are read as s, 20 or more apart.")));
+    CsvOptions told;
+    told.time_unit_given = true;
+    EXPECT_THAT(notes(told), IsEmpty());
 }
 
 TEST(Csv, PlainTablesGetNoRemarks) {

@@ -164,9 +164,9 @@ void take_headings(const CsvLine& line, CsvLayout& layout) {
 
 // A heading for each column but the first, which counts the rows: what R writes.
 bool counts_rows(const std::vector<CsvLine>& data) {
-    constexpr std::size_t kLooked = 5;
+    constexpr std::size_t kFew = 5;
     double before = 0;
-    for (std::size_t i = 0; i < std::min(data.size(), kLooked); ++i) {
+    for (std::size_t i = 0; i < std::min(data.size(), kFew); ++i) {
         double number = 0;
         if (!read_cell_number(data[i].cells.front(), number) || (i > 0 && number != before + 1)) return false;
         before = number;

@@ -39,14 +39,23 @@ private:
         if (faults_.size() < kMostFaults) faults_.push_back({std::move(where), std::move(message)});
     }
 
+    std::string no_data() const {
+        if (layout_.lines_of_text == 0)
+            return "csv is empty; it needs a heading line such as t,u,y and lines of numbers.";
+        for (const std::string& text : layout_.headings) {
+            for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+                const auto named = match(split_heading(text), role);
+                if (named && named->level == 1) return "csv has headings but no line of numbers.";
+            }
+        }
+        return "csv has no line of numbers in columns, nor lines that name two values or more each; it begins with " +
+               quoted(first_line()) +
+               ". Export a heading line such as t,u,y and one line a sample, with all its values.";
+    }
+
     void check_layout() {
         if (layout_.data_line == 0) {
-            fault("csv", layout_.lines_of_text == 0
-                             ? "csv is empty; it needs a heading line such as t,u,y and lines of numbers."
-                             : "csv has no line of numbers in columns, nor lines that name two values or more each; it "
-                               "begins with " +
-                                   quoted(first_line()) +
-                                   ". Export a heading line such as t,u,y and one line a sample, with all its values.");
+            fault("csv", no_data());
         } else if (layout_.headings.empty() && layout_.narrow_heading_line > 0) {
             fault("csv", "Line " + std::to_string(layout_.narrow_heading_line) + " has " +
                              std::to_string(layout_.narrow_heading_cells) + " headings and line " +

@@ -117,7 +117,9 @@ TEST_P(Logs, AreReadRight) {
         ASSERT_NEAR(record.y[i], expected[i].y, 0.05 + 1e-9) << i;
     }
     EXPECT_EQ(record.r, std::vector<double>(std::isnan(item.r) ? 0 : expected.size(), item.r));
-    if (item.note) EXPECT_THAT(record.notes, Contains(HasSubstr(item.note)));
+    if (item.note) {
+        EXPECT_THAT(record.notes, Contains(HasSubstr(item.note)));
+    }
 }
 
 const double kNone = std::nan("");

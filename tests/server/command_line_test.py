@@ -126,8 +126,8 @@ class CommandLineTest(unittest.TestCase):
                     file.write("%d,40,%.3f,%d\n" % (k, 20 + max(0, k - 12) * 0.4, 20 if k < 10 else 50))
             done = run("identify", path, "--r", "Ramp", "--u-limits", "0", "100")
             self.assertEqual(done.returncode, 0, done.stderr)
-            notes = json.loads(done.stdout)["model"]["data_quality"]["notes"]
-            self.assertIn('Column "Ramp" is read as r, the set point.', notes)
+            told = json.loads(run("identify", path, "--r", "Rump").stderr)
+            self.assertEqual(told["errors"][0]["pointer"], "/record/columns/r")
             told = json.loads(run("identify", path, "--u-limits", "100", "0").stderr)
             self.assertEqual(told["errors"][0]["pointer"], "/record/u_limits")
             told = json.loads(run("identify", path, "--u-limits", "low", "0").stderr)

@@ -55,32 +55,39 @@ Problem to_problem(const Error& error) {
     return problem;
 }
 
-RecordSamples samples_of(const Record& record) {
-    constexpr std::size_t kMostRows = 2000;
+RecordSamples samples_of(const Record& record, std::size_t most) {
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < record.t.size(); ++i) {
         if (std::isfinite(record.t[i]) && std::isfinite(record.u[i]) && std::isfinite(record.y[i])) rows.push_back(i);
     }
-    RecordSamples samples;
-    const std::size_t shown = std::min(rows.size(), kMostRows);
+    RecordSamples samples{record.t.size(), {}, {}, {}};
+    const std::size_t shown = std::min(rows.size(), most);
     for (std::size_t k = 0; k < shown; ++k) {
         const std::size_t i = rows[shown == 1 ? 0 : k * (rows.size() - 1) / (shown - 1)];
         samples.t.push_back(record.t[i]);
         samples.u.push_back(record.u[i]);
         samples.y.push_back(record.y[i]);
+        if (!record.r.empty()) samples.r.push_back(record.r[i]);
     }
     return samples;
 }
 
+// An excerpt is written in full: it is looked at digit by digit.
 static void write_record(const RecordSamples& samples, Writer& out) {
+    const bool excerpt = samples.t.size() <= kExcerptRows;
+    const auto write = [&](const char* name, const std::vector<double>& values) {
+        out.key(name);
+        excerpt ? out.numbers(values) : out.trace(values);
+    };
     out.key("record");
     out.begin_object();
+    out.key("samples");
+    out.integer(static_cast<long long>(samples.samples));
     out.key("t");
-    out.trace(samples.t);
-    out.key("u");
-    out.trace(samples.u);
-    out.key("y");
-    out.trace(samples.y);
+    excerpt ? out.numbers(samples.t) : out.times(samples.t);
+    write("u", samples.u);
+    write("y", samples.y);
+    if (!samples.r.empty()) write("r", samples.r);
     out.end_object();
 }
 

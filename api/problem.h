@@ -15,9 +15,11 @@ struct FieldError {
     std::string detail;   ///< value, rule, cure
 };
 
-/// A record as it was read, at most 2,000 of its rows: what a reader needs to see why it determines no model.
+/// Rows of a record as it was read: what a reader needs to see why it determines no model.
 struct RecordSamples {
+    std::size_t samples = 0;  ///< of the whole record
     std::vector<double> t, u, y;
+    std::vector<double> r = {};  ///< empty: the record has none
 };
 
 struct Problem {
@@ -33,8 +35,13 @@ struct Problem {
 /// The one table from the engine's error kinds to status, type and title.
 Problem to_problem(const Error& error);
 
-/// Evenly chosen rows, the first and the last among them; rows in which something is no number are left out.
-RecordSamples samples_of(const Record& record);
+/// Of a record that could not be identified: three rows tell whether columns and times are what they should be, more
+/// are for a plot.
+constexpr std::size_t kExcerptRows = 3, kPlotRows = 2000;
+
+/// At most so many rows, evenly chosen, the first and the last among them; rows in which t, u or y is no number are
+/// left out.
+RecordSamples samples_of(const Record& record, std::size_t most = kExcerptRows);
 
 std::string to_json(const Problem& problem);
 

@@ -44,14 +44,22 @@ Problem at_controller(const Error& error, std::size_t index) {
     return to_problem(placed);
 }
 
-Answer identified(const ReadRecord& read, const IdentifyOptions& options, const RunControl& control) {
-    auto model = identify(read.record, options, control);
+// What is answered only where it was asked for.
+void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model) {
+    if (question.traces) return;
+    model.fit = {};
+    for (Candidate& candidate : model.candidates) candidate.y_model.clear();
+}
+
+Answer identified(const ReadRecord& read, const IdentifyQuestion& question, const RunControl& control) {
+    auto model = identify(read.record, question, control);
     if (!model) {
         Problem problem = to_problem(model.error());
-        problem.record = samples_of(read.record);
+        problem.record = samples_of(read.record, question.traces ? kPlotRows : kExcerptRows);
         return refusal(problem);
     }
     add_reading(read, model->data_quality);
+    leave_out_traces(question, *model);
     Writer out;
     identify_answer_contract().write({std::move(*model)}, out);
     return {200, out.take()};
@@ -84,10 +92,17 @@ void ask_for_no_traces(Json& request) {
     if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
 }
 
-/// The request that the words stand for, with a record of no text yet.
-Json question_json(const CsvQuestion& question) {
+/// The number that a word spells; a word that spells none stays one, for the contract to refuse.
+Json number_or_word(const std::string& word) {
+    Json value = Json::parse(word, nullptr, false);
+    return value.is_number() ? value : Json(word);
+}
+
+/// The record that the words stand for, of no text yet.
+Json record_json(const CsvQuestion& question) {
     Json columns = Json::object();
-    for (const auto& [name, choice] : {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}}) {
+    for (const auto& [name, choice] :
+         {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
         if (choice->empty()) continue;
         const bool number = choice->size() <= 3 && choice->find_first_not_of("0123456789") == std::string::npos;
         columns[name] = number ? Json(std::stoi(*choice)) : Json(*choice);
@@ -95,9 +110,15 @@ Json question_json(const CsvQuestion& question) {
     Json record{{"csv", ""}};
     if (!columns.empty()) record["columns"] = std::move(columns);
     if (!question.kind.empty()) record["kind"] = question.kind;
-    if (!question.dt.empty()) record["dt"] = Json::parse(question.dt, nullptr, false);
-    if (record.contains("dt") && record["dt"].is_discarded()) record["dt"] = question.dt;
+    if (!question.dt.empty()) record["dt"] = number_or_word(question.dt);
+    for (const std::string& limit : question.u_limits) record["u_limits"].push_back(number_or_word(limit));
     return record;
+}
+
+Json identify_json(const CsvQuestion& question) {
+    Json options{{"traces", question.traces}};
+    if (!question.model.empty()) options["model"] = question.model;
+    return options;
 }
 
 std::string method_label(const JobRequest& request) {
@@ -132,6 +153,7 @@ JobOutcome run_job(std::string_view request_json, const RunControl& control) {
     const std::string method = method_label(request);
     ReadRecord read{{}, request.read.dropped, request.read.notes};
     const std::optional<Units> units = request.units;
+    const IdentifyQuestion question = request.identify;
     auto result = tune(to_engine(std::move(request)), control);
     if (!result) {
         JobOutcome outcome = failure(to_problem(result.error()));
@@ -139,7 +161,10 @@ JobOutcome run_job(std::string_view request_json, const RunControl& control) {
         outcome.method = method;
         return outcome;
     }
-    if (result->model) add_reading(read, result->model->data_quality);
+    if (result->model) {
+        add_reading(read, result->model->data_quality);
+        leave_out_traces(question, *result->model);
+    }
     const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
     Writer out;
     result_contract().write({std::move(*result), units, sha256_hex(canonical(value))}, out);
@@ -244,10 +269,10 @@ Answer identify_csv(std::string csv, const CsvQuestion& question, const RunContr
     Reader reader;
     GivenRecord given;
     Units units;
-    IdentifyOptions options;
+    IdentifyQuestion options;
     {
         const Reader::At at(reader, "record");
-        record_contract().read(question_json(question), given, reader);
+        record_contract().read(record_json(question), given, reader);
     }
     {
         const Reader::At at(reader, "units");
@@ -256,8 +281,7 @@ Answer identify_csv(std::string csv, const CsvQuestion& question, const RunContr
     }
     {
         const Reader::At at(reader, "identify");
-        identify_contract().read(question.model.empty() ? Json::object() : Json{{"model", question.model}}, options,
-                                 reader);
+        identify_contract().read(identify_json(question), options, reader);
     }
     if (auto problem = reader.problem()) return refusal(*problem);
     given.csv = std::move(csv);

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "api/problem.h"
 #include "engine/progress.h"
@@ -55,8 +56,10 @@ Answer identify_call(std::string_view body, const RunControl& control);  ///< PO
 
 /// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
 struct CsvQuestion {
-    std::string t, u, y;  ///< headings, or numbers from 1
+    std::string t, u, y, r;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
+    std::vector<std::string> u_limits;  ///< low and high; empty: not given
+    bool traces = false;
 };
 
 /// The same for a CSV file as it is, in any encoding, without a request around it.

@@ -8,9 +8,15 @@
 namespace tunewright::server {
 namespace {
 
+// A request is one JSON object; a log may have one in each line.
 bool is_request(const std::string& text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    return first != std::string::npos && text[first] == '{';
+    constexpr const char* kBlank = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(kBlank);
+    if (first == std::string::npos || text[first] != '{') return false;
+    const std::size_t end = text.find('\n', first);
+    if (end == std::string::npos) return true;
+    const std::size_t last = text.find_last_not_of(kBlank, end), next = text.find_first_not_of(kBlank, end);
+    return !(text[last] == '}' && next != std::string::npos && text[next] == '{');
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ struct IdentifyCommand {
     api::CsvQuestion question;
 };
 
-/// Reads a CSV file as it is, or a request of POST /v1/identify where the file begins with {. The answer goes to
+/// Reads a CSV file or a log as it is, or a request of POST /v1/identify where the file is one JSON object. The answer goes to
 /// standard output and 0 is returned; a problem goes to standard error as problem JSON and 1 is returned. No limit on
 /// the file's size but the 2,000,000 samples of a record.
 int identify(const IdentifyCommand& command);

@@ -138,12 +138,17 @@ int main(int argc, char** argv) {
     identify_app->add_option("--t", identifying.question.t, "CSV: heading or number of the time column");
     identify_app->add_option("--u", identifying.question.u, "CSV: of the controller output");
     identify_app->add_option("--y", identifying.question.y, "CSV: of the measurement");
+    identify_app->add_option("--r", identifying.question.r, "CSV: of the set point, where there is one");
     identify_app->add_option("--dt", identifying.question.dt, "CSV without times: their spacing");
     identify_app->add_option("--time-unit", identifying.question.time_unit,
                              "CSV: unit of every time of the answer; s if not given");
     identify_app->add_option("--kind", identifying.question.kind, "CSV: auto, step, relay or general");
     identify_app->add_option("--model", identifying.question.model,
                              "CSV: auto, fopdt, sopdt, sopdt_zero, ipdt or ipdt_lag");
+    identify_app->add_option("--u-limits", identifying.question.u_limits, "CSV: the ends of the actuator, low and high")
+        ->expected(2);
+    identify_app->add_flag("--traces", identifying.question.traces,
+                           "CSV: answer the record beside the models' free runs too");
 
     KeyCommand naming;
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");

@@ -12,6 +12,16 @@ Codec<std::string> sentence() {
                 return Json{{"type", "string"}};
             }};
 }
+Codec<std::array<double, 2>> limits() {
+    return {{},
+            [](const std::array<double, 2>& ends, Writer& out) {
+                const auto array = out.array();
+                for (const double end : ends) out.number(end);
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+            }};
+}
 Codec<bool> truth() { return only_answered(boolean()); }
 
 const Description<PreTest>& pretest_contract() {
@@ -99,6 +109,8 @@ const Description<DataQuality>& quality_contract() {
             .field("settled", &Q::settled, truth(), "Whether y came to rest.")
             .field("u0", &Q::u0, size(), "u before its first change.", {.unit = "u"})
             .field("y0", &Q::y0, size(), "y before the first change of u: its mean there.", {.unit = "y"})
+            .field("u_limits", &Q::u_limits, maybe(limits()),
+                   "The ends to which u was cut: as given, or as the record shows them.", {.unit = "u"})
             .field("pretest", &Q::pretest, maybe(answer(pretest_contract())), "The part before the first change of u.")
             .field("gaps", &Q::gaps, maybe(answer(missing_contract())),
                    "Spacings of more than five times the usual one.")

@@ -33,6 +33,34 @@ Codec<ColumnChoice> column_choice() {
         }};
 }
 
+// [low, high], the lower one first.
+Codec<std::array<double, 2>> limits() {
+    return {[](const Json& value, std::array<double, 2>& target, Reader& reader) {
+                if (!value.is_array() || value.size() != 2)
+                    return reader.fault(reader.name() + " is " + shown(value) +
+                                        "; it must be [low, high], such as [0, 100].");
+                std::array<double, 2> read{};
+                for (std::size_t i = 0; i < read.size(); ++i) {
+                    const Reader::At at(reader, i);
+                    const auto number = read_number(value[i], {}, reader);
+                    if (!number) return;
+                    read[i] = *number;
+                }
+                if (!(read[0] < read[1]))
+                    return reader.fault(reader.name() + " is " + shown(value) +
+                                        "; the first number is the lower limit and must be below the second.");
+                target = read;
+            },
+            [](const std::array<double, 2>& value, Writer& out) {
+                out.begin_array();
+                for (const double limit : value) out.number(limit);
+                out.end_array();
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "array"}, {"items", number_schema({})}, {"minItems", 2}, {"maxItems", 2}};
+            }};
+}
+
 const Description<ColumnChoices>& columns_contract() {
     static const auto description = [] {
         Description<ColumnChoices> d("Columns",
@@ -40,7 +68,8 @@ const Description<ColumnChoices>& columns_contract() {
                                      "where headings are plain.");
         d.field("t", &ColumnChoices::t, maybe(column_choice()), "Time.")
             .field("u", &ColumnChoices::u, maybe(column_choice()), "Controller output.")
-            .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.");
+            .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.")
+            .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, where the record has one.");
         return d;
     }();
     return description;
@@ -51,8 +80,10 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
         reader.fault_at("to", "to is " + tunewright::text(*record.to) + " and from " + tunewright::text(*record.from) +
                                   "; the part that is used must end after it starts.");
     if (record.csv) {
-        for (const auto& [name, given] :
-             {std::pair{"t", record.t.has_value()}, {"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
+        for (const auto& [name, given] : {std::pair{"t", record.t.has_value()},
+                                          {"u", record.u.has_value()},
+                                          {"y", record.y.has_value()},
+                                          {"r", record.r.has_value()}}) {
             if (given) reader.fault_at(name, std::string(name) + " is given beside csv; give one of them.");
         }
         return;
@@ -77,6 +108,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     };
     length("u", *record.u);
     if (record.t) length("t", *record.t);
+    if (record.r) length("r", *record.r);
 }
 
 std::vector<double> times(double dt, std::size_t count) {
@@ -85,23 +117,24 @@ std::vector<double> times(double dt, std::size_t count) {
     return out;
 }
 
+// `rows` ascend. A column that the record does not have stays empty.
+template <class T>
+void keep(const std::vector<std::size_t>& rows, std::vector<T>& column) {
+    if (column.empty()) return;
+    for (std::size_t k = 0; k < rows.size(); ++k) column[k] = column[rows[k]];
+    column.resize(rows.size());
+}
+
 // The samples of the chosen part; all of them where none is chosen.
 void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
     if (!given.from && !given.to) return;
     constexpr double kUnlimited = std::numeric_limits<double>::infinity();
     const double from = given.from.value_or(-kUnlimited), to = given.to.value_or(kUnlimited);
-    Record part;
-    part.kind = read.record.kind;
-    part.u0 = given.u0;
-    part.y0 = given.y0;
+    std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < read.record.t.size(); ++i) {
-        const double t = read.record.t[i];
-        if (!(t >= from && t <= to)) continue;
-        part.t.push_back(t);
-        part.u.push_back(read.record.u[i]);
-        part.y.push_back(read.record.y[i]);
+        if (const double t = read.record.t[i]; t >= from && t <= to) rows.push_back(i);
     }
-    if (part.t.size() < 2) {
+    if (rows.size() < 2) {
         const auto [first, last] = std::minmax_element(read.record.t.begin(), read.record.t.end());
         const std::string extent = read.record.t.empty() ? ""
                                                          : " It runs from " + tunewright::text(*first) + " to " +
@@ -110,10 +143,16 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
                                                         extent + " Choose a wider part.");
         return;
     }
-    read.notes.push_back("Of " + std::to_string(read.record.t.size()) + " samples, the " +
-                         std::to_string(part.t.size()) + " from " + tunewright::text(part.t.front()) + " to " +
-                         tunewright::text(part.t.back()) + " were used, as asked.");
-    read.record = std::move(part);
+    Record& record = read.record;
+    const std::size_t all = record.t.size();
+    keep(rows, record.t);
+    keep(rows, record.u);
+    keep(rows, record.y);
+    keep(rows, record.r);
+    keep(rows, record.line);
+    read.notes.push_back("Of " + std::to_string(all) + " samples, the " + std::to_string(rows.size()) + " from " +
+                         tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
+                         " were used, as asked.");
 }
 
 }  // namespace
@@ -133,9 +172,10 @@ const Description<Units>& units_contract() {
 
 const Description<GivenRecord>& record_contract() {
     static const auto description = [] {
-        Description<GivenRecord> d(
-            "Record",
-            "A recorded test: t (or dt), u and y as arrays, or csv text. u holds from its sample to the next.");
+        Description<GivenRecord> d("Record",
+                                   "A recorded test: t (or dt), u and y as arrays, or csv text. u holds from its "
+                                   "sample to the next. r, the set "
+                                   "point, may stand beside them.");
         const auto column = [] {
             return maybe(
                 numbers(2, kMostSamples, {.cure = "Thin the record out: a few thousand samples identify as well."}));
@@ -145,6 +185,7 @@ const Description<GivenRecord>& record_contract() {
                    {.unit = "time"})
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
+            .field("r", &GivenRecord::r, column(), "Set point, where the record has one.", {.unit = "y"})
             .field("csv", &GivenRecord::csv, maybe(text(kLongestCsv)),
                    "CSV text instead of the arrays: separated by , ; tab | or blanks, decimal point or comma, times as "
                    "numbers "
@@ -159,6 +200,8 @@ const Description<GivenRecord>& record_contract() {
                    "What the test was.")
             .field("u0", &GivenRecord::u0, maybe(number()), "Controller output before the first sample.", {.unit = "u"})
             .field("y0", &GivenRecord::y0, maybe(number()), "Measurement before the first sample.", {.unit = "y"})
+            .field("u_limits", &GivenRecord::u_limits, maybe(limits()),
+                   "The ends of the actuator, [low, high]: u beyond them did not reach the plant.", {.unit = "u"})
             .field("from", &GivenRecord::from, maybe(number()), "Only samples from this time on are used.",
                    {.unit = "time"})
             .field("to", &GivenRecord::to, maybe(number()), "Only samples up to this time are used.", {.unit = "time"})
@@ -168,9 +211,9 @@ const Description<GivenRecord>& record_contract() {
     return description;
 }
 
-const Description<IdentifyOptions>& identify_contract() {
+const Description<IdentifyQuestion>& identify_contract() {
     static const auto description = [] {
-        Description<IdentifyOptions> d("Identify", "How the record becomes a model.");
+        Description<IdentifyQuestion> d("Identify", "How the record becomes a model.");
         d.field("model", &IdentifyOptions::model,
                 choice<ModelChoice>({{"auto", ModelChoice::automatic},
                                      {"fopdt", ModelChoice::fopdt},
@@ -186,7 +229,10 @@ const Description<IdentifyOptions>& identify_contract() {
                                            {"two_point", IdentifyMethod::two_point}}),
                    "How it is found.")
             .field("shift", &IdentifyOptions::shift, maybe(number({.exclusive_minimum = 0})),
-                   "Shift of the relay test's Fourier integrals.", {.unit = "1/time"});
+                   "Shift of the relay test's Fourier integrals.", {.unit = "1/time"})
+            .field("traces", &IdentifyQuestion::traces, boolean(),
+                   "Answer the model's fit and the candidates' y_model too: the record beside the free runs, at most "
+                   "2,000 points, for a plot.");
         return d;
     }();
     return description;
@@ -197,10 +243,12 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.kind = given.kind;
     out.record.u0 = given.u0;
     out.record.y0 = given.y0;
+    out.record.u_limits = given.u_limits;
     if (!given.csv) {
         out.record.t = given.t ? std::move(*given.t) : times(*given.dt, given.y->size());
         out.record.u = std::move(*given.u);
         out.record.y = std::move(*given.y);
+        if (given.r) out.record.r = std::move(*given.r);
         choose_part(given, out, reader);
         return out;
     }
@@ -228,6 +276,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.t = std::move(record.t);
     out.record.u = std::move(record.u);
     out.record.y = std::move(record.y);
+    out.record.r = std::move(record.r);
     out.record.line = std::move(record.lines);
     out.dropped = record.dropped;
     out.notes = std::move(record.notes);

@@ -18,13 +18,19 @@ struct Units {
 
 /// A record as sent.
 struct GivenRecord {
-    std::optional<std::vector<double>> t, u, y;
+    std::optional<std::vector<double>> t, u, y, r;
     std::optional<double> dt;
     std::optional<std::string> csv;
     std::optional<ColumnChoices> columns;
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;
+    std::optional<std::array<double, 2>> u_limits;
     std::optional<double> from, to;  ///< the part that counts
+};
+
+/// How a record becomes a model, and how much of that is answered.
+struct IdentifyQuestion : IdentifyOptions {
+    bool traces = false;  ///< the record and the free runs of the models, for a plot
 };
 
 /// A record as the engine takes it, and what reading it has found.
@@ -36,7 +42,7 @@ struct ReadRecord {
 
 const Description<Units>& units_contract();
 const Description<GivenRecord>& record_contract();
-const Description<IdentifyOptions>& identify_contract();
+const Description<IdentifyQuestion>& identify_contract();
 
 /// Reports to the reader, which stands at the record.
 ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader);

@@ -11,7 +11,7 @@ struct JobRequest {
     std::optional<Units> units;
     std::optional<PlantModel> plant;
     std::optional<GivenRecord> record;
-    IdentifyOptions identify;
+    IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
@@ -32,7 +32,7 @@ struct IdentifyRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<GivenRecord> record;
-    IdentifyOptions identify;
+    IdentifyQuestion identify;
     ReadRecord read;
 };
 

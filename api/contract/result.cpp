@@ -144,8 +144,9 @@ const Description<Candidate>& candidate_contract() {
             .field("criterion", &Candidate::criterion, only_answered(number()),
                    "Information criterion; smaller is better.")
             .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
-            .field("y_model", &Candidate::y_model, trace(), "Simulated, at the times of the model's fit.",
-                   {.unit = "y"});
+            .field("y_model", &Candidate::y_model,
+                   unless<std::vector<double>>(trace(), [](const auto& y_model) { return y_model.empty(); }),
+                   "Simulated, at the times of the model's fit; with identify.traces.", {.unit = "y"});
         return d;
     }();
     return description;
@@ -190,8 +191,9 @@ const Description<ExcitedBand>& band_contract() {
 
 const Description<FitTrace>& fit_contract() {
     static const auto description = [] {
-        Description<FitTrace> d("Fit", "The model beside the record, six significant digits.");
-        d.field("t", &FitTrace::t, trace(), "Time.", {.unit = "time"})
+        Description<FitTrace> d(
+            "Fit", "The model beside the record, six significant digits; times that need more to differ have more.");
+        d.field("t", &FitTrace::t, times_trace(), "Time.", {.unit = "time"})
             .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
             .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
             .field("y_model", &FitTrace::y_model, trace(), "Simulated.", {.unit = "y"});
@@ -225,7 +227,9 @@ const Description<IdentifiedModel>& model_contract() {
                    "The best-ranked controller on the 95 % confidence region; each entry has its own.")
             .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
             .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
-            .field("fit", &M::fit, answer(fit_contract()), "The model beside the record.")
+            .field("fit", &M::fit,
+                   unless<FitTrace>(answer(fit_contract()), [](const auto& fit) { return fit.t.empty(); }),
+                   "The model beside the record; with identify.traces.")
             .field("data_quality", &M::data_quality, answer(quality_contract()), "What was found in the record.")
             .field("warnings", &M::warnings, list_of(answer(warning_contract())), "Remarks.");
         return d;

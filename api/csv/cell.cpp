@@ -1,10 +1,10 @@
 #include "api/csv/cell.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
 namespace tunewright::api {
 namespace {
@@ -124,7 +124,9 @@ std::string_view unit_suffix(std::string_view cell) {
     const std::size_t last = cell.find_last_of("0123456789.");
     std::string_view suffix = trimmed(cell.substr(last + 1));
     constexpr std::size_t kLongest = 12;
-    if (suffix.empty() || suffix.size() > kLongest || suffix.find_first_of(":+-/\\,") == 0) return {};
+    if (suffix.empty() || suffix.size() > kLongest || suffix.find_first_of(":+-/\\,") == 0 ||
+        suffix.find_first_of("<>(){}") != suffix.npos)
+        return {};
     double value = 0;
     return read_cell_number(cell, value, DecimalSign::either, suffix) ? suffix : std::string_view();
 }
@@ -134,19 +136,36 @@ bool is_missing(std::string_view cell) {
     if (is_digit(cell.front()) || (cell.front() == '-' && cell.size() > 1 && is_digit(cell[1]))) return false;
     constexpr std::size_t kLongest = 20;
     if (cell.size() > kLongest) return false;
-    static constexpr std::array<std::string_view, 52> kMarks = {
-        "-",           "--",          "---",           "?",        "*",         ".",
-        "nan",         "1.#qnan",     "1.#ind",        "na",       "n/a",       "null",
-        "(null)",      "none",        "nil",           "\\n",      "#n/a",      "#na",
-        "#nv",         "#num!",       "#zahl!",        "#value!",  "#wert!",    "#ref!",
-        "#bezug!",     "#div/0!",     "#name?",        "#valeur!", "bad",       "bad input",
-        "bad value",   "bad data",    "bad quality",   "no data",  "no value",  "no sample",
-        "nodata",      "i/o timeout", "io timeout",    "timeout",  "comm fail", "comm error",
-        "pt created",  "shutdown",    "not connected", "stale",    "invalid",   "error",
-        "calc failed", "scan off",    "unknown",       "configure"};
+    static constexpr std::string_view kMarks[] = {
+        "unavailable", "missing",    "-",           "--",          "---",           "?",
+        "*",           ".",          "nan",         "1.#qnan",     "1.#ind",        "na",
+        "n/a",         "null",       "(null)",      "none",        "nil",           "\\n",
+        "#n/a",        "#na",        "#nv",         "#num!",       "#zahl!",        "#value!",
+        "#wert!",      "#ref!",      "#bezug!",     "#div/0!",     "#name?",        "#valeur!",
+        "bad",         "bad input",  "bad value",   "bad data",    "bad quality",   "no data",
+        "no value",    "no sample",  "nodata",      "i/o timeout", "io timeout",    "timeout",
+        "comm fail",   "comm error", "pt created",  "shutdown",    "not connected", "stale",
+        "invalid",     "error",      "calc failed", "scan off",    "unknown",       "configure"};
     std::string word = lower_case(cell);
     if (word.size() > 1 && word.front() == '-' && std::isalpha(static_cast<unsigned char>(word[1]))) word.erase(0, 1);
-    return std::find(kMarks.begin(), kMarks.end(), word) != kMarks.end();
+    return std::find(std::begin(kMarks), std::end(kMarks), word) != std::end(kMarks);
+}
+
+std::optional<double> switch_word(std::string_view cell) {
+    static constexpr std::string_view kHigh[] = {
+        "on",      "true",  "open",    "opened",  "yes",    "running", "run",       "active",  "enabled", "high",
+        "started", "start", "heating", "cooling", "ein",    "an",      "auf",       "wahr",    "ja",      "marche",
+        "ouvert",  "vrai",  "oui",     "acceso",  "aperto", "vero",    "encendido", "abierto", "one"};
+    static constexpr std::string_view kLow[] = {
+        "off",   "false", "closed", "close",  "no",     "stopped", "stop",    "inactive",     "disabled",
+        "low",   "idle",  "aus",    "zu",     "falsch", "nein",    "arret",   "arr\xC3\xAAt", "ferm\xC3\xA9",
+        "ferme", "faux",  "non",    "spento", "chiuso", "falso",   "apagado", "cerrado",      "zero"};
+    constexpr std::size_t kLongest = 10;
+    if (cell.empty() || cell.size() > kLongest || is_digit(cell.front())) return std::nullopt;
+    const std::string word = lower_case(cell);
+    if (std::find(std::begin(kHigh), std::end(kHigh), word) != std::end(kHigh)) return 1;
+    if (std::find(std::begin(kLow), std::end(kLow), word) != std::end(kLow)) return 0;
+    return std::nullopt;
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -1,6 +1,7 @@
 // One cell of an export as a number, or as the mark of a value that is not there.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ std::string_view unit_suffix(std::string_view cell);
 /// Blank, NaN, NA, null, -, the errors of spreadsheets and what historians write for a value that they do not have
 /// ("Bad Input", "No Data", "I/O Timeout").
 bool is_missing(std::string_view cell);
+
+/// ON, open, true, running: 1; off, closed, false, stopped: 0, in several languages. Empty for any other text.
+std::optional<double> switch_word(std::string_view cell);
 
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);

@@ -2,88 +2,67 @@
 
 #include <algorithm>
 
-#include "api/csv/time_stamp.h"
-#include "api/describe/suggest.h"
+#include "api/csv/column_facts.h"
+#include "api/csv/column_pairs.h"
+#include "api/csv/column_refusals.h"
 
 namespace tunewright::api {
 namespace {
-
-constexpr int kProfiledLines = 5000;
 
 struct RoleText {
     const char* name;
     const char* meaning;
 };
 constexpr std::array<RoleText, kRoleCount> kRoles = {
-    {{"t", "time"}, {"u", "the controller output"}, {"y", "the measurement"}}};
-
-void look_at(std::string_view cell, DecimalSign sign, double& last, ColumnProfile& profile) {
-    if (is_missing(cell)) {
-        ++profile.missing;
-        return;
-    }
-    double value = 0;
-    if (profile.numbers == 0) profile.suffix = std::string(unit_suffix(cell));
-    if (read_cell_number(cell, value, sign, profile.suffix)) {
-        if (profile.numbers > 0) {
-            profile.changes += value != last ? 1 : 0;
-            profile.rises = profile.rises && value > last;
-        }
-        last = value;
-        ++profile.numbers;
-    } else if (const auto stamp = read_time_stamp(cell)) {
-        ++profile.stamps;
-        profile.dates += stamp->has_clock ? 0 : 1;
-        profile.clocks += stamp->has_date ? 0 : 1;
-    } else {
-        if (profile.texts++ == 0) profile.first_text = std::string(cell);
-    }
-}
+    {{"t", "time"}, {"u", "the controller output"}, {"y", "the measurement"}, {"r", "the set point"}}};
+/// Those without which there is no record.
+constexpr std::size_t kNeededRoles = kReferenceRole;
 
 class ColumnFinder {
 public:
-    ColumnFinder(const CsvLayout& layout, const std::vector<ColumnProfile>& profiles, const CsvOptions& options,
-                 std::vector<CsvFault>& faults)
-        : layout_(layout), profiles_(profiles), options_(options), faults_(faults) {
-        for (const std::string& heading : layout.headings) headings_.push_back(split_heading(heading));
-        headings_.resize(profiles.size());
-    }
+    ColumnFinder(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
+                 const CsvOptions& options, std::vector<CsvFault>& faults)
+        : facts_(text, layout, profiles), layout_(layout), profiles_(profiles), options_(options), faults_(faults) {}
 
     FoundColumns find() {
         const std::array<const std::optional<ColumnChoice>*, kRoleCount> choices = {
-            &options_.columns.t, &options_.columns.u, &options_.columns.y};
+            &options_.columns.t, &options_.columns.u, &options_.columns.y, &options_.columns.r};
         for (std::size_t role = 0; role < kRoleCount; ++role) {
             if (*choices[role]) found_.at[role] = chosen(role, **choices[role]);
         }
         if (!faults_.empty()) return found_;
-        if (refuse_one_line_a_tag()) return found_;
-        for (std::size_t role = 0; role < kRoleCount; ++role) {
-            if (wanted(role)) by_name(static_cast<Role>(role));
+        chosen_ = found_.at;
+        if (!chosen_[kInputRole] && !chosen_[kOutputRole]) {
+            if (auto fault = one_line_a_tag(facts_)) faults_.push_back(*std::move(fault));
         }
+        find_terms();
+        if (const auto letters = german_letters(facts_)) take_pair(*letters);
+        find_spacing();
+        if (wanted(kTimeRole)) take_fitting(kTimeRole, fits(kTimeRole));
+        read_input_beside_output();
+        if (!faults_.empty()) return found_;
+        read_input_and_output();
         if (!faults_.empty()) return found_;
         join_date_and_clock();
         if (wanted(kTimeRole)) time_by_content();
         rest_by_content();
-        for (std::size_t role = 0; role < kRoleCount; ++role) {
+        find_reference();
+        for (std::size_t role = 0; role < kNeededRoles; ++role) {
             if (wanted(role)) report_missing(role);
         }
         refuse_equal_columns();
+        if (faults_.empty()) check_clocks();
+        check_surplus();
         return found_;
     }
 
 private:
-    bool wanted(std::size_t role) const { return !found_.at[role] && !(role == kTimeRole && options_.dt); }
+    bool wanted(std::size_t role) const {
+        return !found_.at[role] && !(role == kTimeRole && (options_.dt || found_.spacing));
+    }
 
     void fault(std::size_t role, std::string message) {
         faults_.push_back({std::string("columns/") + kRoles[role].name, std::move(message)});
-    }
-
-    std::string headings_listed() const {
-        std::vector<std::string> names;
-        for (const std::string& heading : layout_.headings) {
-            if (!is_index(heading)) names.push_back(quoted(heading));
-        }
-        return listed(names, "and");
     }
 
     std::optional<std::size_t> chosen(std::size_t role, const ColumnChoice& choice) {
@@ -111,17 +90,17 @@ private:
         std::optional<std::size_t> found;
         const std::string name = kRoles[role].name, wanted = lower_case(trimmed(text));
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
-            if (lower_case(layout_.headings[i]) != wanted && headings_[i].name != wanted) continue;
+            if (lower_case(layout_.headings[i]) != wanted && facts_.heading(i).name != wanted) continue;
             if (found) {
-                fault(role, name + " is " + quoted(text) + ", which fits several headings: " + headings_listed() +
-                                ". Write the heading in full.");
+                fault(role, name + " is " + quoted(text) + ", which fits several headings: " +
+                                facts_.headings_listed() + ". Write the heading in full.");
                 return std::nullopt;
             }
             found = i;
         }
         if (!found)
             fault(role, name + " is " + quoted(text) + ", which is not a heading; the headings are " +
-                            headings_listed() + ".");
+                            facts_.headings_listed() + ".");
         return found;
     }
 
@@ -129,78 +108,254 @@ private:
         return found_.clock == column || std::find(found_.at.begin(), found_.at.end(), column) != found_.at.end();
     }
 
-    bool holds_numbers(std::size_t column) const {
-        const ColumnProfile& p = profiles_[column];
-        return p.numbers > 0 && p.numbers >= p.texts + p.stamps;
-    }
+    bool is_term(std::size_t column) const { return std::find(terms_.begin(), terms_.end(), column) != terms_.end(); }
 
     bool may_be(std::size_t column, Role role) const {
-        if (taken(column)) return false;
+        if (taken(column) || found_.spacing == column) return false;
         const ColumnProfile& p = profiles_[column];
-        if (role == kTimeRole) return p.stamps > 0 || holds_numbers(column);
-        return !is_beside_the_point(headings_[column]) && p.numbers + p.missing > 0 && p.stamps == 0 &&
-               (p.texts == 0 || holds_numbers(column));
+        if (role == kTimeRole) return facts_.may_be_time(column);
+        const bool numeric = p.numbers + p.missing > 0 && p.stamps == 0 && p.switches == 0 &&
+                             (p.texts == 0 || facts_.holds_numbers(column));
+        if (role == kReferenceRole) return numeric && p.numbers > 0 && !is_term(column);
+        if (is_term(column)) return false;
+        if (role == kInputRole && facts_.switches(column))
+            return !match(facts_.heading(column), kReferenceRole) &&
+                   (!is_beside_the_point(facts_.heading(column)) || is_state(facts_.heading(column)));
+        return numeric && !is_beside_the_point(facts_.heading(column));
     }
 
     void take(std::size_t role, std::size_t column, const std::string& why = "") {
         found_.at[role] = column;
-        if (why.empty() && headings_[column].name == kRoles[role].name) return;
-        found_.notes.push_back("Column " + shown(column) + " is read as " + kRoles[role].name + ", " +
+        if (why.empty() && facts_.heading(column).name == kRoles[role].name) return;
+        found_.notes.push_back("Column " + facts_.shown(column) + " is read as " + kRoles[role].name + ", " +
                                kRoles[role].meaning + why + ".");
     }
 
-    std::string shown(std::size_t column) const {
-        return column < layout_.headings.size() && !layout_.headings[column].empty() ? quoted(layout_.headings[column])
-                                                                                     : std::to_string(column + 1);
-    }
+    struct Fits {
+        std::vector<std::size_t> best;    ///< as plain as each other
+        std::vector<std::size_t> others;  ///< of the very name too, but less plain
+    };
 
     // The plainest name wins; several tags that end alike are not guessed among.
-    void by_name(Role role) {
+    Fits fits(Role role) const {
         std::optional<NameMatch> best;
-        std::vector<std::size_t> fits;
+        Fits fits;
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
             if (!may_be(i, role)) continue;
-            const auto now = match(headings_[i], role);
+            const auto now = match(facts_.heading(i), role);
             if (!now) continue;
-            const bool better = !best || now->level < best->level ||
-                                (now->level == best->level && now->level == 1 && now->order < best->order);
-            if (better) {
+            if (!best || now->level < best->level ||
+                (now->level == best->level && now->level == 1 && now->order < best->order)) {
+                if (best && best->level == 1) fits.others.insert(fits.others.end(), fits.best.begin(), fits.best.end());
                 best = now;
-                fits = {i};
-            } else if (now->level == best->level && now->level > 1) {
-                fits.push_back(i);
+                fits.best = {i};
+            } else if (now->level == best->level && (now->level > 1 || now->order == best->order)) {
+                fits.best.push_back(i);
+            } else if (now->level == 1) {
+                fits.others.push_back(i);
             }
         }
-        if (fits.size() == 1 || (role == kTimeRole && !fits.empty())) return take(role, fits.front());
-        if (fits.empty()) return by_very_name(role);
-        std::vector<std::string> names;
-        for (const std::size_t i : fits) names.push_back(shown(i));
+        return fits;
+    }
+
+    void take_fitting(Role role, const Fits& fits) {
+        if (fits.best.size() == 1 || (role == kTimeRole && !fits.best.empty())) {
+            take(role, fits.best.front(), rivals(role, fits));
+            return;
+        }
+        if (fits.best.empty()) return by_very_name(role);
         fault(role, "Several columns may be " + std::string(kRoles[role].name) + " (" + kRoles[role].meaning +
-                        "): " + listed(names, "and") + ". Name one in columns." + kRoles[role].name + ".");
+                        "): " + facts_.shown(fits.best) + ". Name one in columns." + kRoles[role].name + ".");
+    }
+
+    // What else might have been meant.
+    std::string rivals(Role role, const Fits& fits) const {
+        if (role == kTimeRole || fits.others.empty()) return "";
+        std::vector<std::size_t> moving;
+        for (const std::size_t i : fits.others) {
+            if (profiles_[i].changes > 0) moving.push_back(i);
+        }
+        if (moving.empty()) return "";
+        const std::string why = role == kOutputRole && is_measured(facts_.heading(fits.best.front()))
+                                    ? ", as the measured one; it may also be "
+                                    : "; it may also be ";
+        return why + facts_.shown(moving) + ", which columns." + kRoles[role].name + " chooses";
+    }
+
+    void read_input_and_output() {
+        Fits u = wanted(kInputRole) ? fits(kInputRole) : Fits{}, y = wanted(kOutputRole) ? fits(kOutputRole) : Fits{};
+        keep_partners(u, y);
+        if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
+        if (wanted(kInputRole)) take_fitting(kInputRole, u);
+        if (wanted(kOutputRole)) take_fitting(kOutputRole, y);
+        if (wanted(kInputRole) && faults_.empty()) take_command();
+        refuse_strangers();
+    }
+
+    // Of what names alone leave open: what moves, and what belongs together by its names. Tags of a table belong
+    // together where one of them was chosen; "heater_bed.temp" of a log, and "Temperature 1", anyway.
+    void keep_partners(Fits& u, Fits& y) {
+        keep_moving(u);
+        keep_moving(y);
+        const bool chosen = chosen_[kInputRole] || chosen_[kOutputRole];
+        const auto known = [&](Role role, const Fits& fits) {
+            return chosen_[role]           ? chosen_[role]
+                   : fits.best.size() == 1 ? std::optional(fits.best.front())
+                                           : std::nullopt;
+        };
+        for (const auto same : {stem, number_behind}) {
+            if (same == stem && !layout_.pairs && !chosen) continue;
+            if (const auto column = known(kInputRole, u)) keep_beside(*column, same, y);
+            if (const auto column = known(kOutputRole, y)) keep_beside(*column, same, u);
+        }
+    }
+
+    void keep_beside(std::size_t column, std::string (*same)(const Heading&), Fits& fits) const {
+        const std::string own = same(facts_.heading(column));
+        std::vector<std::size_t> kept, rest;
+        for (const std::size_t i : fits.best) (same(facts_.heading(i)) == own ? kept : rest).push_back(i);
+        if (own.empty() || kept.size() != 1 || rest.empty()) return;
+        fits.best = std::move(kept);
+        fits.others.insert(fits.others.end(), rest.begin(), rest.end());
+    }
+
+    // What stands still is neither what was driven nor what answered.
+    void keep_moving(Fits& fits) {
+        if (fits.best.size() < 2) return;
+        std::vector<std::size_t> moving, rest;
+        int lines = 0;
+        for (const std::size_t i : fits.best) {
+            (profiles_[i].changes > 0 ? moving : rest).push_back(i);
+            lines = std::max(lines, profiles_[i].numbers);
+        }
+        if (moving.empty() || rest.empty()) return;
+        const std::string until = lines < kProfiledLines ? "" : " in the first " + std::to_string(lines) + " lines";
+        found_.notes.push_back(facts_.shown(rest) + (rest.size() == 1 ? " does" : " do") + " not move" + until +
+                               " and " + (rest.size() == 1 ? "was" : "were") + " passed over.");
+        fits.best = std::move(moving);
+    }
+
+    // In a log of several heaters the one's temperature does not answer the other's power.
+    void refuse_strangers() {
+        if (!layout_.pairs || !found_.at[kInputRole] || !found_.at[kOutputRole]) return;
+        if (chosen_[kInputRole] || chosen_[kOutputRole]) return;
+        const std::string u = stem(facts_.heading(*found_.at[kInputRole])),
+                          y = stem(facts_.heading(*found_.at[kOutputRole]));
+        if (u.empty() || y.empty() || u == y) return;
+        fault(kOutputRole, facts_.shown(*found_.at[kInputRole]) + " and " + facts_.shown(*found_.at[kOutputRole]) +
+                               " do not belong together by their names. Name u in columns.u and y in columns.y.");
+    }
+
+    bool take_data_set() {
+        const auto pair = data_set(facts_);
+        if (pair) take_pair(*pair);
+        return pair.has_value();
+    }
+
+    void read_input_beside_output() {
+        const auto found = input_beside_output(facts_, [&](std::size_t column) { return may_be(column, kInputRole); });
+        if (!wanted(kInputRole) || !wanted(kOutputRole)) return;
+        if (const auto* pair = std::get_if<NamedPair>(&found)) take_pair(*pair);
+        if (const auto* sentence = std::get_if<std::string>(&found)) fault(kInputRole, *sentence);
+    }
+
+    void take_pair(const NamedPair& pair) {
+        if (!wanted(kInputRole) || !wanted(kOutputRole)) return;
+        take(kInputRole, pair.u, pair.why_u);
+        take(kOutputRole, pair.y, pair.why_y);
+        if (!pair.note.empty()) found_.notes.push_back(pair.note);
+    }
+
+    void check_clocks() {
+        if (!found_.at[kTimeRole]) return;
+        for (const Role role : {kInputRole, kOutputRole}) {
+            if (found_.clock && *found_.clock + 1 == *found_.at[role]) continue;
+            if (auto fault = two_clocks(facts_, *found_.at[kTimeRole], *found_.at[role]))
+                return faults_.push_back(*std::move(fault));
+        }
+    }
+
+    // More headings than values: the first ones are believed where time, u and y are among them by name.
+    void check_surplus() {
+        if (layout_.surplus.empty()) return;
+        bool plain = faults_.empty();
+        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+            if (!found_.at[role]) continue;
+            const std::size_t at = *found_.at[role];
+            const bool named = chosen_[role] || match(facts_.heading(at), role);
+            const bool runs = role != kTimeRole || profiles_[at].stamps > 0 || profiles_[at].rises;
+            plain = plain && named && runs;
+        }
+        if (plain)
+            found_.notes.push_back(surplus_note(layout_));
+        else
+            faults_ = {surplus_fault(layout_)};
+    }
+
+    void find_terms() {
+        int letters = 0;
+        for (std::size_t i = 0; i < facts_.size(); ++i) letters += is_term_letter(facts_.heading(i)) ? 1 : 0;
+        for (std::size_t i = 0; i < facts_.size(); ++i) {
+            const bool chosen = std::find(chosen_.begin(), chosen_.end(), i) != chosen_.end();
+            if (!chosen && is_controller_term(facts_.heading(i), letters > 1)) terms_.push_back(i);
+        }
+        if (terms_.empty()) return;
+        found_.notes.push_back("The controller's own terms are in the file, " + facts_.shown(terms_) +
+                               "; they are passed over.");
+    }
+
+    // "Ts" with one number, or always the same one.
+    void find_spacing() {
+        if (!wanted(kTimeRole)) return;
+        for (std::size_t i = 0; i < facts_.size(); ++i) {
+            const ColumnProfile& p = profiles_[i];
+            const bool constant = p.numbers != 2 && p.changes == 0;
+            if (taken(i) || !is_spacing(facts_.heading(i)) || !constant || !(p.first > 0) || p.texts > 0) continue;
+            for (std::size_t k = 0; k < facts_.size(); ++k) {
+                if (k != i && may_be(k, kTimeRole) && match(facts_.heading(k), kTimeRole)) return;
+            }
+            found_.spacing = i;
+            return;
+        }
+    }
+
+    // The set point is told where it is in the file; nothing depends on it that could be refused.
+    void find_reference() {
+        if (found_.at[kReferenceRole]) return;
+        Fits r = fits(kReferenceRole);
+        if (r.best.empty()) {
+            for (std::size_t i = 0; i < facts_.size(); ++i) {
+                if (is_command(facts_.heading(i)) && may_be(i, kReferenceRole)) r.best.push_back(i);
+            }
+        }
+        for (const Role role : {kOutputRole, kInputRole}) {
+            for (const auto same : {stem, number_behind}) {
+                if (found_.at[role]) keep_beside(*found_.at[role], same, r);
+            }
+        }
+        if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
+        if (r.best.empty()) return;
+        found_.notes.push_back("Several columns may be the set point: " + facts_.shown(r.best) +
+                               "; none is read. Name one in columns.r.");
+    }
+
+    // "cmd" is what was sent to the plant, where nothing else is.
+    void take_command() {
+        std::vector<std::size_t> commands;
+        for (std::size_t i = 0; i < facts_.size(); ++i) {
+            if (is_command(facts_.heading(i)) && may_be(i, kReferenceRole)) commands.push_back(i);
+        }
+        if (commands.size() == 1)
+            take(kInputRole, commands.front(), " (no other column is; it may be the set point of an inner loop)");
     }
 
     // A column of the very name that holds no number: reading it tells which line is wrong.
     void by_very_name(Role role) {
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
-            const auto now = taken(i) ? std::nullopt : match(headings_[i], role);
+            if (role == kTimeRole && profiles_[i].numbers > 0) continue;
+            const auto now = taken(i) ? std::nullopt : match(facts_.heading(i), role);
             if (now && now->level == 1) return take(role, i);
         }
-    }
-
-    // Historians also export one line for each tag and time.
-    bool refuse_one_line_a_tag() {
-        bool tag = false, value = false;
-        for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
-            const std::string& name = headings_[i].name;
-            const bool texts = profiles_[i].texts > 0 && !holds_numbers(i);
-            tag = tag || (texts && (name == "tagname" || name == "tag" || name == "varname" || name == "pointname" ||
-                                    name == "name" || name == "tag name" || name == "variable"));
-            value = value || name == "value" || name == "varvalue" || name == "wert" || name == "vvalue";
-        }
-        if (!tag || !value || options_.columns.u || options_.columns.y) return false;
-        faults_.push_back({"csv", "csv has one line for each tag and time (columns " + headings_listed() +
-                                      "); export it with one column for each tag, so that u and y stand in one line."});
-        return true;
     }
 
     void join_date_and_clock() {
@@ -225,8 +380,7 @@ private:
         for (std::size_t i = 0; i < profiles_.size(); ++i) {
             if (taken(i)) continue;
             const ColumnProfile& p = profiles_[i];
-            const bool index =
-                !layout_.headings.empty() && (i >= layout_.headings.size() || is_index(layout_.headings[i]));
+            const bool index = facts_.is_index(i);
             if (p.stamps > 0 && p.numbers == 0 && p.texts == 0) stamps.push_back(i);
             if (p.numbers > 2 && p.rises && p.stamps == 0 && p.texts == 0 && !index) rising.push_back(i);
         }
@@ -240,25 +394,25 @@ private:
     }
 
     void rest_by_content() {
-        std::vector<std::size_t> roles, free;
+        std::vector<std::size_t> roles, free, switching;
         for (const std::size_t role : {std::size_t{kTimeRole}, std::size_t{kInputRole}, std::size_t{kOutputRole}}) {
             if (wanted(role)) roles.push_back(role);
         }
         for (std::size_t i = 0; i < profiles_.size(); ++i) {
-            const bool index =
-                !layout_.headings.empty() && (i >= layout_.headings.size() || is_index(layout_.headings[i]));
-            if (!index && may_be(i, kOutputRole)) free.push_back(i);
+            if (facts_.is_index(i)) continue;
+            if (may_be(i, kOutputRole) && profiles_[i].numbers > 0 && !is_spacing(facts_.heading(i))) free.push_back(i);
+            if (facts_.switches(i) && may_be(i, kInputRole)) switching.push_back(i);
         }
-        if (roles.size() == 1 && free.size() == 1 && (!layout_.headings.empty() || roles.front() != kTimeRole))
-            return take(roles.front(), free.front());
+        if (wanted(kInputRole) && switching.size() == 1) {
+            take(kInputRole, switching.front(), " (it switches)");
+            std::erase(roles, std::size_t{kInputRole});
+        }
+        if (roles.size() == 1 && free.size() == 1 &&
+            (roles.front() != kTimeRole || (!layout_.headings.empty() && facts_.mostly_one_way(free.front()))))
+            return take(roles.front(), free.front(), " (the only column left)");
         if (roles.size() != 2 || free.size() != 2 || roles.front() == kTimeRole) return;
-        // u stays on its levels, y moves.
-        const auto held = [&](std::size_t a, std::size_t b) {
-            const ColumnProfile &p = profiles_[a], &q = profiles_[b];
-            return p.numbers > 3 && 2 * p.changes < p.numbers && 4 * p.changes < q.changes;
-        };
         for (const auto& [u, y] : {std::pair{free[0], free[1]}, std::pair{free[1], free[0]}}) {
-            if (!held(u, y)) continue;
+            if (!facts_.held(u, y)) continue;
             take(kInputRole, u, " (it stays on its levels)");
             take(kOutputRole, y, " (it moves)");
             return;
@@ -274,12 +428,13 @@ private:
         } else {
             fault(role, "No heading is plainly " + name + " (" + kRoles[role].meaning + "); name it in columns." +
                             name + (role == kTimeRole ? ", or give dt" : "") + ". The headings are " +
-                            headings_listed() + ".");
+                            facts_.headings_listed() + ".");
         }
     }
 
     void refuse_equal_columns() {
         for (std::size_t role = 1; role < kRoleCount; ++role) {
+            if (!found_.at[role]) continue;
             for (std::size_t other = 0; other < role; ++other) {
                 if (found_.at[role] && found_.at[role] == found_.at[other])
                     fault(role, std::string(kRoles[role].name) + " and " + kRoles[other].name +
@@ -288,42 +443,21 @@ private:
         }
     }
 
+    ColumnFacts facts_;
     const CsvLayout& layout_;
     const std::vector<ColumnProfile>& profiles_;
     const CsvOptions& options_;
     std::vector<CsvFault>& faults_;
-    std::vector<Heading> headings_;
+    std::array<std::optional<std::size_t>, kRoleCount> chosen_;
+    std::vector<std::size_t> terms_;
     FoundColumns found_;
 };
 
 }  // namespace
 
-std::vector<ColumnProfile> profiles(std::string_view text, const CsvLayout& layout) {
-    std::vector<ColumnProfile> out(layout.width);
-    std::vector<double> last(layout.width, 0);
-    CsvLines lines(text, layout);
-    CsvLine line;
-    for (int n = 0; n < kProfiledLines && lines.next(line); ++n) {
-        for (std::size_t i = 0; i < out.size(); ++i)
-            look_at(i < line.cells.size() ? line.cells[i] : std::string_view(), layout.sign, last[i], out[i]);
-    }
-    return out;
-}
-
-FoundColumns find_columns(const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
+FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
                           const CsvOptions& options, std::vector<CsvFault>& faults) {
-    return ColumnFinder(layout, profiles, options, faults).find();
-}
-
-std::string quoted(std::string_view text) {
-    constexpr std::size_t kShownLength = 40;
-    std::string out(text.substr(0, kShownLength));
-    if (out.size() < text.size()) {
-        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xC0) == 0x80) out.pop_back();
-        if (!out.empty() && (static_cast<unsigned char>(out.back()) & 0x80)) out.pop_back();
-        out += "...";
-    }
-    return "\"" + out + "\"";
+    return ColumnFinder(text, layout, profiles, options, faults).find();
 }
 
 const char* role_name(std::size_t role) { return kRoles[role].name; }

@@ -5,15 +5,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tunewright::api {
 
-/// t, u and y, in this order: index of arrays.
-enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kRoleCount };
+/// t, u, y and the set point r, in this order: index of arrays.
+enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
 
 struct Heading {
-    std::string name;  ///< lower case, without unit
-    std::string unit;  ///< as written; "" if none
+    std::string text;                ///< as written, trimmed
+    std::string name;                ///< lower case, without unit
+    std::string unit;                ///< as written; "" if none
+    std::vector<std::string> words;  ///< of the name, apart also where "targetTemp" begins a new one; lower case
 };
 
 /// "PV [degC]", "PV (degC)", "PV / degC", "PV, degC", "time_ms" apart.
@@ -28,10 +31,33 @@ struct NameMatch {
 
 std::optional<NameMatch> match(const Heading& heading, Role role);
 
+/// A heading that says that it is the measured one of a pair: "measured_rpm", "actual speed". Plain "speed" beside it
+/// may be the command.
+bool is_measured(const Heading& heading);
+
+/// "cmd", "command": the set point where another column is u, else u.
+bool is_command(const Heading& heading);
+
 /// Running numbers that exports put in front.
 bool is_index(std::string_view heading);
 
-/// Set points, qualities, modes, alarms: never y or u unless chosen.
+/// The spacing of the samples: "Ts", "dt", "sample time".
+bool is_spacing(const Heading& heading);
+
+/// Set points, qualities, modes, alarms, the weather: never y or u unless chosen.
 bool is_beside_the_point(const Heading& heading);
+
+/// "heater state", "pump status": u where it switches.
+bool is_state(const Heading& heading);
+
+/// What a controller computes with: "error", "P", "I-Term". The letters alone count only where `with_letters`.
+bool is_controller_term(const Heading& heading, bool with_letters);
+bool is_term_letter(const Heading& heading);
+
+/// What the heading says before the word that tells the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
+std::string stem(const Heading& heading);
+
+/// "heater 1" and "Temperature 1": the number behind the last word; "" for none.
+std::string number_behind(const Heading& heading);
 
 }  // namespace tunewright::api

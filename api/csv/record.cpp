@@ -1,11 +1,14 @@
 #include "api/csv/record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "api/csv/columns.h"
 #include "api/csv/encoding.h"
 #include "api/csv/time_column.h"
+#include "api/csv/time_stamp.h"
+#include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
@@ -22,7 +25,7 @@ public:
         check_layout();
         if (faults_.empty()) {
             profiles_ = profiles(text_, layout_);
-            columns_ = find_columns(layout_, profiles_, options_, faults_);
+            columns_ = find_columns(text_, layout_, profiles_, options_, faults_);
         }
         if (faults_.empty()) read_lines();
         if (faults_.empty() && record_.t.empty())
@@ -36,11 +39,23 @@ private:
         if (faults_.size() < kMostFaults) faults_.push_back({std::move(where), std::move(message)});
     }
 
+    std::string no_data() const {
+        if (layout_.lines_of_text == 0)
+            return "csv is empty; it needs a heading line such as t,u,y and lines of numbers.";
+        for (const std::string& text : layout_.headings) {
+            for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+                const auto named = match(split_heading(text), role);
+                if (named && named->level == 1) return "csv has headings but no line of numbers.";
+            }
+        }
+        return "csv has no line of numbers in columns, nor lines that name two values or more each; it begins with " +
+               quoted(first_line()) +
+               ". Export a heading line such as t,u,y and one line a sample, with all its values.";
+    }
+
     void check_layout() {
         if (layout_.data_line == 0) {
-            fault("csv", layout_.lines_of_text == 0
-                             ? "csv is empty; it needs a heading line such as t,u,y and lines of numbers."
-                             : "csv has headings but no line of numbers.");
+            fault("csv", no_data());
         } else if (layout_.headings.empty() && layout_.narrow_heading_line > 0) {
             fault("csv", "Line " + std::to_string(layout_.narrow_heading_line) + " has " +
                              std::to_string(layout_.narrow_heading_cells) + " headings and line " +
@@ -49,7 +64,22 @@ private:
         }
     }
 
+    std::string_view first_line() const {
+        std::string_view text = trimmed(text_);
+        return text.substr(0, text.find_first_of("\r\n"));
+    }
+
+    // Times of a file that has none: from the spacing that is given, or that a column tells.
+    double spacing() const {
+        if (options_.dt || !columns_.spacing) return options_.dt.value_or(1);
+        const std::size_t column = *columns_.spacing;
+        const auto unit = seconds_per(split_heading(layout_.headings[column]).unit),
+                   answer = seconds_per(options_.time_unit);
+        return profiles_[column].first * (unit && answer ? *unit / *answer : 1);
+    }
+
     void read_lines() {
+        spacing_ = spacing();
         std::optional<TimeColumn> times;
         if (columns_.at[kTimeRole])
             times.emplace(text_, layout_, columns_, profiles_[*columns_.at[kTimeRole]], options_, faults_);
@@ -69,7 +99,19 @@ private:
                                         " samples; thin it out: a few thousand identify as well.");
             }
         }
+        hold_reference();
         write_notes(times);
+    }
+
+    // A set point that is written where it changes holds until the next one; the first one holds from the beginning.
+    void hold_reference() {
+        std::vector<double>& r = record_.r;
+        const auto known = std::find_if(r.begin(), r.end(), [](double value) { return !std::isnan(value); });
+        if (known == r.end() && !r.empty())
+            columns_.notes.push_back("The column of the set point holds no number; there is none in the record.");
+        if (known == r.end()) return r.clear();
+        double last = *known;
+        for (double& value : r) last = value = std::isnan(value) ? last : value;
     }
 
     void reserve() {
@@ -77,6 +119,7 @@ private:
         const std::size_t typical = layout_.width * 4 + kShortestLine;
         const std::size_t most = std::min(options_.most_samples, text_.size() / typical + 1);
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(most);
+        if (columns_.at[kReferenceRole]) record_.r.reserve(most);
         record_.lines.reserve(most);
     }
 
@@ -98,7 +141,7 @@ private:
     }
 
     void read_line(const CsvLine& line, std::optional<TimeColumn>& times) {
-        double t = static_cast<double>(index_) * options_.dt.value_or(1);
+        double t = static_cast<double>(index_) * spacing_;
         if (times) {
             const std::string_view text = cell(line, *columns_.at[kTimeRole]);
             if (is_missing(text)) {
@@ -108,8 +151,9 @@ private:
             const std::string_view clock = columns_.clock ? cell(line, *columns_.clock) : std::string_view();
             if (!times->read(text, clock, line.number, t)) return report_cell(line, kTimeRole, text, times->stamps());
         }
-        double u = 0, y = 0;
+        double u = 0, y = 0, r = std::numeric_limits<double>::quiet_NaN();
         if (!read_value(line, kInputRole, u) || !read_value(line, kOutputRole, y)) return;
+        if (columns_.at[kReferenceRole]) r = read_reference(line);
         if (std::isnan(u) && std::isnan(y)) {
             ++record_.dropped;
             return;
@@ -118,6 +162,7 @@ private:
         record_.t.push_back(t);
         record_.u.push_back(u);
         record_.y.push_back(y);
+        if (columns_.at[kReferenceRole]) record_.r.push_back(r);
         record_.lines.push_back(line.number);
     }
 
@@ -129,12 +174,31 @@ private:
             report_size(line, role);
             return false;
         }
+        if (role == kInputRole && read_switch(text, value)) return true;
         if (!is_missing(text)) {
             report_cell(line, role, text, false);
             return false;
         }
         if (!text.empty() && missing_word_.empty()) missing_word_ = std::string(text);
         value = std::numeric_limits<double>::quiet_NaN();
+        return true;
+    }
+
+    // Whatever stands for "none" in a set point: nothing depends on it.
+    double read_reference(const CsvLine& line) const {
+        const std::size_t column = *columns_.at[kReferenceRole];
+        double value = 0;
+        const bool number = read_cell_number(cell(line, column), value, layout_.sign, profiles_[column].suffix);
+        return number && std::abs(value) <= kLargest ? value : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    // Words of u are its two levels; beside numbers they would be a guess.
+    bool read_switch(std::string_view text, double& value) {
+        const auto level = switch_word(text);
+        if (!level || profiles_[*columns_.at[kInputRole]].numbers > 0) return false;
+        value = *level;
+        std::string& word = *level > 0 ? high_word_ : low_word_;
+        if (word.empty()) word = std::string(text);
         return true;
     }
 
@@ -158,6 +222,14 @@ private:
                          " is beyond 1e30, no measurement. Mend the line, or leave the cell blank to drop it.");
     }
 
+    void note_switch() {
+        std::string levels;
+        if (!low_word_.empty()) levels = quoted(low_word_) + " is 0";
+        if (!high_word_.empty()) levels += (levels.empty() ? "" : " and ") + quoted(high_word_) + " is 1";
+        if (!levels.empty())
+            record_.notes.push_back("u is two levels: " + levels + ". The gain is per switch, not per unit of power.");
+    }
+
     void note_unit(Role role, const std::string& given, const char* name) {
         const std::size_t column = *columns_.at[role];
         std::string unit = column < layout_.headings.size() ? split_heading(layout_.headings[column]).unit : "";
@@ -176,8 +248,19 @@ private:
         if (times) {
             for (std::string& note : times->take_notes()) notes.push_back(std::move(note));
         }
+        if (columns_.spacing)
+            notes.push_back("Times are made from column " + quoted(layout_.headings[*columns_.spacing]) +
+                            ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
         if (layout_.skipped > 0)
-            notes.push_back(std::to_string(layout_.skipped) + " lines above the headings were skipped.");
+            notes.push_back(std::to_string(layout_.skipped) +
+                            (layout_.skipped == 1 ? " line above the headings was" : " lines above the headings were") +
+                            " skipped.");
+        if (layout_.pairs) notes.push_back("Each line names its values; lines without them were passed over.");
+        if (layout_.commented)
+            notes.push_back("The headings are those of the comment in line " + std::to_string(layout_.heading_line) +
+                            ".");
+        if (layout_.numbered) notes.push_back("The first column, which has no heading, numbers the rows.");
+        note_switch();
         if (layout_.sign == DecimalSign::comma) notes.push_back("Numbers have a decimal comma.");
         if (!missing_word_.empty()) notes.push_back(quoted(missing_word_) + " and the like are read as no value.");
         note_unit(kInputRole, options_.unit_u, "u");
@@ -190,7 +273,8 @@ private:
     std::vector<ColumnProfile> profiles_;
     FoundColumns columns_;
     std::size_t index_ = 0;
-    std::string missing_word_;
+    double spacing_ = 1;
+    std::string missing_word_, low_word_, high_word_;
     CsvRecord record_;
     std::vector<CsvFault> faults_;
 };

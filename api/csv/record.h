@@ -13,7 +13,7 @@ namespace tunewright::api {
 using ColumnChoice = std::variant<std::string, int>;
 
 struct ColumnChoices {
-    std::optional<ColumnChoice> t, u, y;
+    std::optional<ColumnChoice> t, u, y, r = {};
 };
 
 struct CsvOptions {
@@ -28,6 +28,7 @@ struct CsvOptions {
 
 struct CsvRecord {
     std::vector<double> t, u, y;     ///< u and y are NaN where a cell is blank, "Bad", ...; never both
+    std::vector<double> r;           ///< set point, a number in each sample; empty: the file has none
     std::vector<int> lines;          ///< of each sample in the file, from 1
     int dropped = 0;                 ///< lines left out: without a time, or with neither u nor y
     std::vector<std::string> notes;  ///< what was found by itself, one sentence each

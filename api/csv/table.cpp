@@ -1,28 +1,16 @@
 #include "api/csv/table.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 
+#include "api/csv/heading.h"
+#include "api/csv/text_lines.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
 namespace {
 
 constexpr int kLooked = 200;
-
-// Lines up to the end; \n, \r\n and \r end one.
-std::optional<std::string_view> next_line(std::string_view text, std::size_t& at) {
-    if (at >= text.size()) return std::nullopt;
-    const std::size_t newline = std::min(text.find('\n', at), text.size());
-    const std::size_t end = std::min(
-        text.substr(at, newline - at).find('\r') == text.npos ? newline : at + text.substr(at, newline - at).find('\r'),
-        text.size());
-    const std::string_view line = text.substr(at, end - at);
-    at = end + 1;
-    if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++at;
-    return line;
-}
 
 std::string_view blanks_removed(std::string_view text) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -155,8 +143,55 @@ bool is_text(const CsvLine& line) {
     return text;
 }
 
+int roles_named(const std::vector<std::string_view>& cells) {
+    int named = 0;
+    for (const std::string_view cell : cells) {
+        const Heading heading = split_heading(cell);
+        for (const Role role : {kTimeRole, kInputRole, kOutputRole, kReferenceRole}) {
+            const auto found = match(heading, role);
+            if (!found || found->level > 2) continue;
+            ++named;
+            break;
+        }
+    }
+    return named;
+}
+
+void take_headings(const CsvLine& line, CsvLayout& layout) {
+    layout.heading_line = line.number;
+    for (const std::string_view cell : line.cells) layout.headings.emplace_back(cell);
+}
+
+// A heading for each column but the first, which counts the rows: what R writes.
+bool counts_rows(const std::vector<CsvLine>& data) {
+    constexpr std::size_t kFew = 5;
+    double before = 0;
+    for (std::size_t i = 0; i < std::min(data.size(), kFew); ++i) {
+        double number = 0;
+        if (!read_cell_number(data[i].cells.front(), number) || (i > 0 && number != before + 1)) return false;
+        before = number;
+    }
+    return data.size() > 1;
+}
+
+// Which of the lines of text, as wide as the data and right above it, holds the headings: the others are a title, units
+// or descriptions.
+std::size_t heading_among(const std::vector<CsvLine>& above, std::size_t first) {
+    std::size_t best = first, most = 0;
+    int named = 0;
+    for (std::size_t i = first; i < above.size(); ++i) most = std::max(most, filled(above[i].cells));
+    while (best + 1 < above.size() && 2 * filled(above[best].cells) <= most) ++best;
+    for (std::size_t i = best; i < above.size(); ++i) {
+        const int now = roles_named(above[i].cells);
+        if (now <= named) continue;
+        named = now;
+        best = i;
+    }
+    return best;
+}
+
 // The lines of text right above the data that are as wide as it is.
-void find_headings(const std::vector<CsvLine>& above, CsvLayout& layout) {
+void find_headings(const std::vector<CsvLine>& above, const std::vector<CsvLine>& data, CsvLayout& layout) {
     std::size_t first = above.size();
     while (first > 0) {
         const CsvLine& line = above[first - 1];
@@ -169,25 +204,148 @@ void find_headings(const std::vector<CsvLine>& above, CsvLayout& layout) {
     layout.skipped = static_cast<int>(first);
     if (first == above.size()) {
         if (above.empty() || !is_text(above.back()) || filled(above.back().cells) < 2) return;
+        if (const std::size_t count = filled(above.back().cells); count > layout.width && layout.width > 1) {
+            take_headings(above.back(), layout);
+            layout.headings.resize(count);
+            layout.surplus.assign(layout.headings.begin() + static_cast<std::ptrdiff_t>(layout.width),
+                                  layout.headings.end());
+            layout.headings.resize(layout.width);
+            --layout.skipped;
+            return;
+        }
         layout.narrow_heading_line = above.back().number;
         layout.narrow_heading_cells = filled(above.back().cells);
         return;
     }
-    layout.heading_line = above[first].number;
-    for (const std::string_view cell : above[first].cells) layout.headings.emplace_back(cell);
-    layout.below.assign(above.begin() + static_cast<std::ptrdiff_t>(first) + 1, above.end());
+    const std::size_t at = heading_among(above, first);
+    layout.skipped = static_cast<int>(at);
+    take_headings(above[at], layout);
+    layout.below.assign(above.begin() + static_cast<std::ptrdiff_t>(at) + 1, above.end());
+    if (above[at].cells.size() + 1 != layout.width || !counts_rows(data) || data.front().cells.back().empty()) return;
+    layout.numbered = true;
+    layout.headings.insert(layout.headings.begin(), "");
 }
 
-// "# t,u,y" and "#,Time,PV": the heading line of those who write headings as comments, or number their rows.
+// "# t,u,y" and "#,Time,PV": the heading line of those who write headings as comments, or number their rows. Blanks
+// part the words of any sentence too, so one of them must name a role.
 std::optional<CsvLine> commented_headings(const Head& line, CsvLayout& layout) {
     const std::string_view whole = trimmed(line.content);
     for (const std::string_view content :
-         {whole, trimmed(whole.substr(std::min(whole.find_first_not_of("#/"), whole.size())))}) {
-        CsvLine cells{line.number, {}};
-        split_line(content, layout.separator, cells.cells, layout.unquoted);
-        if (layout.width > 1 && cells.cells.size() == layout.width && is_text(cells)) return cells;
+         {trimmed(whole.substr(std::min(whole.find_first_not_of("#/%"), whole.size()))), whole}) {
+        for (const char separator : {layout.separator, ',', ';', '\t', '|', ' '}) {
+            CsvLine cells{line.number, {}};
+            split_line(content, separator, cells.cells, layout.unquoted);
+            while (!cells.cells.empty() && cells.cells.back().empty() && cells.cells.size() > layout.width)
+                cells.cells.pop_back();
+            if (layout.width < 2 || cells.cells.size() != layout.width || !is_text(cells)) continue;
+            if ((separator == layout.separator && separator != ' ') || roles_named(cells.cells) > 0) return cells;
+        }
     }
     return std::nullopt;
+}
+
+// Rows that end where their last value is: the headings and the longest rows tell how many columns there are.
+void widen_to_headings(const std::vector<CsvLine>& lines, CsvLayout& layout) {
+    const auto heading = std::find_if(lines.begin(), lines.end(), [&](const CsvLine& line) {
+        return filled(line.cells) > layout.width && is_text(line) && roles_named(line.cells) > 1;
+    });
+    if (heading == lines.end()) return;
+    const std::size_t width = filled(heading->cells);
+    const bool full = std::any_of(
+        heading, lines.end(), [&](const CsvLine& line) { return filled(line.cells) == width && is_data(line, width); });
+    if (full) layout.width = width;
+}
+
+bool is_data_of(const CsvLine& line, std::size_t usual, std::size_t width) {
+    return is_data(line, usual) || (width > usual && is_data(line, width));
+}
+
+CsvLayout pairs_layout(std::string_view text) {
+    CsvLayout layout;
+    layout.headings = pair_keys(text);
+    layout.pairs = !layout.headings.empty();
+    layout.width = layout.headings.size();
+    layout.data_line = 1;
+    return layout;
+}
+
+// The separator that a first line such as sep=; tells, which is then taken off.
+std::optional<char> told_separator(std::vector<Head>& heads) {
+    constexpr std::string_view kToldPrefix = "sep=";
+    if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) != 0) return std::nullopt;
+    const std::string_view line = heads.front().content;
+    const std::size_t sign = line.find('=') + 1;
+    const char separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
+    heads.erase(heads.begin());
+    return separator;
+}
+
+// LabVIEW's files end their head with this line.
+void drop_labview_head(std::vector<Head>& heads) {
+    for (std::size_t i = heads.size(); i-- > 0;) {
+        if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
+        heads.erase(heads.begin(), heads.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return;
+    }
+}
+
+// The headings in the comments right above the data, where there are no others.
+void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::const_iterator data,
+                             CsvLayout& layout) {
+    constexpr int kMostComments = 3;
+    for (int n = 0; n < kMostComments && layout.headings.empty() && data != heads.begin(); ++n) {
+        if (!(--data)->comment) return;
+        const auto found = commented_headings(*data, layout);
+        if (!found) continue;
+        take_headings(*found, layout);
+        layout.commented = true;
+        layout.narrow_heading_line = 0;
+    }
+}
+
+CsvLayout table_layout(std::string_view text) {
+    CsvLayout layout;
+    std::vector<Head> heads = first_lines(text);
+    const auto told = told_separator(heads);
+    drop_labview_head(heads);
+    layout.separator = told ? *told : find_separator(heads);
+
+    std::vector<CsvLine> lines;
+    for (const Head& head : heads) {
+        if (head.comment) continue;
+        lines.push_back({head.number, {}});
+        split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
+    }
+    layout.lines_of_text = static_cast<int>(lines.size());
+    const std::size_t usual = layout.width = usual_width(lines);
+    widen_to_headings(lines, layout);
+    const auto data = std::find_if(lines.begin(), lines.end(),
+                                   [&](const CsvLine& line) { return is_data_of(line, usual, layout.width); });
+    const std::vector<CsvLine> rows(data, lines.end());
+    find_headings({lines.begin(), data}, rows, layout);
+    if (data != lines.end()) {
+        layout.data_line = data->number;
+        for (const std::string_view cell : data->cells) layout.first.emplace_back(cell);
+        const auto head =
+            std::find_if(heads.begin(), heads.end(), [&](const Head& h) { return h.number == data->number; });
+        layout.data_at = head->at;
+        find_commented_headings(heads, head, layout);
+    }
+    if (!layout.headings.empty()) layout.width = layout.headings.size();
+
+    DecimalSignFinder finder;
+    for (const CsvLine& row : rows) {
+        for (const std::string_view cell : row.cells) finder.look_at(cell);
+    }
+    layout.sign = finder.found();
+    return layout;
+}
+
+// "+------+-----+" and "|---|---|".
+bool is_rule(std::string_view content) {
+    constexpr std::size_t kShortest = 5;
+    return content.size() >= kShortest && content.find_first_not_of("-+=|: ") == content.npos &&
+           content.find_first_of("-=") != content.npos;
 }
 
 }  // namespace
@@ -208,73 +366,52 @@ void split_line(std::string_view line, char separator, std::vector<std::string_v
 }
 
 bool is_comment(std::string_view content) {
-    return content.front() == '#' || content.substr(0, 2) == "//" || content.substr(0, 2) == "\"#";
+    if (is_rule(content)) return true;
+    return content.front() == '#' || content.front() == '%' || content.substr(0, 2) == "//" ||
+           content.substr(0, 2) == "\"#";
 }
 
 CsvLayout find_layout(std::string_view text) {
-    CsvLayout layout;
-    std::vector<Head> heads = first_lines(text);
-    constexpr std::string_view kToldPrefix = "sep=";
-    bool told = false;
-    if (!heads.empty() && lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) == 0) {
-        const std::string_view line = heads.front().content;
-        const std::size_t sign = line.find('=') + 1;
-        layout.separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
-        told = true;
-        heads.erase(heads.begin());
-    }
-    // LabVIEW's files end their head with this line.
-    for (std::size_t i = heads.size(); i-- > 0;) {
-        if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
-        heads.erase(heads.begin(), heads.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        break;
-    }
-    if (!told) layout.separator = find_separator(heads);
-
-    std::vector<CsvLine> lines;
-    for (const Head& head : heads) {
-        if (head.comment) continue;
-        lines.push_back({head.number, {}});
-        split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
-    }
-    layout.lines_of_text = static_cast<int>(lines.size());
-    layout.width = usual_width(lines);
-    const auto data =
-        std::find_if(lines.begin(), lines.end(), [&](const CsvLine& line) { return is_data(line, layout.width); });
-    find_headings({lines.begin(), data}, layout);
-    if (data != lines.end()) {
-        layout.data_line = data->number;
-        const auto head =
-            std::find_if(heads.begin(), heads.end(), [&](const Head& h) { return h.number == data->number; });
-        layout.data_at = head->at;
-        if (layout.headings.empty() && head != heads.begin() && (head - 1)->comment) {
-            if (auto found = commented_headings(*(head - 1), layout)) find_headings({*std::move(found)}, layout);
-        }
-    }
-    if (!layout.headings.empty()) layout.width = layout.headings.size();
-
-    DecimalSignFinder finder;
-    for (auto line = data; line != lines.end(); ++line) {
-        for (const std::string_view cell : line->cells) finder.look_at(cell);
-    }
-    layout.sign = finder.found();
-    return layout;
+    CsvLayout table = table_layout(text);
+    const std::vector<std::string_view> headings(table.headings.begin(), table.headings.end());
+    // A remark such as "Kp=1 Ki=2" in the rows of a table makes them no log of pairs.
+    if (table.data_line > 0 && roles_named(headings) > 1) return table;
+    CsvLayout pairs = pairs_layout(text);
+    return pairs.pairs ? pairs : table;
 }
 
 CsvLines::CsvLines(std::string_view text, const CsvLayout& layout)
     : text_(layout.data_line == 0 ? std::string_view() : text),
-      separator_(layout.separator),
+      layout_(layout),
       at_(layout.data_at),
       number_(layout.data_line - 1) {}
+
+bool CsvLines::next_pairs(std::string_view content, CsvLine& line) {
+    split_pairs(content, pairs_);
+    if (!is_pair_line(pairs_, layout_.headings)) return false;
+    line.cells.assign(layout_.width, {});
+    for (const Pair& pair : pairs_) {
+        const auto at = std::find(layout_.headings.begin(), layout_.headings.end(), pair.key);
+        if (at == layout_.headings.end()) continue;
+        std::string_view& cell = line.cells[static_cast<std::size_t>(at - layout_.headings.begin())];
+        if (cell.empty()) cell = pair.value;
+    }
+    return true;
+}
 
 bool CsvLines::next(CsvLine& line) {
     unquoted_.clear();
     while (const auto content = next_line(text_, at_)) {
         ++number_;
-        std::size_t first = content->find_first_not_of(" \t");
-        if (first == content->npos || is_comment(content->substr(first))) continue;
         line.number = number_;
-        split_line(*content, separator_, line.cells, unquoted_);
+        const std::string_view inner = trimmed(*content);
+        if (inner.empty()) continue;
+        if (layout_.pairs) {
+            if (next_pairs(inner, line)) return true;
+            continue;
+        }
+        if (is_comment(inner)) continue;
+        split_line(*content, layout_.separator, line.cells, unquoted_);
         return true;
     }
     return false;

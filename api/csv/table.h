@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/csv/cell.h"
+#include "api/csv/pairs.h"
 
 namespace tunewright::api {
 
@@ -20,6 +21,11 @@ struct CsvLine {
 struct CsvLayout {
     char separator = ',';               ///< ' ' for runs of blanks
     std::vector<std::string> headings;  ///< empty if the file has none
+    std::vector<std::string> surplus;   ///< headings behind the last column that has values
+    bool pairs = false;                 ///< lines that name each value (pairs.h); headings are the names
+    bool commented = false;             ///< the headings are a comment
+    bool numbered = false;              ///< the rows begin with a number for which there is no heading
+    std::vector<std::string> first;     ///< cells of the first line of data
     std::vector<CsvLine> below;         ///< lines of units or descriptions between the headings and the data
     int heading_line = 0;               ///< 0: none
     std::size_t data_at = 0;            ///< offset of the first line of data
@@ -34,31 +40,38 @@ struct CsvLayout {
 };
 
 /// Separators , ; tab | and blanks, found by the first 200 lines, or told by a first line such as sep=;. Blank lines,
-/// comments (# and //) and what a logger writes above the headings are skipped.
-/// The headings are the first line of text as wide as the data, in the lines right above it; a comment of that width
-/// is a heading line too. `text` must outlive what is returned.
+/// comments (#, % and //) and what a logger writes above the headings are skipped.
+/// The headings are a line of text as wide as the data, in the lines right above it: the one that names most roles,
+/// else the first; a comment of that width is a heading line too. Of a log of pairs (pairs.h) they are its names.
+/// `text` must outlive what is returned.
 CsvLayout find_layout(std::string_view text);
 
 /// The cells of one line, trimmed and without quotes; those that held doubled quotes live in `storage`.
 void split_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
                 std::deque<std::string>& storage);
 
-/// What people write beside the data: a line that begins with # or //. `content` is trimmed and not empty.
+/// What people write beside the data: a line that begins with #, % or //, and the lines that a table is drawn with.
+/// `content` is trimmed and not empty.
 bool is_comment(std::string_view content);
 
 /// The lines of data, one after another, without keeping them.
 class CsvLines {
 public:
+    /// `layout` must outlive it.
     CsvLines(std::string_view text, const CsvLayout& layout);
 
-    /// False at the end. The cells are valid until the next call. Blank lines and comments are skipped.
+    /// False at the end. The cells are valid until the next call. Blank lines, comments, and what a log of pairs holds
+    /// beside them are skipped.
     bool next(CsvLine& line);
 
 private:
+    bool next_pairs(std::string_view content, CsvLine& line);
+
     std::string_view text_;
-    char separator_;
+    const CsvLayout& layout_;
     std::size_t at_;
     int number_;
+    std::vector<Pair> pairs_;
     std::deque<std::string> unquoted_;
 };
 

@@ -1,6 +1,9 @@
 #include "api/csv/time_column.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
@@ -23,7 +26,23 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Fou
         return;
     }
     factor_ = 1 / *answer;
+    note_short_clock(text, layout, *columns.at[kTimeRole]);
     find_order(text, layout, columns);
+}
+
+// "00:05" may also be minutes and seconds.
+void TimeColumn::note_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column) {
+    CsvLines lines(text, layout);
+    CsvLine line;
+    while (lines.next(line)) {
+        if (column >= line.cells.size() || is_missing(line.cells[column])) continue;
+        const std::string_view cell = line.cells[column];
+        const auto stamp = read_time_stamp(cell);
+        if (stamp && !stamp->has_date && std::count(cell.begin(), cell.end(), ':') == 1)
+            notes_.push_back("Times such as " + quoted(cell) + " are read as hours and minutes; write 0:" +
+                             std::string(cell) + " for minutes and seconds.");
+        return;
+    }
 }
 
 // Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
@@ -95,7 +114,9 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     if (!seconds_per(unit) && column < layout.headings.size() &&
         match(split_heading(layout.headings[column]), kTimeRole)) {
         const std::string name = split_heading(layout.headings[column]).name;
-        if (name == "seconds" || name == "sec" || name == "ms" || name == "minutes") unit = name;
+        if (seconds_per(name) && name != "m" && name != "d") unit = name;
+        if (name == "millis" || name == "millis()") unit = "ms";
+        if (name == "micros") unit = "us";
     }
     if (!seconds_per(unit)) unit = profile.suffix;
     bool by_size = false;
@@ -106,6 +127,7 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
         }
     }
     const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
+    if (!given && !options.time_unit_given) note_unknown_unit(profile, options);
     if (!given || !answer) return;
     if (by_size)
         notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
@@ -114,6 +136,16 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     factor_ = *given / *answer;
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit +
                      (options.time_unit_given ? "." : "; set units.time to keep them."));
+}
+
+// A number of milliseconds is read as seconds where nobody tells its unit; a usual spacing of seconds is no reason to
+// ask.
+void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
+    constexpr double kUsual = 5;
+    if (profile.changes < 1 || !profile.rises || profile.least_step < kUsual) return;
+    notes_.push_back("The file tells no unit of time: the times are read as " + options.time_unit + ", " +
+                     tunewright::text(profile.least_step) +
+                     " or more apart. Name the column time_ms, or set units.time, if they are others.");
 }
 
 std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {

@@ -26,6 +26,8 @@ public:
     std::vector<std::string> take_notes() { return std::move(notes_); }
 
 private:
+    void note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options);
+    void note_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column);
     void find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns);
     void find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                    const ColumnProfile& profile, const CsvOptions& options);

@@ -58,7 +58,7 @@ public:
         out.end_line();
         for (std::size_t i = 0; i < lines; ++i) {
             for (const Block& block : blocks_) {
-                add(*block.points, i, out);
+                add_point(*block.points, i, out);
                 for (const Trace& trace : block.traces) add(*trace.values, i, out);
             }
             out.end_line();
@@ -69,6 +69,11 @@ public:
 private:
     static void add(const Json& values, std::size_t i, CsvWriter& out) {
         i < values.size() && values[i].is_number() ? out.trace_number(values[i].get<double>()) : out.empty();
+    }
+
+    /// As they stand in the result: times may have more than six digits.
+    static void add_point(const Json& points, std::size_t i, CsvWriter& out) {
+        i < points.size() && points[i].is_number() ? out.number(points[i].get<double>()) : out.empty();
     }
 
     Json units_;

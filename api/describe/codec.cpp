@@ -194,6 +194,12 @@ Codec<std::vector<double>> trace() {
             }};
 }
 
+Codec<std::vector<double>> times_trace() {
+    Codec<std::vector<double>> codec = trace();
+    codec.write = [](const std::vector<double>& values, Writer& out) { out.times(values); };
+    return codec;
+}
+
 Codec<std::optional<double>> figure() {
     return {{},
             [](const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); },

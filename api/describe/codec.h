@@ -63,6 +63,9 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRu
 /// Only in answers: six significant digits each.
 Codec<std::vector<double>> trace();
 
+/// Only in answers: six significant digits, or as many as neighbours differ by.
+Codec<std::vector<double>> times_trace();
+
 /// Only in answers: null where undefined or infinite.
 Codec<std::optional<double>> figure();
 Codec<std::optional<bool>> truth_figure();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -35,9 +36,10 @@ public:
         return *this;
     }
 
-    template <class M>
-    Description& field(std::string name, M T::*member, Codec<M> codec, std::string sentence,
-                       FieldOptions options = {}) {
+    /// `Owner` is T or what it extends.
+    template <class M, class Owner>
+    requires std::is_base_of_v<Owner, T> Description& field(std::string name, M Owner::*member, Codec<M> codec,
+                                                            std::string sentence, FieldOptions options = {}) {
         Field out{name, std::move(sentence), options, {}, {}, codec.schema, {}, {}, {}};
         if (codec.read) {
             out.read = [member, read = codec.read](const Json& value, T& target, Reader& reader) {

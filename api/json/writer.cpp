@@ -172,6 +172,25 @@ void Writer::trace(std::span<const double> values) {
     end_array();
 }
 
+void Writer::numbers(std::span<const double> values) {
+    begin_array();
+    for (const double value : values) number(value);
+    end_array();
+}
+
+// Seconds since 1970 have more than six digits before they differ.
+void Writer::times(std::span<const double> values) {
+    double largest = 0, least = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double size = std::abs(values[i]), step = i > 0 ? std::abs(values[i] - values[i - 1]) : 0;
+        if (std::isfinite(size)) largest = std::max(largest, size);
+        if (step > 0 && std::isfinite(step)) least = least > 0 ? std::min(least, step) : step;
+    }
+    constexpr double kSixDigits = 1e-5;
+    if (least < kSixDigits * largest) return numbers(values);
+    trace(values);
+}
+
 std::string six_digits(double value) {
     if (!std::isfinite(value)) return "not finite";
     char buffer[kBuffer];

@@ -25,7 +25,9 @@ public:
     void number(double value);                   ///< shortest text that reads back as the same double; not finite: null
     void trace_number(double value);             ///< six significant digits; not finite: null
     void trace(std::span<const double> values);  ///< an array of trace_number
-    void raw(std::string_view json);             ///< JSON text as it is
+    void numbers(std::span<const double> values);  ///< an array of number
+    void times(std::span<const double> values);    ///< as trace; in full where six digits would make neighbours equal
+    void raw(std::string_view json);               ///< JSON text as it is
 
     const std::string& view() const { return out_; }
     std::string take() { return std::move(out_); }

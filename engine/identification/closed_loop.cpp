@@ -242,7 +242,8 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     model.warnings.insert(model.warnings.begin(),
                           {"closed-loop", "A controller seems to move u in answer to y: " + loop.told.evidence +
                                               " Then the model may be the controller's inverse in place of the plant: "
-                                              "step u in manual, or step the set point and record it as column r."});
+                                              "step u in manual, or step the set point and record it as column r.",
+                           WarningLevel::bad});
 }
 
 void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {

@@ -73,10 +73,13 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
         const double yardstick =
             is_time ? std::max(std::abs(values.at(name)), 0.5 * lag_sum) : std::abs(values.at(name));
         if (error <= 0.2 * yardstick) continue;
-        warnings.push_back({"uncertain-parameters", name + " = " + number_text(values.at(name)) +
-                                                        " has a standard error of " + number_text(error, 2) +
-                                                        ": the record hardly determines it. A larger or longer test, "
-                                                        "or a simpler model, gives a usable figure."});
+        const bool unknown_gain = name == "K" && error > 0.5 * yardstick;
+        warnings.push_back({"uncertain-parameters",
+                            name + " = " + number_text(values.at(name)) + " has a standard error of " +
+                                number_text(error, 2) +
+                                ": the record hardly determines it. A larger or longer test, or a simpler model, gives "
+                                "a usable figure.",
+                            unknown_gain ? WarningLevel::bad : WarningLevel::warning});
     }
 }
 

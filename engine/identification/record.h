@@ -12,17 +12,16 @@ namespace tunewright {
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
-/// hold). Lengths are equal; that of r too, where it is given.
+/// hold). Lengths are equal; r is empty or as long and has a number in each row.
 struct Record {
-    std::vector<double> t;  ///< time in the user's unit, any start
-    std::vector<double> u;  ///< controller output (plant input)
-    std::vector<double> y;  ///< measurement
-    std::vector<double> r = {};  ///< set point, in y's unit; empty: not in the record
+    std::vector<double> t;       ///< time in the user's unit, any start
+    std::vector<double> u;       ///< controller output (plant input)
+    std::vector<double> y;       ///< measurement
+    std::vector<double> r = {};  ///< set point, in y's unit; empty: none
     RecordKind kind = RecordKind::automatic;
-    std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
-    /// low < high: what reaches the plant of a u that was logged before its limiter.
-    std::optional<std::array<double, 2>> u_limits = {};
-    std::vector<int> line;         ///< of each sample in the file that it comes from, for sentences; empty: no file
+    std::optional<double> u0, y0;                        ///< values before the first sample, in the record's units
+    std::optional<std::array<double, 2>> u_limits = {};  ///< low < high: the actuator goes no further, whatever u says
+    std::vector<int> line;  ///< of each sample in the file that it comes from, for sentences; empty: no file
 };
 
 }  // namespace tunewright

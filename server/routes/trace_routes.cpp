@@ -40,7 +40,8 @@ Response traces_of(const JobRecord& job, api::Traces traces) {
     auto text = api::traces_csv(job.result, traces);
     if (!text)
         return problem_response(404, traces == api::Traces::model
-                                         ? "The result has no model: the request gave a plant, no record."
+                                         ? "The result has no model beside a record: the request gave a plant, or "
+                                           "did not ask for it (identify.traces true)."
                                          : "The result has no traces: the request asked for none (evaluate.points 0, "
                                            "which is the default in a batch), or no entry has any.");
     Response response;

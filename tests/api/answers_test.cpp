@@ -217,7 +217,9 @@ TEST(Answers, IdentifyUsesOnlyThePartOfTheRecordThatIsAskedFor) {
                std::to_string(t > 5 ? K * (1 - std::exp(-(t - 5) / 4)) : 0) + "\n";
     }
     const Answer answer = identify_call(
-        Json{{"record", {{"csv", csv}, {"from", 1}, {"to", 60}}}, {"identify", {{"model", "fopdt"}}}}.dump(), {});
+        Json{{"record", {{"csv", csv}, {"from", 1}, {"to", 60}}}, {"identify", {{"model", "fopdt"}, {"traces", true}}}}
+            .dump(),
+        {});
     ASSERT_EQ(answer.status, 200) << answer.body;
     const Json model = Json::parse(answer.body)["model"];
     EXPECT_EQ(model["data_quality"]["samples"], 237);
@@ -226,6 +228,43 @@ TEST(Answers, IdentifyUsesOnlyThePartOfTheRecordThatIsAskedFor) {
     EXPECT_EQ(model["fit"]["t"].back(), 60);
     EXPECT_NEAR(model["plant"]["K"].get<double>(), 2, 1e-3);
     EXPECT_NEAR(model["plant"]["L"].get<double>(), 2, 1e-2);
+}
+
+// A record of 60 s whose times are seconds since 1970.
+std::string epoch_record() {
+    std::string csv = "timestamp,valve,temp\n";
+    for (int i = 0; i < 120; ++i)
+        csv += std::to_string(1747040000 + i) + "," + (i >= 10 ? "1" : "0") + "," +
+               std::to_string(i > 12 ? 2 * (1 - std::exp(-(i - 12) / 9.0)) : 0) + "\n";
+    return csv;
+}
+
+TEST(Answers, TracesOfAModelAreAnsweredWhereTheyAreAskedFor) {
+    const Json record{{"csv", epoch_record()}};
+    const Json without = Json::parse(identify_call(Json{{"record", record}}.dump(), {}).body);
+    expect_valid(without, "IdentifyAnswer");
+    EXPECT_FALSE(without["model"].contains("fit"));
+    for (const Json& candidate : without["model"]["candidates"]) EXPECT_FALSE(candidate.contains("y_model"));
+
+    const Json with =
+        Json::parse(identify_call(Json{{"record", record}, {"identify", {{"traces", true}}}}.dump(), {}).body);
+    expect_valid(with, "IdentifyAnswer");
+    const Json& t = with["model"]["fit"]["t"];
+    ASSERT_EQ(t.size(), 120u);
+    EXPECT_EQ(t[0], 1747040000);
+    EXPECT_EQ(t[1], 1747040001) << "times of many digits must still differ";
+    for (const Json& candidate : with["model"]["candidates"]) EXPECT_EQ(candidate["y_model"].size(), t.size());
+    EXPECT_EQ(with["model"]["plant"], without["model"]["plant"]);
+}
+
+TEST(Answers, AJobCarriesTheTracesOfItsModelWhereTheyAreAskedFor) {
+    const Json tune = Json::array({{{"method", "simc"}}});
+    const Json record{{"csv", epoch_record()}};
+    const Json without = run(Json{{"record", record}, {"tune", tune}}.dump());
+    expect_valid(without, "TuningResult");
+    EXPECT_FALSE(without["model"].contains("fit"));
+    const Json with = run(Json{{"record", record}, {"tune", tune}, {"identify", {{"traces", true}}}}.dump());
+    EXPECT_EQ(with["model"]["fit"]["t"].size(), 120u);
 }
 
 TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {

@@ -309,7 +309,7 @@ TEST(BadRequests, AConstantRecordIsNotIdentifiable) {
 TEST(BadRequests, ARecordThatDeterminesNoModelComesBackAsItWasRead) {
     std::string csv = "t;u;y\n";
     for (int i = 0; i < 5000; ++i) csv += std::to_string(2 * i) + ";7;" + (i == 9 ? "" : std::to_string(i % 3)) + "\n";
-    const Answer answer = identify_call(Json{{"record", {{"csv", csv}}}}.dump(), {});
+    const Answer answer = identify_call(Json{{"record", {{"csv", csv}}}, {"identify", {{"traces", true}}}}.dump(), {});
     ASSERT_EQ(answer.status, 422);
     const Json problem = Json::parse(answer.body);
     EXPECT_EQ(schema_faults(problem, "Problem"), std::vector<std::string>{});
@@ -319,6 +319,44 @@ TEST(BadRequests, ARecordThatDeterminesNoModelComesBackAsItWasRead) {
     EXPECT_EQ(record["t"].back(), 9998);
     EXPECT_EQ(record["u"], Json(std::vector<double>(2000, 7)));
     EXPECT_EQ(record["y"].back(), 4999 % 3);
+}
+
+TEST(BadRequests, ARecordThatDeterminesNoModelIsShownByThreeRowsInFull) {
+    std::string csv = "t;u;y;sp\n";
+    for (int i = 0; i < 501; ++i) csv += std::to_string(1747040000 + i) + ".25;7;1.23456789;3\n";
+    const Answer answer = identify_call(Json{{"record", {{"csv", csv}}}}.dump(), {});
+    ASSERT_EQ(answer.status, 422);
+    EXPECT_LT(answer.body.size(), 1500u);
+    const Json problem = Json::parse(answer.body);
+    EXPECT_EQ(schema_faults(problem, "Problem"), std::vector<std::string>{});
+    const Json& record = problem["record"];
+    EXPECT_EQ(record["samples"], 501);
+    EXPECT_EQ(record["t"], Json::array({1747040000.25, 1747040250.25, 1747040500.25}));
+    EXPECT_EQ(record["y"], Json::array({1.23456789, 1.23456789, 1.23456789}));
+    EXPECT_EQ(record["r"], Json::array({3, 3, 3}));
+}
+
+TEST(BadRequests, LimitsOfUAreTwoAscendingNumbers) {
+    const auto told = [](const std::string& limits) {
+        const Answer answer =
+            identify_call(R"({"record": {"dt": 1, "u": [0, 1], "y": [0, 1], "u_limits": )" + limits + "}}", {});
+        EXPECT_EQ(answer.status, 422) << limits;
+        const Json problem = Json::parse(answer.body);
+        return problem.contains("errors") ? problem["errors"][0].dump() : problem.dump();
+    };
+    EXPECT_THAT(told("[100, 0]"),
+                HasSubstr("u_limits is [100,0]; the first number is the lower limit and must be below"));
+    EXPECT_THAT(told("[5, 5]"), HasSubstr("must be below the second"));
+    EXPECT_THAT(told("[0]"), HasSubstr("it must be [low, high], such as [0, 100]"));
+    EXPECT_THAT(told("100"), HasSubstr("it must be [low, high]"));
+    EXPECT_THAT(told("[0, \"all\"]"), HasSubstr("/record/u_limits/1"));
+    EXPECT_THAT(told("[0, 1e31]"), HasSubstr("/record/u_limits/1"));
+}
+
+TEST(BadRequests, ASetPointIsAsLongAsTheRecord) {
+    const Answer answer = identify_call(R"({"record": {"dt": 1, "u": [0, 1, 1], "y": [0, 1, 1], "r": [1, 1]}})", {});
+    EXPECT_EQ(answer.status, 422);
+    EXPECT_THAT(answer.body, HasSubstr("r has 2 numbers and y 3; they must be equally many."));
 }
 
 // Damaged requests of every kind: whatever comes, the answer is a valid problem or a job, never an exception. Seeded.

@@ -216,6 +216,26 @@ TEST(Requests, RecordsGoToTheEngineWithTheirTimes) {
     EXPECT_FALSE(request.plant.has_value());
 }
 
+TEST(Requests, RecordsTakeTheirSetPointAndLimitsToTheEngine) {
+    auto decoded = decode<JobRequest>(
+        job_contract(),
+        R"({"record": {"dt": 1, "u": [0, 1, 1, 2], "y": [5, 5, 6, 7], "r": [6, 6, 8, 8], "u_limits": [0, 100], "from": 1}})");
+    ASSERT_TRUE(decoded.faults.empty());
+    const TuningRequest arrays = to_engine(std::move(decoded.value));
+    EXPECT_EQ(arrays.record->r, (std::vector<double>{6, 8, 8})) << "the part that is used";
+    EXPECT_EQ(arrays.record->y, (std::vector<double>{5, 6, 7}));
+    EXPECT_EQ(arrays.record->u_limits, (std::array<double, 2>{0, 100}));
+
+    auto text = decode<JobRequest>(job_contract(), R"({"record": {"csv": "t,u,y,sp\n0,1,2,3\n1,1,2,\n2,1,3,4\n"}})");
+    ASSERT_TRUE(text.faults.empty());
+    EXPECT_EQ(to_engine(std::move(text.value)).record->r, (std::vector<double>{3, 3, 4}));
+
+    auto none = decode<JobRequest>(job_contract(), R"({"record": {"csv": "t,u,y\n0,1,2\n1,1,2\n"}})");
+    const TuningRequest without = to_engine(std::move(none.value));
+    EXPECT_TRUE(without.record->r.empty());
+    EXPECT_FALSE(without.record->u_limits.has_value());
+}
+
 TEST(PreparedJobs, KeepTheRequestAsSentAndHashItsMeaning) {
     const auto one = std::get<PreparedJob>(
         prepare_job(R"({"name": "TIC", "timeout_s": 5, "plant": {"type": "fopdt", "K": 2.50, "T": 1e1, "L": 3}})"));

@@ -107,6 +107,56 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertGreater(json.loads(done.stdout)["model"]["fit_percent"], 97)
 
+    def test_identify_answers_traces_only_where_asked(self):
+        record = os.path.join(os.path.dirname(__file__), "..", "data", "records", "tclab-step.csv")
+        without = json.loads(run("identify", record).stdout)["model"]
+        self.assertNotIn("fit", without)
+        self.assertTrue(all("y_model" not in candidate for candidate in without["candidates"]))
+        traces = json.loads(run("identify", record, "--traces").stdout)["model"]
+        self.assertEqual(len(traces["fit"]["t"]), len(traces["fit"]["y_model"]))
+        self.assertTrue(all(len(candidate["y_model"]) == len(traces["fit"]["t"]) for candidate in traces["candidates"]))
+        self.assertEqual(traces["plant"], without["plant"])
+
+    def test_identify_takes_a_set_point_and_the_ends_of_the_actuator(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/trend.csv"
+            with open(path, "w") as file:
+                file.write("time,Ramp,temp,valve\n")
+                for k in range(60):
+                    file.write("%d,40,%.3f,%d\n" % (k, 20 + max(0, k - 12) * 0.4, 20 if k < 10 else 50))
+            done = run("identify", path, "--r", "Ramp", "--u-limits", "0", "100")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = json.loads(run("identify", path, "--r", "Rump").stderr)
+            self.assertEqual(told["errors"][0]["pointer"], "/record/columns/r")
+            told = json.loads(run("identify", path, "--u-limits", "100", "0").stderr)
+            self.assertEqual(told["errors"][0]["pointer"], "/record/u_limits")
+            told = json.loads(run("identify", path, "--u-limits", "low", "0").stderr)
+            self.assertEqual(told["errors"][0]["pointer"], "/record/u_limits/0")
+
+    def test_a_record_without_a_model_is_shown_by_three_rows(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/flat.csv"
+            with open(path, "w") as file:
+                file.write("timestamp,u,y\n")
+                file.writelines("%d.5,7,%d\n" % (1747040000 + k, k % 3) for k in range(1001))
+            done = run("identify", path)
+            self.assertEqual((done.returncode, done.stdout), (1, ""))
+            self.assertLess(len(done.stderr), 1500)
+            record = json.loads(done.stderr)["record"]
+            self.assertEqual(record["samples"], 1001)
+            self.assertEqual(record["t"], [1747040000.5, 1747040500.5, 1747041000.5])
+
+    def test_identify_reads_lines_of_json(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/log.ndjson"
+            with open(path, "w") as file:
+                for k in range(80):
+                    y = 20 if k < 12 else 40 - 20 * 0.9 ** (k - 12)
+                    file.write(json.dumps({"t": k, "u": 20 if k < 10 else 50, "y": round(y, 3)}) + "\n")
+            done = run("identify", path)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertAlmostEqual(json.loads(done.stdout)["model"]["plant"]["K"], 20 / 30, delta=0.02)
+
     def test_wrong_options_are_told(self):
         for arguments in (("--listen", "nowhere"), ("--listen", "127.0.0.1:99999"), ("--store", "mysql:x"),
                           ("--log-format", "xml")):

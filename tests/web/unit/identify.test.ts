@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { latest } from "../../../web/src/api/latest.ts";
-import type { Candidate, IdentifyRequest, Model } from "../../../web/src/api/types.ts";
+import { withTraces } from "../../../web/src/api/traces.ts";
+import type { Candidate, IdentifyRequest, Model, TuningRequest } from "../../../web/src/api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../../../web/src/charts/identified.ts";
 import { held } from "../../../web/src/charts/record.ts";
 import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
@@ -166,6 +167,9 @@ test("records given as numbers and as text are told apart by their samples alone
   assert.deepEqual(samplesOf(arrays), { dt: 2, u: [0, 1], y: [5, 6] });
   assert.equal(csvOf(arrays), "t,u,y\n0,0,5\n2,1,6");
   assert.deepEqual(samplesOf({ csv: "x", columns: { t: 1 } }), { csv: "x" });
+  const controlled = { ...arrays, r: [7, 8] };
+  assert.deepEqual(samplesOf(controlled).r, [7, 8]);
+  assert.equal(csvOf(controlled), "t,u,y,r\n0,0,5,7\n2,1,6,8");
 });
 
 test("of requests that overtake each other only the first and the newest are sent, and only the newest is shown", async () => {
@@ -191,4 +195,14 @@ test("of requests that overtake each other only the first and the newest are sen
   gates.shift()!();
   await settle();
   assert.deepEqual(answers, [40]);
+});
+
+test("the page asks for the traces of a record's models and of nothing else", () => {
+  const record = { csv: "t,u,y\n" };
+  assert.deepEqual(withTraces({ record, identify: { model: "fopdt" } }), {
+    record,
+    identify: { model: "fopdt", traces: true },
+  });
+  const plant = { plant: { type: "fopdt", K: 1, T: 1, L: 1 } };
+  assert.deepEqual(withTraces(plant as TuningRequest), plant);
 });

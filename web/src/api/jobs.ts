@@ -1,17 +1,18 @@
 // Starting, following and cancelling a job.
 import { ApiError, call } from "./client.ts";
+import { withTraces } from "./traces.ts";
 import { isFinal } from "./types.ts";
 import type { Example, Job, Method, TuningRequest } from "./types.ts";
 
 const jobPath = (id: string): string => `v1/jobs/${encodeURIComponent(id)}`;
 
 export async function postJob(request: TuningRequest): Promise<Job> {
-  return (await call("POST", "v1/jobs", request)).data as Job;
+  return (await call("POST", "v1/jobs", withTraces(request))).data as Job;
 }
 
 /** The job as it stands when it has ended, or after so many seconds. */
 export async function postJobAndWait(request: TuningRequest, seconds: number): Promise<Job> {
-  return (await call("POST", "v1/jobs", request, { Prefer: `wait=${seconds}` })).data as Job;
+  return (await call("POST", "v1/jobs", withTraces(request), { Prefer: `wait=${seconds}` })).data as Job;
 }
 
 export async function cancelJob(id: string): Promise<Job> {

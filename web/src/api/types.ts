@@ -17,12 +17,16 @@ export interface RecordedTest {
   dt?: number;
   u?: number[];
   y?: number[];
+  /** Set point, where the record has one. */
+  r?: number[];
   csv?: string;
   /** Headings, or numbers from 1. */
-  columns?: { t?: string | number; u?: string | number; y?: string | number };
+  columns?: { t?: string | number; u?: string | number; y?: string | number; r?: string | number };
   kind?: string;
   u0?: number;
   y0?: number;
+  /** The ends of the actuator: low, high. */
+  u_limits?: [number, number];
   /** The part that counts, in its own times. */
   from?: number;
   to?: number;
@@ -305,7 +309,7 @@ export interface Candidate {
   fit_percent: number | null;
   criterion?: number | null;
   standard_errors?: Record<string, number | null>;
-  /** Its free run at the times of the model's fit. */
+  /** Its free run at the times of the model's fit, where the request asked for traces. */
   y_model?: (number | null)[];
 }
 
@@ -350,6 +354,7 @@ export interface Model {
   limit_cycle?: LimitCycle;
   frequency_points?: FrequencyPoint[];
   ultimate_point?: UltimatePoint | null;
+  /** Where the request asked for traces. */
   fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
   standard_errors?: Record<string, number | null>;
   data_quality?: Record<string, unknown>;

@@ -43,7 +43,7 @@ const known = (choices: readonly (readonly [string, string])[], value: unknown):
 
 /** `all`: also what only somebody who looks at the record can know. */
 export function recordFields(errors: FormErrors, all: boolean): RecordFields {
-  const column = (name: "t" | "u" | "y", meaning: string): Field<HTMLInputElement> =>
+  const column = (name: "t" | "u" | "y" | "r", meaning: string): Field<HTMLInputElement> =>
     textField(
       {
         label: `Column ${name}`,
@@ -55,7 +55,12 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     );
   const optional = (label: string, hint: string, pointer: string): Field<HTMLInputElement> =>
     textField({ label, hint, placeholder: "optional", pointer: () => pointer }, errors);
-  const columns = { t: column("t", "time"), u: column("u", "output"), y: column("y", "measurement") };
+  const columns = {
+    t: column("t", "time"),
+    u: column("u", "output"),
+    y: column("y", "measurement"),
+    r: column("r", "set point, if any"),
+  };
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
   const method = all
@@ -74,7 +79,11 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
 
   return {
     elements: [
-      h("div", { class: "fields three" }, columns.t.element, columns.u.element, columns.y.element),
+      h(
+        "div",
+        { class: "fields" },
+        Object.values(columns).map((field) => field.element),
+      ),
       h(
         "div",
         { class: "fields" },
@@ -105,7 +114,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       return { record, identify, errors: faults };
     },
     load(record, identify = {}) {
-      for (const name of ["t", "u", "y"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
+      for (const name of ["t", "u", "y", "r"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
       kind.input.value = known(KINDS, record.kind);
       model.input.value = known(MODELS, identify["model"]);
       if (method) method.input.value = known(METHODS, identify["method"]);
@@ -114,10 +123,10 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         field.input.value = typeof value === "number" && !(name === "dt" && record.y) ? String(value) : "";
       }
       const { model: _model, method: given, shift, ...others } = identify;
-      const { u0, y0, from, to } = record;
+      const { u0, y0, u_limits, from, to } = record;
       const dt = record.csv === undefined ? undefined : record.dt;
       rest = {
-        record: all ? {} : defined({ u0, y0, from, to, dt }),
+        record: all ? defined({ u_limits }) : defined({ u0, y0, u_limits, from, to, dt }),
         identify: all ? others : { ...others, ...defined({ method: given, shift }) },
       };
     },
@@ -133,13 +142,17 @@ const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? N
 /** A record given as numbers, as the text that a field shows. */
 export function csvOf(record: RecordedTest): string {
   if (record.csv !== undefined) return record.csv;
-  const { t, u = [], y = [], dt = 1 } = record;
-  return ["t,u,y", ...y.map((value, index) => `${t?.[index] ?? index * dt},${u[index] ?? ""},${value}`)].join("\n");
+  const { t, u = [], y = [], r, dt = 1 } = record;
+  const rows = y.map((value, index) => {
+    const row = `${t?.[index] ?? index * dt},${u[index] ?? ""},${value}`;
+    return r ? `${row},${r[index] ?? ""}` : row;
+  });
+  return [r ? "t,u,y,r" : "t,u,y", ...rows].join("\n");
 }
 
 /** The samples of a record without how it is to be read. */
 export function samplesOf(record: RecordedTest): RecordedTest {
-  const { csv, t, dt, u, y } = record;
+  const { csv, t, dt, u, y, r } = record;
   if (csv !== undefined) return { csv };
-  return { ...(t === undefined ? { dt: dt ?? 1 } : { t }), u: u ?? [], y: y ?? [] };
+  return { ...(t === undefined ? { dt: dt ?? 1 } : { t }), u: u ?? [], y: y ?? [], ...(r ? { r } : {}) };
 }

@@ -1,0 +1,301 @@
+#include "api/csv/pairs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+
+#include "api/csv/cell.h"
+#include "api/csv/text_lines.h"
+#include "api/csv/time_stamp.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kMostPairs = 200, kLongestKey = 60, kLongestLine = 20'000;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+void skip_blanks(std::string_view text, std::size_t& at) {
+    while (at < text.size() && is_blank(text[at])) ++at;
+}
+
+/// "-12.5e-3" at `at`; empty where no number stands there.
+std::string_view number_at(std::string_view text, std::size_t at) {
+    std::size_t end = at;
+    const auto digits = [&] {
+        const std::size_t from = end;
+        while (end < text.size() && is_digit(text[end])) ++end;
+        return end > from;
+    };
+    if (end < text.size() && (text[end] == '-' || text[end] == '+')) ++end;
+    bool any = digits();
+    if (end + 1 < text.size() && text[end] == '.' && (any || is_digit(text[end + 1]))) {
+        ++end;
+        any = digits() || any;
+    }
+    if (!any) return {};
+    // A decimal comma: behind a comma that parts pairs stands a name.
+    const bool point = text.substr(at, end - at).find('.') != std::string_view::npos;
+    if (end + 1 < text.size() && text[end] == ',' && !point && is_digit(text[end + 1])) {
+        ++end;
+        digits();
+    }
+    if (const std::size_t mantissa = end; end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
+        ++end;
+        if (end < text.size() && (text[end] == '-' || text[end] == '+')) ++end;
+        if (!digits()) end = mantissa;
+    }
+    return text.substr(at, end - at);
+}
+
+std::string_view word_at(std::string_view text, std::size_t at) {
+    std::size_t end = at;
+    while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end]))) ++end;
+    return text.substr(at, end - at);
+}
+
+/// What stands behind a sign of a pair: a number, a word that switches, or either of them or a time in quotes.
+std::string_view value_at(std::string_view text, std::size_t& at) {
+    skip_blanks(text, at);
+    if (at < text.size() && (text[at] == '"' || text[at] == '\'')) {
+        const std::size_t end = text.find(text[at], at + 1);
+        if (end == text.npos) return {};
+        const std::string_view inner = trimmed(text.substr(at + 1, end - at - 1));
+        double number = 0;
+        if (!read_cell_number(inner, number) && !read_time_stamp(inner) && !switch_word(inner)) return {};
+        at = end + 1;
+        return inner;
+    }
+    std::string_view value = number_at(text, at);
+    // "12:05" and "1.2.3" are no numbers; nor is "20ab4".
+    if (!value.empty() && at + value.size() < text.size()) {
+        const char next = text[at + value.size()];
+        if (is_digit(next) || next == ':' || next == '.' || next == '_') value = {};
+    }
+    if (value.empty()) {
+        const std::string_view word = word_at(text, at);
+        if (switch_word(word)) value = word;
+    }
+    at += value.size();
+    return value;
+}
+
+bool may_begin_key(char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) || c == '_' || c == '@' || static_cast<unsigned char>(c) >= 0x80;
+}
+
+bool is_unit(std::string_view word) {
+    static constexpr std::string_view kUnits[] = {"C",
+                                                  "F",
+                                                  "K",
+                                                  "degC",
+                                                  "degF",
+                                                  "\xC2\xB0"
+                                                  "C",
+                                                  "\xC2\xB0"
+                                                  "F",
+                                                  "V",
+                                                  "A",
+                                                  "W",
+                                                  "bar",
+                                                  "rpm",
+                                                  "s",
+                                                  "ms",
+                                                  "us",
+                                                  "Hz",
+                                                  "mA",
+                                                  "mV",
+                                                  "kPa",
+                                                  "Pa"};
+    return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits) || word == "%";
+}
+
+/// The name in front of a sign: what stands behind the last value, separators, brackets and quotes.
+std::string key_of(std::string_view between) {
+    const std::size_t cut = between.find_last_of(",;|\t{[(>&");
+    if (cut != between.npos) between.remove_prefix(cut + 1);
+    const auto strip = [](char c) { return is_blank(c) || c == '"' || c == '\'' || c == ']' || c == ')' || c == '-'; };
+    while (!between.empty() && strip(between.front())) between.remove_prefix(1);
+    while (!between.empty() && strip(between.back())) between.remove_suffix(1);
+    if (const std::size_t blank = between.find(' '); blank != between.npos && is_unit(between.substr(0, blank)))
+        between = trimmed(between.substr(blank));
+    if (between.size() > kLongestKey || between.find_first_of("/\\:=#") != between.npos) {
+        const std::size_t blank = between.find_last_of(' ');
+        between = blank == between.npos ? std::string_view() : between.substr(blank + 1);
+    }
+    // What a printer says before it reports.
+    if (constexpr std::string_view kDone = "ok "; between.substr(0, kDone.size()) == kDone)
+        between = trimmed(between.substr(kDone.size()));
+    while (!between.empty() && is_digit(between.front())) {
+        const std::size_t blank = between.find(' ');
+        between = blank == between.npos ? std::string_view() : trimmed(between.substr(blank));
+    }
+    if (between.empty() || between.size() > kLongestKey || !may_begin_key(between.front())) return {};
+    return std::string(between);
+}
+
+/// "[14:05:06.25] ", "2026-11-21 14:05:06,123 - ", "14:05:06 -> ", "Stats 123.4: ", "[12.5]", "0.5 ".
+std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
+    std::size_t at = 0;
+    skip_blanks(line, at);
+    const bool bracket = at < line.size() && line[at] == '[';
+    if (bracket) ++at;
+    constexpr std::size_t kLongestStamp = 36;
+    for (std::size_t end = std::min(line.size(), at + kLongestStamp); end > at + 4; --end) {
+        const bool whole =
+            end == line.size() || is_blank(line[end]) || std::string_view(",;]|").find(line[end]) != line.npos;
+        if (!whole || is_blank(line[end - 1]) || !is_digit(line[at])) continue;
+        if (!read_time_stamp(line.substr(at, end - at))) continue;
+        out.push_back({"time", line.substr(at, end - at)});
+        return end;
+    }
+    // ESP-IDF: "I (1300) tag: ...", in milliseconds.
+    if (line.size() > at + 4 && std::string_view("IWEDV").find(line[at]) != line.npos &&
+        line.substr(at + 1, 2) == " (") {
+        const std::string_view number = number_at(line, at + 3);
+        const std::size_t end = at + 3 + number.size();
+        if (!number.empty() && end < line.size() && line[end] == ')') {
+            out.push_back({"time_ms", number});
+            return end + 1;
+        }
+    }
+    constexpr std::string_view kStats = "Stats ";
+    const bool stats = line.substr(at, kStats.size()) == kStats;
+    if (stats) at += kStats.size();
+    skip_blanks(line, at);
+    const std::string_view number = number_at(line, at);
+    const std::size_t end = at + number.size();
+    if (number.empty() || end >= line.size()) return 0;
+    const char next = line[end];
+    if ((bracket && next == ']') || (next == ':' && (stats || number.find('.') != number.npos))) {
+        out.push_back({"time", number});
+        return end + 1;
+    }
+    if (!bracket && (is_blank(next) || next == ',' || next == ';')) {
+        out.push_back({"number in front", number});
+        return end;
+    }
+    return 0;
+}
+
+// The time at the end of InfluxDB's lines, ns since 1970.
+void take_time_behind(std::string_view rest, std::vector<Pair>& out) {
+    constexpr std::size_t kShortest = 10;
+    rest = trimmed(rest);
+    if (rest.size() < kShortest || out.empty() || out.front().key.starts_with("time")) return;
+    if (std::all_of(rest.begin(), rest.end(), is_digit)) out.push_back({"time", rest});
+}
+
+/// "T", "T0", "B@", "@", "@0": what a printer's letters stand for, beside their set points.
+void tell_printer_words(std::vector<Pair>& out) {
+    const auto target = [&](const std::string& key) {
+        return std::any_of(out.begin(), out.end(), [&](const Pair& pair) { return pair.key == key + ".target"; });
+    };
+    for (Pair& pair : out) {
+        if (pair.key == "@" && target("T"))
+            pair.key = "T.pwm";
+        else if (pair.key.size() > 1 && pair.key.front() == '@' && target("T" + pair.key.substr(1)))
+            pair.key = "T" + pair.key.substr(1) + ".pwm";
+        else if (pair.key.size() > 1 && pair.key.back() == '@' && target(pair.key.substr(0, pair.key.size() - 1)))
+            pair.key = pair.key.substr(0, pair.key.size() - 1) + ".pwm";
+        else if (target(pair.key) && pair.key.size() <= 3)
+            pair.key += ".temp";
+    }
+}
+
+}  // namespace
+
+void split_pairs(std::string_view line, std::vector<Pair>& out) {
+    out.clear();
+    if (line.size() > kLongestLine) return;
+    std::size_t consumed = take_time(line, out);
+    std::string group;
+    for (std::size_t at = consumed; at < line.size() && out.size() < kMostPairs;) {
+        const std::size_t sign = line.find_first_of("=:", at);
+        if (sign == line.npos) break;
+        const std::string key = key_of(line.substr(consumed, sign - consumed));
+        std::size_t value_from = sign + 1;
+        const std::string_view value = value_at(line, value_from);
+        if (key.empty() || value.empty()) {
+            // "heater_bed: target=60": what stands before a colon and a blank leads the pairs that follow.
+            if (!key.empty() && line[sign] == ':' && sign + 1 < line.size() && is_blank(line[sign + 1])) {
+                group = key;
+                consumed = sign + 1;
+            }
+            at = sign + 1;
+            continue;
+        }
+        out.push_back({line[sign] == '=' && !group.empty() ? group + "." + key : key, value});
+        consumed = value_from;
+        std::size_t slash = consumed;
+        skip_blanks(line, slash);
+        if (slash < line.size() && line[slash] == '/') {
+            ++slash;
+            skip_blanks(line, slash);
+            if (const std::string_view target = number_at(line, slash); !target.empty()) {
+                out.push_back({out.back().key + ".target", target});
+                consumed = slash + target.size();
+            }
+        }
+        at = consumed;
+    }
+    take_time_behind(line.substr(consumed), out);
+    tell_printer_words(out);
+}
+
+bool is_pair_line(const std::vector<Pair>& pairs, const std::vector<std::string>& keys) {
+    std::size_t known = 0;
+    for (const Pair& pair : pairs) known += std::find(keys.begin(), keys.end(), pair.key) != keys.end() ? 1 : 0;
+    return known >= 2 && 2 * known >= keys.size();
+}
+
+std::vector<std::string> pair_keys(std::string_view text) {
+    constexpr int kLooked = 400;
+    constexpr std::size_t kLookedBytes = 4 << 20;
+    std::vector<Pair> pairs;
+    std::map<std::string, int> shapes;
+    int lines = 0, with_pairs = 0, stats = 0;
+    std::vector<std::vector<std::string>> found;
+    std::size_t at = 0;
+    while (const auto line = next_line(text.substr(0, kLookedBytes), at)) {
+        const std::string_view content = trimmed(*line);
+        const bool stat = content.rfind("Stats ", 0) == 0;
+        if (content.empty() || (lines >= kLooked && !stat)) {
+            if (stats >= kLooked) break;
+            continue;
+        }
+        ++lines;
+        stats += stat ? 1 : 0;
+        split_pairs(content, pairs);
+        const auto numbers = std::count_if(pairs.begin(), pairs.end(), [](const Pair& pair) {
+            return pair.key != "time" && pair.key != "time_ms" && pair.key != "number in front";
+        });
+        if (numbers < 2) continue;
+        ++with_pairs;
+        std::string shape;
+        std::vector<std::string> keys;
+        for (const Pair& pair : pairs) {
+            if (std::find(keys.begin(), keys.end(), pair.key) != keys.end()) continue;
+            keys.push_back(pair.key);
+            shape += pair.key + "\n";
+        }
+        ++shapes[shape];
+        found.push_back(std::move(keys));
+    }
+    constexpr int kFewStats = 3;
+    if (with_pairs < 2 || (2 * with_pairs < lines && stats < kFewStats)) return {};
+    const auto usual = std::max_element(shapes.begin(), shapes.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (usual->second < 2) return {};
+    std::vector<std::string> keys;
+    for (std::size_t from = 0; from < usual->first.size();) {
+        const std::size_t end = usual->first.find('\n', from);
+        keys.push_back(usual->first.substr(from, end - from));
+        from = end + 1;
+    }
+    return keys;
+}
+
+}  // namespace tunewright::api

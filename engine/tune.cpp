@@ -63,6 +63,12 @@ void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool iden
                                    identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
 }
 
+// "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
+std::string with_variant(const std::string& title, const std::string& variant) {
+    if (title.ends_with(')')) return title.substr(0, title.size() - 1) + ", " + variant + ")";
+    return title + " (" + variant + ")";
+}
+
 // The design that holds on the region stands before the one on the model alone, and says why.
 void say_choice(Evaluation& held, const Evaluation& nominal) {
     const std::string there = nominal.region->worst_Ms
@@ -311,7 +317,8 @@ std::vector<TuningEntry> Run::entries(const PlannedRow& planned, double from, do
     problem_->family = held_;
     if (!held.evaluation || result_.partial) return entries;
     held.over_region = true;
-    held.title += ", on all that the record leaves possible";
+    held.title = with_variant(held.title, "region");
+    entries.front().title = with_variant(entries.front().title, "model alone");
     say_choice(*held.evaluation, *nominal);
     entries.insert(entries.begin(), std::move(held));
     return entries;

@@ -14,10 +14,7 @@ Codec<std::string> sentence() {
 }
 Codec<std::array<double, 2>> limits() {
     return {{},
-            [](const std::array<double, 2>& ends, Writer& out) {
-                const auto array = out.array();
-                for (const double end : ends) out.number(end);
-            },
+            [](const std::array<double, 2>& ends, Writer& out) { out.numbers(ends); },
             [](SchemaBook&) {
                 return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
             }};

@@ -1,5 +1,6 @@
 #include "engine/identification/closed_loop.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -80,20 +81,35 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
 struct Refined {
     Search search;
     std::vector<double> mismatch, gain_error;
+    std::vector<double> left;  ///< of what the set point did to y, the share that the model leaves
 
     std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
 constexpr double kMisfit = 25, kUnknownGain = 0.5, kNoError = 1e-5, kFits = 99;
 
+/// The sum of squares of what filters of the set point explain of a signal about its mean.
+double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
+    const auto n = static_cast<Eigen::Index>(signal.size());
+    Eigen::MatrixXd columns(n, static_cast<Eigen::Index>(part.filtered.size()));
+    for (std::size_t k = 0; k < part.filtered.size(); ++k)
+        columns.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(part.filtered[k].data(), n);
+    columns.rowwise() -= columns.colwise().mean().eval();
+    Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(signal.data(), n);
+    values.array() -= values.mean();
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(columns);
+    return (columns * solver.solve(values)).squaredNorm();
+}
+
 std::optional<Refined> refined(Search search, const CleanRecord& record, const SetPointPart& part,
                                std::stop_token stop) {
     if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
-    Refined out{std::move(search), {}, {}};
+    Refined out{std::move(search), {}, {}, {}};
+    const double done = by_set_point(record.y, part);
     for (std::size_t i = 0; i < out.search.fits.size(); ++i) {
         Fit& fit = out.search.fits[i];
-        out.mismatch.push_back(0), out.gain_error.push_back(1);
+        out.mismatch.push_back(0), out.gain_error.push_back(1), out.left.push_back(1);
         if (!fit.determined) continue;
         std::optional<InstrumentFit> better = fit_by_instrument(record, part, fit, stop);
         fit.determined = better.has_value();
@@ -102,14 +118,16 @@ std::optional<Refined> refined(Search search, const CleanRecord& record, const S
         out.search.percents[i] = fit_percent(record, fit);
         // A gain without any error is one that nothing in the equations depends on.
         const bool empty = better->gain_error < kNoError && out.search.percents[i] < kFits;
+        out.left[i] = by_set_point(fit.residual, part) / std::max(done, 1e-300);
         out.mismatch[i] = better->mismatch, out.gain_error[i] = empty ? 1 : better->gain_error;
     }
     return out;
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kKnownGain = 0.3;
-    return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain;
+    constexpr double kKnownGain = 0.3, kMostLeft = 0.25;
+    return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain &&
+           r.left[i] < kMostLeft;
 }
 
 /// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
@@ -213,6 +231,9 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     const bool follows = best && best->search.chosen().determined &&
                          (best->mismatch[best->chosen()] < kMisfit || responds(full, best->search.chosen()));
     if (!follows) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
+    constexpr double kHalf = 0.5;
+    if (best->left[best->chosen()] > kHalf)
+        return nothing_outside(full, loop, "and no structure explains what the moves from outside the loop did to y");
     const double error = best->gain_error[best->chosen()];
     if (!(error < kUnknownGain)) {
         return nothing_outside(full, loop,

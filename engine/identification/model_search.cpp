@@ -163,6 +163,25 @@ bool shows_drift(const CleanRecord& r) {
     return r.changes() > 1 || before >= kEnoughBefore;
 }
 
+/// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept in
+/// its place, and the choice made again.
+bool another_lag_does(Search& search, ModelChoice model, double by_drift, double independent) {
+    constexpr double kAsGood = 2;
+    const Plan plan = plan_for(model, search.context.record);
+    const auto fitted = [&](Structure structure) {
+        return std::ranges::any_of(search.fits, [&](const Fit& f) { return f.form.structure == structure; });
+    };
+    if (plan.richer.empty() || fitted(Structure::third) || !fitted(Structure::sopdt)) return false;
+    Fit richer = fit_structure(search.context, Structure::third, search.disturbances, search.fits);
+    if (!richer.determined || information_criterion(richer, independent) > by_drift + kAsGood) return false;
+    std::vector<Fit> fits = std::move(search.fits);
+    fits.push_back(std::move(richer));
+    const bool between_rows = search.between_rows;
+    search = ranked(search.context, std::move(fits), plan, search.disturbances);
+    search.between_rows = between_rows;
+    return true;
+}
+
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(Search& search, ModelChoice model, const RunControl& control) {
@@ -179,6 +198,7 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
     if (lead < (time < 2 ? kPositive : kStrong)) return;
     if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
+    if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
     Search other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     other.between_rows = search.between_rows;

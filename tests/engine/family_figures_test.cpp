@@ -22,6 +22,12 @@ TEST(FamilyFigures, APeakFarBelowOneIsFoundToo) {
     EXPECT_NEAR(std::get<Fopdt>(figures.worst_plant).K, 1.6, 1e-12);
 }
 
+EvaluateOptions without_traces() {
+    EvaluateOptions options;
+    options.points = 0;
+    return options;
+}
+
 // A P controller on K e^(-s)/(10 s + 1), K from 0.8 to 1.2, whose ultimate gain is met at K = 1.1995: beyond every
 // sample, before the corner.
 TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
@@ -29,13 +35,13 @@ TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
     for (int i = 0; i < 50; ++i) w = std::numbers::pi - std::atan(10 * w);
     const Plant plant = Fopdt{1, 10, 1, {.K = FactorRange{0.8, 1.2}}};
     const Pid pid{.Kp = std::sqrt(1 + 100 * w * w) / 1.1995, .Ti = 1e7};
-    const auto evaluation = evaluate(plant, pid, {.points = 0});
+    const auto evaluation = evaluate(plant, pid, without_traces());
     ASSERT_TRUE(evaluation && evaluation->region);
     EXPECT_TRUE(evaluation->robustness.stable);
     EXPECT_FALSE(evaluation->region->worst_Ms);
     EXPECT_DOUBLE_EQ(evaluation->region->stable_fraction, 128.0 / 129);
     const auto warning =
-        std::ranges::find_if(evaluation->warnings, [](const Warning& w) { return w.code == "unstable-in-region"; });
+        std::ranges::find_if(evaluation->warnings, [](const Warning& told) { return told.code == "unstable-in-region"; });
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
     EXPECT_NE(warning->detail.find("99.2 % of those looked at"), std::string::npos) << warning->detail;
@@ -46,10 +52,10 @@ TEST(FamilyFigures, AShareIsNotRoundedToAll) {
     PlantSet set;
     for (int i = 0; i < 2000; ++i) set.plants.emplace_back(Fopdt{1, 10, 1});
     set.plants.emplace_back(Fopdt{100, 10, 1});
-    const auto evaluation = evaluate(PlantModel(set), Pid{.Kp = 1, .Ti = 10}, {.points = 0});
+    const auto evaluation = evaluate(PlantModel(set), Pid{.Kp = 1, .Ti = 10}, without_traces());
     ASSERT_TRUE(evaluation && evaluation->region);
     const auto warning =
-        std::ranges::find_if(evaluation->warnings, [](const Warning& w) { return w.code == "unstable-in-region"; });
+        std::ranges::find_if(evaluation->warnings, [](const Warning& told) { return told.code == "unstable-in-region"; });
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
     EXPECT_NE(warning->detail.find("more than 99.9 %"), std::string::npos) << warning->detail;

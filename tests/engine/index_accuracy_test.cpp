@@ -79,7 +79,9 @@ void hold_indices(const Json& wanted, const Figures& figures, const IndexErrors&
 /// A figure that exists in both or in neither.
 void same(const Json& wanted, const std::optional<double>& got, double tolerance, const char* name) {
     ASSERT_EQ(wanted.is_null(), !got.has_value()) << name;
-    if (got) EXPECT_LE(relative_error(wanted, got), tolerance) << name;
+    if (got) {
+        EXPECT_LE(relative_error(wanted, got), tolerance) << name;
+    }
 }
 
 void hold_all(const Json& wanted, const Evaluation& e) {
@@ -131,7 +133,9 @@ TEST(IndexAccuracy, ActuatorLimitsThatAreNeverMetChangeNothing) {
             ASSERT_TRUE(free && limited);
             const auto near = [](const std::optional<double>& a, const std::optional<double>& b) {
                 ASSERT_EQ(a.has_value(), b.has_value());
-                if (a) EXPECT_NEAR(*a, *b, 2e-6 * std::abs(*a));
+                if (a) {
+                    EXPECT_NEAR(*a, *b, 2e-6 * std::abs(*a));
+                }
             };
             const auto &a = free->performance, &b = limited->performance;
             near(a.setpoint.IAE, b.setpoint.IAE);

@@ -76,7 +76,9 @@ struct Comparison {
     void operator()(const char* name, const std::optional<double>& one, const std::optional<double>& other,
                     double unit) const {
         ASSERT_EQ(one.has_value(), other.has_value()) << name;
-        if (one) EXPECT_NEAR(*other / unit, *one, tolerance * std::abs(*one)) << name;
+        if (one) {
+            EXPECT_NEAR(*other / unit, *one, tolerance * std::abs(*one)) << name;
+        }
     }
 };
 

@@ -68,6 +68,7 @@ export interface TuningRequest {
 export interface Notice {
   code: string;
   detail: string;
+  level?: "warning" | "bad";
 }
 
 export interface FieldError {
@@ -283,6 +284,8 @@ export interface Entry {
   options?: Record<string, unknown>;
   warnings?: Notice[];
   error?: Problem;
+  /** Limits hold over the record's confidence region, not on its model alone. */
+  over_region?: boolean;
   reduced_model?: Plant;
   controller?: Controller;
   equivalents?: { parallel?: Equivalent | null; series?: Equivalent | null; why_null?: WhyNull };

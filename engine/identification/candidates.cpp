@@ -77,7 +77,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
 }
 
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
-constexpr double kPositive = 6, kStrong = 10;
+constexpr double kSimpler = 5, kPositive = 6, kStrong = 10;
 
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
@@ -131,7 +131,7 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
     context.thin = thin_out(record, kThinSamples);
     context.medium = every_few(record, kMediumSamples);
     context.record = std::move(record);
-    context.start = start_of(context.record);
+    context.start = start_of(context.record, relay, context.noise);
     context.relay = relay;
     context.stop = stop;
     return context;
@@ -239,7 +239,7 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     const int more = best.form.parameters() - simple.form.parameters();
     constexpr double kPoint = 1, kMostByNoise = 3;
     const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
-    return more > 0 && lead < (unusual ? kStrong : kPositive) && points < kPoint + std::min(kMostByNoise, taken_up);
+    return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMostByNoise, taken_up);
 }
 
 std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,

@@ -66,7 +66,7 @@ struct Choice {
 /// from any other.
 bool looks_integrating(const Fit& fit);
 
-/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 6 of it (within 10
+/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 5 of it (within 10
 /// of one with a zero, an unseen start or an unstable pole) and its fit, too, lies within what noise explains: a
 /// hundredth of y's deviation, and up to three more for what so few more parameters take up of noise as strong as the
 /// best fit's residual (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.

@@ -125,9 +125,10 @@ std::optional<Refined> refined(Search search, const CleanRecord& record, const S
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kKnownGain = 0.3, kMostLeft = 0.25;
+    constexpr double kKnownGain = 0.3, kMostLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;
+    const double least = *std::ranges::min_element(r.left);
     return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain &&
-           r.left[i] < kMostLeft;
+           r.left[i] < std::min(kMostLeft, kBesideBest + kTimesBest * least);
 }
 
 /// The structure whose residual the set point explains least, where the one that least squares preferred does not do,

@@ -100,12 +100,17 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
                                 "; u of these rows was used, and y was not interpolated.");
     }
     if (done.spikes.empty()) return;
-    constexpr std::size_t kShown = 20;
+    constexpr std::size_t kShown = 20, kInSentence = 5;
+    std::string rows;
+    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+        rows += (k > 0 ? ", " : "") + std::to_string(done.spikes[k]);
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
     outliers.rows.resize(std::min(kShown, outliers.rows.size()));
     quality.outliers = std::move(outliers);
     quality.notes.push_back(std::to_string(done.spikes.size()) +
-                            " reading(s) of y are plainly false and were left out (" + places_of_spikes(done) + ").");
+                            " reading(s) of y are plainly false and were left out (" +
+                            (done.from_file ? "line " : "row ") + rows +
+                            (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
 }
 
 bool on_a_level(const TwoLevels& u, double v) {

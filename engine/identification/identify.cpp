@@ -279,10 +279,12 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     if (options.model != ModelChoice::automatic)
         search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
 
-    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), warnings);
+    std::vector<Warning> last;
+    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), last);
     const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());
+    model.warnings.insert(model.warnings.end(), last.begin(), last.end());
     if (cycle) {
         const Expected<double> sigma = shift_of(options, used, *cycle);
         if (!sigma) return sigma.error();

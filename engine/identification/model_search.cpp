@@ -69,7 +69,11 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
         search.percents.push_back(fit_percent(search.context.record, fit));
     }
     search.choice = choose(search.fits, search.criteria, search.percents, search.independent);
-    if (search.choice.index >= 0) polish(search.context, search.fits[static_cast<std::size_t>(search.choice.index)]);
+    if (search.choice.index < 0) return search;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    polish(search.context, search.fits[chosen]);
+    search.criteria[chosen] = information_criterion(search.fits[chosen], search.independent, least);
+    search.percents[chosen] = fit_percent(search.context.record, search.fits[chosen]);
     return search;
 }
 

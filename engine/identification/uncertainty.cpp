@@ -123,6 +123,8 @@ Eigen::MatrixXd deviations_of(const Fit& fit, std::span<const double> t, double 
     const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
     const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
+    const bool on_plateaus = common > 0.02 * grid;
     const ResidualNoise left(fit.residual, m, grid * grid / 12);
     const double variance = left.long_run_variance();
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);
@@ -141,20 +143,24 @@ Eigen::MatrixXd deviations_of(const Fit& fit, std::span<const double> t, double 
     const Eigen::MatrixXd spread = left.weighed(J.topRows(n)) + variance * others.transpose() * others;
     const Eigen::MatrixXd covariance = inverse * spread * inverse;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
-    const double widened = student_factor(left.freedom());
+    // Rounding that is the same over a plateau is no noise of which few samples are known.
+    const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
     for (int k = 0; k < m; ++k) {
         const double value = std::max(axes.eigenvalues()[k], 0.0);
         all.emplace_back(widened * std::sqrt(value) * axes.eigenvectors().col(k).array() / length.array());
     }
-    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
-    if (common > 0.02 * grid) {
+    if (on_plateaus) {
         for (const auto& [first, last] : plateaus(fit, grid)) {
             const Eigen::VectorXd pull = J.middleRows(first, last - first).colwise().sum().transpose();
             all.emplace_back((common * (inverse * pull)).array() / length.array());
         }
     }
-    for (const Eigen::VectorXd& change : drift_doubts(fit, t, J, inverse, variance)) all.emplace_back(change.array() / length.array());
+    // Nor is it a drift, though it looks like one.
+    if (!on_plateaus) {
+        for (const Eigen::VectorXd& change : drift_doubts(fit, t, J, inverse, variance))
+            all.emplace_back(change.array() / length.array());
+    }
     Eigen::MatrixXd deviations(static_cast<Eigen::Index>(all.size()), m);
     for (std::size_t k = 0; k < all.size(); ++k) deviations.row(static_cast<Eigen::Index>(k)) = all[k].transpose();
     return deviations;

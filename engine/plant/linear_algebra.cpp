@@ -8,6 +8,7 @@
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "engine/plant/matrix_scaling.h"
 #include "engine/plant/multiple_roots.h"
 
 namespace tunewright {
@@ -42,36 +43,6 @@ void balance(Matrix& A) {
             }
         }
     }
-}
-
-struct Factors {
-    Eigen::VectorXd rows, columns;
-};
-
-// Factors of rows and columns, powers of two, that bring the logarithms of the entries together in the sense of least
-// squares (Curtis and Reid 1972): whatever units equations and unknowns are in, what remains is the same matrix, so
-// that "singular" means singular.
-Factors equilibrate(Matrix& A) {
-    constexpr int kMostSweeps = 100;
-    constexpr double kSettled = 0.05;
-    const auto n = A.rows();
-    const Matrix exponents = A.unaryExpr([](double a) { return a == 0 ? 0.0 : static_cast<double>(std::ilogb(a)); });
-    const Matrix entries = A.unaryExpr([](double a) { return a == 0 ? 0.0 : 1.0; });
-    const Eigen::VectorXd in_row = entries.rowwise().sum().cwiseMax(1),
-                          in_column = entries.colwise().sum().transpose().cwiseMax(1);
-    const Eigen::VectorXd row_sum = exponents.rowwise().sum(), column_sum = exponents.colwise().sum().transpose();
-    Eigen::VectorXd rows = Eigen::VectorXd::Zero(n), columns = rows;
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-        const Eigen::VectorXd next = -(row_sum + entries * columns).cwiseQuotient(in_row);
-        const double change = (next - rows).cwiseAbs().maxCoeff();
-        rows = next;
-        columns = -(column_sum + entries.transpose() * rows).cwiseQuotient(in_column);
-        if (change < kSettled) break;
-    }
-    const auto power = [](double exponent) { return std::ldexp(1.0, static_cast<int>(std::lround(exponent))); };
-    Factors factors{rows.unaryExpr(power), columns.unaryExpr(power)};
-    A = factors.rows.asDiagonal() * A * factors.columns.asDiagonal();
-    return factors;
 }
 
 // Conjugate pairs as neighbours with exactly conjugate values, real ones with exactly zero imaginary part.
@@ -252,9 +223,11 @@ std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
 }
 
 std::optional<std::vector<double>> solve(std::span<const double> matrix, std::span<const double> b, int n) {
-    Matrix A = as_matrix(matrix, n);
-    const auto [rows, columns] = equilibrate(A);
-    const Eigen::FullPivLU<Matrix> lu(A);
+    const auto scaling = scaling_of(matrix, n);
+    if (!scaling) return std::nullopt;
+    const auto rows = Eigen::Map<const Eigen::VectorXd>(scaling->rows.data(), n),
+               columns = Eigen::Map<const Eigen::VectorXd>(scaling->columns.data(), n);
+    const Eigen::FullPivLU<Matrix> lu(Matrix(rows.asDiagonal() * as_matrix(matrix, n) * columns.asDiagonal()));
     if (!lu.isInvertible()) return std::nullopt;
     const Eigen::VectorXd right = rows.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
     const Eigen::VectorXd x = columns.cwiseProduct(Eigen::VectorXd(lu.solve(right)));

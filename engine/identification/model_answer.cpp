@@ -51,16 +51,17 @@ void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality)
                             "). Give u0 if it is known.");
 }
 
-/// Of a self-regulating fit, relative to the record's length.
-double slowest_lag(const Fit& fit) {
-    if (!has_quadratic(fit.form.structure)) return fit.shape.T();
-    const double a1 = fit.shape.a1(), ratio = fit.shape.a2() / (a1 * a1);
-    const double of_two = ratio < 0.25 ? 0.5 * a1 * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(fit.shape.a2());
-    return fit.form.structure == Structure::third ? std::max(of_two, fit.shape.T3()) : of_two;
-}
-
-/// Relative to the record's length: from there on a lag may be an integrator.
+/// Relative to the record's length: from there on a lag may be an integrator, or a drift.
 constexpr double kSlow = 0.5;
+
+/// Beside a quick part a slow one of many record lengths and a drift look the same.
+void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
+    if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kSlow) return;
+    warnings.push_back({"slow-part",
+                        "A part of the response has a lag of " + number_text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
+                            ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
+                            "open. Record longer, or ask for model fopdt or sopdt."});
+}
 
 /// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
 /// integrator's.
@@ -70,7 +71,7 @@ void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnin
     const bool integrating = is_integrating(search.chosen().form.structure);
     if (search.chosen().form.structure == Structure::unstable) return;
     const double scale = search.context.record.scale.t_scale;
-    if (!integrating && slowest_lag(search.chosen()) < kSlow) return;
+    if (!integrating && search.chosen().shape.slowest_lag() < kSlow) return;
     for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
         if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
@@ -79,7 +80,7 @@ void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnin
             continue;
         const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
-                            "A response with a time constant of " + number_text(slowest_lag(slow) * scale, 3) +
+                            "A response with a time constant of " + number_text(slow.shape.slowest_lag() * scale, 3) +
                                 " explains this record as well as an integrator does: it ends too early to tell, and "
                                 "the static gain is open. Record longer, or choose the model by what is known of the "
                                 "process."});
@@ -178,6 +179,7 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
         warn_slow_or_integrating(search, model.warnings);
+        warn_slow_part(record, fit, model.warnings);
         add_record_warnings(recorded, model);
         note_start(record, fit, model.data_quality);
     }

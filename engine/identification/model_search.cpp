@@ -186,6 +186,21 @@ bool another_lag_does(Search& search, ModelChoice model, double by_drift, double
     return true;
 }
 
+/// A slow part beside a quick one that is slower than the record may stand in for a drift: then a drift is tried in its
+/// place, and kept where it explains the record as well.
+void try_drift_for_slow_part(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kSlow = 0.5, kAsGood = 2;
+    const Fit& now = search.chosen();
+    if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < kSlow || now.form.slope) return;
+    if (!shows_drift(search.context.record)) return;
+    Search other = fit_all(search.context, model, {true, false}, control);
+    if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
+    const double n = other.independent;
+    if (information_criterion(other.chosen(), n) > information_criterion(now, n) + kAsGood) return;
+    other.between_rows = search.between_rows;
+    search = std::move(other);
+}
+
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(Search& search, ModelChoice model, const RunControl& control) {
@@ -287,8 +302,10 @@ Search search_models(const CleanRecord& record, ModelChoice model, bool relay, c
     if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
-    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope)
-        try_drift(search, model, control);
+    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
+        try_drift_for_slow_part(search, model, control);
+        if (!search.disturbances.slope) try_drift(search, model, control);
+    }
     return search;
 }
 

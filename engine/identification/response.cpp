@@ -232,6 +232,13 @@ double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
 
 double Shape::T3() const { return std::exp(p[kThirdLag]); }
 
+double Shape::slowest_lag() const {
+    if (!has_quadratic(structure)) return T();
+    const double ratio = a2() / (a1() * a1());
+    const double of_two = ratio < 0.25 ? 0.5 * a1() * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(a2());
+    return structure == Structure::third ? std::max(of_two, T3()) : of_two;
+}
+
 std::vector<int> shape_places(Structure structure) {
     switch (structure) {
         case Structure::ipdt: return {0};

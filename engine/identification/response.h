@@ -34,6 +34,7 @@ struct Shape {
     double a1() const;  ///< sopdt, sopdt_zero, third, ipdt_second
     double a2() const;
     double T3() const;  ///< third
+    double slowest_lag() const;  ///< of a self-regulating structure, an oscillation's T for it
 };
 
 /// Places in Shape::p that belong to a structure, the dead time's first.

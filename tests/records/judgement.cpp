@@ -18,7 +18,7 @@ bool integrates(const Plant& plant) {
 /// Whether a sentence warns of the gain, or of the model as a whole.
 bool names_gain(const Warning& warning) {
     static const std::set<std::string> kWhole = {
-        "unsettled-record", "slow-or-integrating", "looks-integrating", "structured-residuals", "structure-mismatch",
+        "unsettled-record", "slow-or-integrating", "slow-part", "looks-integrating", "structured-residuals", "structure-mismatch",
         "closed-loop",      "not-at-rest",         "saturated-output",  "unstable-in-region", "static-gain-contradiction"};
     if (kWhole.contains(warning.code)) return true;
     return warning.detail.find("K = ") != std::string::npos || warning.detail.find("gain") != std::string::npos;

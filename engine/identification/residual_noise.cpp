@@ -70,7 +70,9 @@ Eigen::MatrixXd block_means(const Eigen::MatrixXd& X, Eigen::Index block) {
 /// What the rows of X have beyond the means over their blocks.
 Eigen::MatrixXd inside_blocks(const Eigen::MatrixXd& X, const Eigen::MatrixXd& means, Eigen::Index block) {
     Eigen::MatrixXd rest = X;
-    for (Eigen::Index i = 0; i < X.rows(); ++i) rest.row(i) -= means.row(i / block);
+    for (Eigen::Index c = 0; c < X.cols(); ++c) {
+        for (Eigen::Index i = 0; i < X.rows(); ++i) rest(i, c) -= means(i / block, c);
+    }
     return rest;
 }
 
@@ -95,26 +97,29 @@ Autoregression::Gains Autoregression::gains(std::size_t n) const {
 }
 
 Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
+    const double variance = innovation * innovation;
+    const auto order = static_cast<Eigen::Index>(a.size()), n = X.rows();
+    if (order == 0) return variance * (X.transpose() * X);
     // R = innovation^2 H H' with H the impulse response: H' is the same filter backward in time, and what it goes on to
     // give before the first row makes the noise stationary there.
-    const auto order = static_cast<Eigen::Index>(a.size());
-    const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), order);
-    Eigen::MatrixXd next = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(order, 1), X.cols());
-    Eigen::MatrixXd product = Eigen::MatrixXd::Zero(X.cols(), X.cols());
-    double largest = 0;
-    for (Eigen::Index i = X.rows() - 1; i >= -20 * X.rows(); --i) {
-        if (i < 0 && (order == 0 || next.row(0).squaredNorm() < 1e-12 * largest)) break;
-        Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(X.cols());
-        if (i >= 0) row = X.row(i);
-        if (order > 0) {
-            row += filter * next;
-            for (Eigen::Index k = order - 1; k > 0; --k) next.row(k) = next.row(k - 1).eval();
-            next.row(0) = row;
+    Eigen::MatrixXd Z = X;
+    for (Eigen::Index c = 0; c < Z.cols(); ++c) {
+        double* z = Z.col(c).data();
+        for (Eigen::Index i = n; i-- > 0;) {
+            for (Eigen::Index k = 1; k <= order && i + k < n; ++k) z[i] += a[static_cast<std::size_t>(k - 1)] * z[i + k];
         }
-        product.noalias() += row.transpose() * row;
-        largest = std::max(largest, row.squaredNorm());
     }
-    return innovation * innovation * product;
+    Eigen::MatrixXd product = Z.transpose() * Z, next = Z.topRows(std::min(order, n));
+    const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), next.rows());
+    const double enough = 1e-12 * product.diagonal().maxCoeff();
+    Eigen::RowVectorXd row(X.cols());
+    for (Eigen::Index i = 0; i < 20 * n && next.row(0).squaredNorm() > enough; ++i) {
+        row.noalias() = filter * next;
+        for (Eigen::Index k = next.rows() - 1; k > 0; --k) next.row(k) = next.row(k - 1).eval();
+        next.row(0) = row;
+        product.noalias() += row.transpose() * row;
+    }
+    return variance * product;
 }
 
 ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, double least) {
@@ -139,8 +144,13 @@ Eigen::MatrixXd ResidualNoise::weighed(const Eigen::MatrixXd& X) const {
     const Eigen::MatrixXd means = block_means(X, block_);
     const double block = static_cast<double>(block_);
     Eigen::MatrixXd product = block * block * slow_.weighed(means);
-    if (block_ > 1) product += fast_.weighed(inside_blocks(X, means, block_));
-    return product;
+    if (block_ == 1) return product;
+    if (!fast_.a.empty()) return product + fast_.weighed(inside_blocks(X, means, block_));
+    // White inside: what the rows have beyond their means needs no rows of its own.
+    Eigen::MatrixXd of_means = block * (means.transpose() * means);
+    const double last = static_cast<double>(X.rows()) - block * static_cast<double>(means.rows() - 1);
+    of_means += (last - block) * means.bottomRows(1).transpose() * means.bottomRows(1);
+    return product + fast_.innovation * fast_.innovation * (X.transpose() * X - of_means);
 }
 
 double student_factor(double freedom) {

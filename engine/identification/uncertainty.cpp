@@ -102,8 +102,9 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
     const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
     std::vector<Eigen::VectorXd> changes;
     Eigen::VectorXd before = Eigen::VectorXd::Zero(n);
-    for (const int power : {fit.form.slope ? 2 : 1, fit.form.slope ? 3 : 2}) {
-        const Eigen::VectorXd q = time.array().pow(power);
+    Eigen::VectorXd q = fit.form.slope ? Eigen::VectorXd(time.array().square()) : Eigen::VectorXd(time);
+    for (int column = 0; column < 2; ++column) {
+        if (column > 0) q.array() *= time.array();
         const Eigen::VectorXd moved = inverse * (J.topRows(n).transpose() * q);
         Eigen::VectorXd alone = q - J.topRows(n) * moved;
         if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
@@ -116,15 +117,44 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
     return changes;
 }
 
+/// Sums over `block` entries over the root of their number, of the first n entries; the rest as it is.
+std::vector<double> block_sums(const std::vector<double>& values, std::size_t n, std::size_t block) {
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < n; i += block) {
+        const std::size_t end = std::min(n, i + block);
+        double sum = 0;
+        for (std::size_t k = i; k < end; ++k) sum += values[k];
+        sums.push_back(sum / std::sqrt(static_cast<double>(end - i)));
+    }
+    sums.insert(sums.end(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
+    return sums;
+}
+
+/// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
+/// number, say as much of parameters and noise. `t` follows.
+Fit condensed(const Fit& fit, std::vector<double>& t) {
+    constexpr std::size_t kEnough = 2000;
+    const std::size_t n = fit.residual.size(), block = n / kEnough;
+    if (block < 2) return fit;
+    Fit less;
+    less.form = fit.form;
+    less.residual = block_sums(fit.residual, n, block);
+    for (const std::vector<double>& column : fit.J) less.J.push_back(block_sums(column, n, block));
+    t = block_sums(t, t.size(), block);
+    return less;
+}
+
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
 /// covariance, one per plateau of a rounded y, and what drifts too small to be found would do. The covariance of least squares under noise that is
 /// not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989, section 4.2).
-Eigen::MatrixXd deviations_of(const Fit& fit, std::span<const double> t, double grid, double noise) {
+Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise) {
+    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
+    const bool on_plateaus = common > 0.02 * grid;
+    std::vector<double> t(times.begin(), times.end());
+    const Fit fit = on_plateaus ? whole : condensed(whole, t);
     const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
     const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
-    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
-    const bool on_plateaus = common > 0.02 * grid;
     const ResidualNoise left(fit.residual, m, grid * grid / 12);
     const double variance = left.long_run_variance();
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);

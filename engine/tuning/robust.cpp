@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
+#include "engine/number_text.h"
 #include "engine/tuning/amigo.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/feasibility.h"
@@ -16,12 +16,6 @@ namespace {
 using namespace robust;
 
 constexpr int kMostRounds = 10;  // of adding the worst plant found inside a region
-std::string shown(double value) {
-    std::ostringstream out;
-    out.precision(4);
-    out << value;
-    return out.str();
-}
 
 Objective objective_named(const std::string& name) {
     if (name == "load_ie") return Objective::load_ie;
@@ -55,8 +49,8 @@ double filter_basis(const LinearPlant& plant) {
 Error no_filter_time(const TuningProblem& problem) {
     const double L = problem.linear.dead_time();
     const std::string what =
-        L > 0 ? "This plant has no lags, and its identified dead time of " + shown(L) +
-                    " counts as none because its standard error is " + shown(problem.dead_time_std.value_or(0)) +
+        L > 0 ? "This plant has no lags, and its identified dead time of " + text(L) +
+                    " counts as none because its standard error is " + text(problem.dead_time_std.value_or(0)) +
                     ". Nothing suggests a filter time. "
               : "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
                 "a filter time. ";
@@ -118,8 +112,8 @@ std::optional<Error> check_Mks(const Problem& problem) {
             least = std::max(least, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
     if (!problem.limits.Mks || *problem.limits.Mks > least) return std::nullopt;
     return Error{ErrorKind::no_feasible_controller, "Mks",
-                 "Mks is " + shown(*problem.limits.Mks) +
-                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + shown(least) +
+                 "Mks is " + text(*problem.limits.Mks) +
+                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + text(least) +
                      " already at rest. Give a limit well above that."};
 }
 
@@ -129,14 +123,14 @@ Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& pr
     return {"limit-exceeded-inside",
             "Between the plants on which the limits hold one was left on which a limit is "
             "exceeded by " +
-                shown(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
+                text(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
 }
 
 void add_warnings(TunedController& result, const Problem& problem, const Point& x) {
     const double reference = reference_frequency(problem), Ti = std::exp(x[1]);
     if (Ti * reference < 1e-3 || (problem.pid && std::exp(x[2]) * reference > 1e3))
         result.warnings.push_back(
-            {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + shown(Ti) +
+            {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + text(Ti) +
                                       "): a smaller Ms or a longer filter time gives an ordinary PID."});
 }
 
@@ -203,7 +197,7 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Metho
                                          const RunControl& control) {
     if (!plant.phase_crossover())
         return Error{ErrorKind::unsupported, "plant/omega",
-                     "The measured band ends at omega " + shown(plant.high()) +
+                     "The measured band ends at omega " + text(plant.high()) +
                          ", before the plant's phase has fallen through -180 degrees, so nothing in it bounds the "
                          "gain. Measure higher frequencies."};
     const auto filter = explicit_filter(options, pid_wanted(options));

@@ -68,6 +68,17 @@ double log_cost(const Problem& problem, const Point& x, double tolerance) {
     return std::numeric_limits<double>::infinity();
 }
 
+double log_cost_bound(const Problem& problem, const Point& x) {
+    const double load = x[1] - x[0];
+    if (problem.objective == Objective::load_ie || problem.objective == Objective::load_iae) return load;
+    const double Tf = filter_time(problem, std::exp(x[2]));
+    const double without_filter =
+        problem.plant->integrators() > 0 ? 0 : std::exp(load) / std::abs(problem.plant->low_frequency_gain());
+    const double setpoint = std::abs(without_filter - Tf);
+    if (problem.objective == Objective::setpoint_iae) return std::log(setpoint);
+    return std::log(mixed(problem, std::exp(load), setpoint));
+}
+
 CostWithGradient log_cost_with_gradient(const Problem& problem, const Point& x, double tolerance) {
     switch (problem.objective) {
         case Objective::load_ie: return {x[1] - x[0], {-1, 1, 0}};

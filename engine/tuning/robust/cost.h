@@ -13,8 +13,16 @@ namespace tunewright::robust {
 /// settle.
 std::optional<double> step_iae(const Problem& problem, const Point& x, bool setpoint, double tolerance);
 
+/// Stands for ln of the cost where there is no design, whatever the units: finite, as a simplex needs it.
+constexpr double kNoDesign = 700;
+
 /// ln of the cost; +infinity where it cannot be computed. The loop must be stable.
 double log_cost(const Problem& problem, const Point& x, double tolerance);
+
+/// A lower bound of `log_cost` that needs no simulation: the integral of |e| is at least |integral of e|, which is
+/// Ti/|Kp| after a unit load step and |Ti/(Kp P(0)) - Tf| after a unit set-point step (Tf with an integrator), because
+/// the integral action sees the filtered y.
+double log_cost_bound(const Problem& problem, const Point& x);
 
 struct CostWithGradient {
     double value = 0;

@@ -31,6 +31,18 @@ struct Limits {
 /// Logarithms of |Kp|, Ti, Td. PI uses the first two.
 using Point = std::array<double, 3>;
 
+/// Within which the searches by gradient keep the controller's times, in 1/reference frequency: beyond, the design is
+/// an integral alone, a PI, or lives below every frequency of interest, and a filter tied to Td leaves the frequency
+/// grid.
+constexpr double kLeastTi = 1e-6, kLeastTd = 2e-4, kMostTd = 300;
+
+/// What a search answers.
+struct Found {
+    Point x{};
+    double log_cost = 0;
+    bool stopped = false;  ///< the report asked to stop: x is the best so far
+};
+
 struct Problem {
     const LinearPlant* plant = nullptr;       ///< nominal: the cost is its own
     std::span<const LinearPlant> others;      ///< stability and the limits must hold on these too

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/local_minimum.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/identification/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
 
@@ -25,8 +25,8 @@ double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains
 
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
-double larger_peak(const Problem& problem, const std::vector<double>& x) {
-    const ParallelPid gains = to_parallel(controller_at(problem, {x[0], x[1], x.size() > 2 ? x[2] : 0}));
+double larger_peak(const Problem& problem, const Point& x) {
+    const ParallelPid gains = to_parallel(controller_at(problem, x));
     if (problem.measured) return larger_measured_peak(*problem.measured, gains);
     double largest = 0;
     for (std::size_t i = 0; i < problem.plants(); ++i) {
@@ -43,7 +43,7 @@ std::optional<Point> stabilising_point(Problem problem, double reference) {
     for (double excess = 0.5; excess < 40; excess *= 1.6) {
         problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
         const Sweep sweep(problem, reference);
-        auto points = scan(sweep, 13, 11);
+        auto points = scan(sweep, {.Ti_points = 13, .Td_points = 11});
         if (!points.empty()) return points.front().x;
     }
     return std::nullopt;
@@ -59,17 +59,28 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem) {
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
     const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestTd / reference);
-    const auto cost = [&](const std::vector<double>& x, bool&) {
+    Point centre = *start;
+    // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
+    const auto stepped = [&](const std::vector<double>& step) {
+        Point x = centre;
+        for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
+        return x;
+    };
+    const auto cost = [&](const std::vector<double>& step, bool&) {
+        const Point x = stepped(step);
         const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
         return larger_peak(problem, x) + 0.1 * beyond;
     };
-    LocalMinimum best{{start->begin(), start->begin() + problem.dimension()}, kUnstable};
+    double least = kUnstable;
     // Started anew with shorter steps: the larger of two peaks has kinks on which a search stalls.
-    for (const double step : {0.4, 0.1, 0.1})
-        best = find_local_minimum(LocalSearch::subplex, cost, best.x,
-                                  {.step = std::vector<double>(n, step), .tolerance = 1e-5});
-    if (best.value >= kUnstable) return std::nullopt;
-    return LeastPeak{std::exp(best.value), {best.x[0], best.x[1], n > 2 ? best.x[2] : 0}};
+    for (const double step : {0.4, 0.1, 0.1}) {
+        const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
+                                              {.step = std::vector<double>(n, step), .tolerance = 1e-5});
+        centre = stepped(found.x);
+        least = found.value;
+    }
+    if (least >= kUnstable) return std::nullopt;
+    return LeastPeak{std::exp(least), centre};
 }
 
 std::optional<Point> feasible_near(const Sweep& sweep, const Point& x) {
@@ -99,7 +110,7 @@ bool has_no_finite_optimum(const Problem& problem) {
     limit.plant = &*asymptote;
     limit.others = {};
     limit.sign = 1;
-    return !scan(Sweep(limit, 1), 13, 11).empty();
+    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}).empty();
 }
 
 }  // namespace tunewright::robust

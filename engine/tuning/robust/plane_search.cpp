@@ -9,7 +9,7 @@ namespace tunewright::robust {
 namespace {
 
 constexpr double kPlaneTolerance = 1e-4;  // of the simulations
-constexpr double kNoController = 50;      // ln(cost) where no gain is feasible: finite, as the simplex needs it
+constexpr double kCorner = 0.4;           // of the simplex, to the first (the paper's section 4.2)
 constexpr int kGridPoints = 25;
 constexpr double kGridReach = 3.0;  // ln: a factor of 20 to either side
 
@@ -39,7 +39,7 @@ struct Search {
 
     double cost(double log_Ti, double log_Td) {
         const auto found = best_gain(*sweep, *problem, std::exp(log_Ti), std::exp(log_Td), kPlaneTolerance);
-        if (!found) return kNoController;
+        if (!found) return kNoDesign;
         if (!best || found->log_cost < best->log_cost) {
             best = found;
             best->stopped = *report && !(*report)(found->x, found->log_cost);
@@ -56,8 +56,8 @@ std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, doubl
     const auto gains = feasible_gains(sweep, Ti, Td);
     for (std::size_t i = 0; i < gains.size(); ++i) {
         Point x = {std::log(gains[i]), std::log(Ti), problem.pid ? std::log(Td) : 0};
-        const bool upper_end = i == 0 || gains[i] > gains[i - 1] || i % 2 == 0;
-        tighten(sweep, x, upper_end);
+        tighten(sweep, x, i % 2 == 0);  // the ends of a gap follow each other, the upper one first
+        if (best && log_cost_bound(problem, x) >= best->log_cost) continue;
         const auto peaks = sweep.peaks(x, -0.05);
         if (!peaks.empty() && peaks[0].value > 1e-5) continue;  // between grid points the gap is closed after all
         const double cost = log_cost(problem, x, tolerance);
@@ -69,15 +69,15 @@ std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, doubl
 std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& problem, double Ti, double Td,
                                         const Report& report) {
     Search search{&sweep, &problem, &report, std::nullopt};
-    const auto cost = [&](const std::vector<double>& x, bool& stop) {
-        const double value = search.cost(x[0], x.size() > 1 ? x[1] : 0);
+    // The unknowns are steps from the first corner: a logarithm's own size depends on the unit of time.
+    const auto cost = [&](const std::vector<double>& step, bool& stop) {
+        const double value = search.cost(std::log(Ti) + step[0], problem.pid ? std::log(Td) + step[1] : 0);
         stop = search.stopped();
         return value;
     };
-    std::vector<double> start = {std::log(Ti)};
-    if (problem.pid) start.push_back(std::log(Td));
-    find_local_minimum(LocalSearch::nelder_mead, cost, start,
-                       {.step = std::vector<double>(start.size(), std::log(0.4))});
+    const std::size_t n = problem.pid ? 2 : 1;
+    find_local_minimum(LocalSearch::nelder_mead, cost, std::vector<double>(n, 0.0),
+                       {.step = std::vector<double>(n, std::log(kCorner))});
     return search.best;
 }
 
@@ -100,8 +100,8 @@ std::optional<Found> grid_search(const Sweep& sweep, const Problem& problem, dou
                 if (search.stopped()) return search.best;
                 if (surface == nullptr || round != 0) continue;
                 if (i == 0) surface->Td.push_back(problem.pid ? std::exp(at(centre_Td, j, Td_points)) : 0);
-                surface->cost.back().push_back(log_cost < kNoController ? std::optional<double>(std::exp(log_cost))
-                                                                        : std::nullopt);
+                surface->cost.back().push_back(log_cost < kNoDesign ? std::optional<double>(std::exp(log_cost))
+                                                                    : std::nullopt);
             }
         }
         if (!search.best) return std::nullopt;

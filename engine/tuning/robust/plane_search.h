@@ -1,8 +1,10 @@
 // The paper's own searches in the (Ti, Td) plane, with Kp eliminated by tangency: Nelder-Mead and gridding.
 #pragma once
 
+#include <optional>
+
 #include "engine/tuning/method.h"
-#include "engine/tuning/robust/fast_search.h"
+#include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
 

@@ -9,11 +9,6 @@
 namespace tunewright::robust {
 namespace {
 
-// Around the reference frequency: what optimal designs of lag-dominant to dead-time-dominant and oscillatory plants
-// use.
-constexpr double kTiLow = 0.2, kTiHigh = 60;
-constexpr double kTdLow = 0.02, kTdHigh = 8;
-
 std::vector<double> spaced(double low, double high, int n) {
     std::vector<double> values;
     for (int i = 0; i < n; ++i) values.push_back(low * std::pow(high / low, n > 1 ? double(i) / (n - 1) : 0.5));
@@ -54,12 +49,13 @@ std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
     return gains;
 }
 
-std::vector<ScanPoint> scan(const Sweep& sweep, int Ti_points, int Td_points) {
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box) {
     const Problem& problem = sweep.problem();
     const double unit = 1 / sweep.reference();
     std::vector<ScanPoint> found;
-    const auto Td_values = problem.pid ? spaced(kTdLow * unit, kTdHigh * unit, Td_points) : std::vector<double>{1.0};
-    for (const double Ti : spaced(kTiLow * unit, kTiHigh * unit, Ti_points))
+    const auto Td_values =
+        problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
+    for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
         for (const double Td : Td_values) {
             const auto gains = feasible_gains(sweep, Ti, Td);
             if (gains.empty()) continue;

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kNear = -0.25;     // constraints below it cannot become active within a step
 constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
-constexpr double kLeastTd = 0.01;   // times 1/reference: a shorter one is a PI with a filter that no grid follows
 constexpr double kFeasible = 1e-8;  // and accepted with this much slack
 
 Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -39,7 +38,7 @@ void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
                 y[std::size_t(i)] * y[std::size_t(j)] / scale - Hs[std::size_t(i)] * Hs[std::size_t(j)] / sHs;
 }
 
-/// The peaks' linear models, the trust region, and the least Td, for a step from x.
+/// The peaks' linear models and the trust region, which ends at the bounds of Ti and Td, for a step from x.
 std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const Point& x,
                                          double radius, std::size_t most) {
     std::vector<LinearConstraint> constraints;
@@ -47,14 +46,16 @@ std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, c
         if (constraints.size() == most) break;
         constraints.push_back({peak.gradient, -peak.value - kAimBelow});
     }
-    const int n = sweep.problem().dimension();
-    for (int i = 0; i < n; ++i)
-        for (const double side : {1.0, -1.0}) {
-            Vector3 a{};
-            a[std::size_t(i)] = side;
-            constraints.push_back({a, radius});
-        }
-    if (n == 3) constraints.push_back({{0, 0, -1}, std::max(0.0, x[2] - std::log(kLeastTd / sweep.reference()))});
+    const auto log_time = [&](double in_reference) { return std::log(in_reference / sweep.reference()); };
+    const std::array<double, 3> lowest = {-INFINITY, log_time(kLeastTi), log_time(kLeastTd)};
+    const std::array<double, 3> highest = {INFINITY, INFINITY, log_time(kMostTd)};
+    for (std::size_t i = 0; i < std::size_t(sweep.problem().dimension()); ++i) {
+        Vector3 up{}, down{};
+        up[i] = 1;
+        down[i] = -1;
+        constraints.push_back({up, std::clamp(highest[i] - x[i], 0.0, radius)});
+        constraints.push_back({down, std::clamp(x[i] - lowest[i], 0.0, radius)});
+    }
     return constraints;
 }
 

@@ -23,6 +23,10 @@ std::vector<double> frequencies(const Problem& problem, const LinearPlant& plant
     // |C S| peaks near 1/Tf, which follows Td far up.
     double high = reference * std::pow(10, problem.limits.Mks ? kDecades + 1.5 : kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
+    // Where the plant itself does not fall, a tied filter alone ends the loop, and its shortest Tf belongs to the least
+    // Td.
+    if (problem.pid && problem.filter.Tf_over_Td && plant.pole_excess() == 0)
+        high = std::max(high, 10 * reference / (*problem.filter.Tf_over_Td * kLeastTd));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
     std::vector<double> omega;
@@ -169,7 +173,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
                 if (!(bend < 0)) break;
                 const double top =
                     std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + 0.02 * (b - a), d - 0.02 * (d - b));
-                if (std::abs(top - b) < 1e-7 * (1 + std::abs(b))) break;
+                if (std::abs(top - b) < 1e-7) break;
                 const double f = value(curve, kind, c, std::exp(top));
                 const double gain = f - fb;
                 if (f >= fb) {
@@ -265,16 +269,49 @@ std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
     return found;
 }
 
+namespace {
+
+/// Joins the intervals of neighbouring frequencies, which nearly always overlap, before they are sorted with others.
+class JoinedIntervals {
+public:
+    explicit JoinedIntervals(std::vector<GainGap>& out) : out_(out) {}
+    ~JoinedIntervals() { close(); }
+    JoinedIntervals(const JoinedIntervals&) = delete;
+    JoinedIntervals& operator=(const JoinedIntervals&) = delete;
+
+    void add(double lower, double upper) {
+        if (open_ && lower <= joined_.upper && upper >= joined_.lower) {
+            joined_ = {std::min(lower, joined_.lower), std::max(upper, joined_.upper)};
+            return;
+        }
+        close();
+        joined_ = {lower, upper};
+        open_ = true;
+    }
+
+private:
+    void close() {
+        if (open_) out_.push_back(joined_);
+    }
+
+    std::vector<GainGap>& out_;
+    GainGap joined_;
+    bool open_ = false;
+};
+
+}  // namespace
+
 /// Adds the intervals of |Kp| that one plant forbids.
 void Sweep::forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& forbidden) const {
     const Limits& limits = problem_.limits;
-    const auto forbid_circle = [&](double X, double Y, double centre, double radius) {
+    JoinedIntervals first(forbidden), second(forbidden);
+    const auto forbid_circle = [](JoinedIntervals& joined, double X, double Y, double centre, double radius) {
         const double size = X * X + Y * Y, discriminant = radius * radius * size - centre * centre * Y * Y;
         if (discriminant <= 0) return;
         const double root = std::sqrt(discriminant);
         const double upper = (centre * X + root) / size;
         if (upper <= 0) return;
-        forbidden.push_back({std::max(0.0, (centre * X - root) / size), upper});
+        joined.add(std::max(0.0, (centre * X - root) / size), upper);
     };
     const double t_centre = -limits.Mt * limits.Mt / (limits.Mt * limits.Mt - 1),
                  t_radius = limits.Mt / (limits.Mt * limits.Mt - 1);
@@ -284,10 +321,10 @@ void Sweep::forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& for
         Complex G = Complex(curve.P_re[i], curve.P_im[i]) * C;
         if (i >= curve.resolved) G = -std::abs(G);
         if (limits.m_circle) {
-            forbid_circle(G.real(), G.imag(), circle_centre_, circle_radius_);
+            forbid_circle(first, G.real(), G.imag(), circle_centre_, circle_radius_);
         } else {
-            forbid_circle(G.real(), G.imag(), -1, 1 / limits.Ms);
-            forbid_circle(G.real(), G.imag(), t_centre, t_radius);
+            forbid_circle(first, G.real(), G.imag(), -1, 1 / limits.Ms);
+            forbid_circle(second, G.real(), G.imag(), t_centre, t_radius);
         }
         if (limits.Mks) {
             // K^2 |C|^2 <= Mks^2 |1 + K G|^2.

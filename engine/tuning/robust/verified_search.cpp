@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "engine/number_text.h"
 #include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/fast_search.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/plane_search.h"
 #include "engine/tuning/robust/scan.h"
@@ -12,15 +13,8 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kAllowedExcess =
-    2e-5;  // relative, of Ms and Mt on the independent grid: above it nothing is returned as a success
-
-std::string shown(double value) {
-    std::ostringstream out;
-    out.precision(4);
-    out << value;
-    return out.str();
-}
+// Relative, of Ms and Mt on the independent grid: above it nothing is returned as a success.
+constexpr double kAllowedExcess = 2e-5;
 
 /// The largest relative excess over a limit, on a grid that the search never saw.
 double measured_excess(const Problem& problem, const Point& x) {
@@ -50,6 +44,7 @@ public:
             progress.stage = "tune";
             progress.message = "robust design: " + std::to_string(steps_) + " improvements so far.";
             BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
+            // Of other objectives the integral of e stands for the load IAE, which it never exceeds.
             if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
             progress.best = best;
             control_.progress(progress);
@@ -146,7 +141,7 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
     const auto workable = workable_limit(problem, *least);
     if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
         return {ErrorKind::no_feasible_controller, "Mks",
-                "No " + name + " controller keeps Mks <= " + shown(*problem.limits.Mks) +
+                "No " + name + " controller keeps Mks <= " + text(*problem.limits.Mks) +
                     " together with the other limits. Raise Mks or leave it out."};
     if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
         return {ErrorKind::numerical_failure, "",
@@ -154,10 +149,10 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
                 "the time constants and the dead time: "
                 "they lie very far apart."};
     return {ErrorKind::no_feasible_controller, "",
-            "No " + name + " controller keeps Ms <= " + shown(problem.limits.Ms) +
-                " and Mt <= " + shown(problem.limits.Mt) + on_plants(problem) +
-                (problem.limits.Mks ? " with Mks <= " + shown(*problem.limits.Mks) : std::string()) +
-                ". The smallest common limit that works is Ms = Mt = " + shown(workable.value_or(least->M * 1.01)) +
+            "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
+                " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
+                (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string()) +
+                ". The smallest common limit that works is Ms = Mt = " + text(workable.value_or(least->M * 1.01)) +
                 "; use that or more."};
 }
 

@@ -8,7 +8,7 @@
 
 #include "engine/expected.h"
 #include "engine/tuning/method.h"
-#include "engine/tuning/robust/fast_search.h"
+#include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {
 
@@ -16,7 +16,8 @@ namespace tunewright::robust {
 using PlaneStart = std::optional<std::pair<double, double>>;
 
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
-/// ones. `before`: the design that some new plants have proved too bold.
+/// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
+/// is searched; where that finds nothing, the whole search is made.
 /// `kind`: fast, nelder_mead or grid. `problem` receives the reference optima of a weighted objective and the sign of
 /// Kp that was found to work. Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.

@@ -1,0 +1,80 @@
+// The best robust design that is known for a problem, from searches that share nothing with `fast` but the problem's
+// terms: the paper's two, and the quadratic programming from random feasible points.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "engine/tuning/method.h"
+#include "engine/tuning/robust/cost.h"
+#include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/scan.h"
+#include "engine/tuning/robust/sqp.h"
+#include "tests/engine/tuning/random_plants.h"
+
+namespace tunewright::test {
+
+struct DesignTask {
+    Plant plant;
+    double M = 1.4;  ///< limit of Ms and Mt
+    std::string objective = "load_iae";
+};
+
+inline Expected<TunedController> designed(const DesignTask& task, const std::string& search) {
+    MethodOptions options;
+    options.set("Ms", task.M);
+    options.set("Mt", task.M);
+    options.set("objective", task.objective);
+    options.set("search", search);
+    return find_method("robust")->tune({task.plant, *LinearPlant::make(task.plant), std::nullopt}, options, {});
+}
+
+/// The problem that a design answered. `linear` must outlive it.
+inline robust::Problem problem_of(const DesignTask& task, const LinearPlant& linear, const Pid& design) {
+    robust::Problem problem;
+    problem.plant = &linear;
+    problem.sign = design.Kp < 0 ? -1 : 1;
+    problem.limits.Ms = problem.limits.Mt = task.M;
+    if (std::abs(design.filter.Tf / design.Td / 0.1 - 1) < 1e-9)
+        problem.filter.Tf_over_Td = 0.1;
+    else
+        problem.filter.Tf = design.filter.Tf;
+    if (task.objective == "load_ie") problem.objective = robust::Objective::load_ie;
+    if (task.objective == "setpoint_iae") problem.objective = robust::Objective::setpoint_iae;
+    if (task.objective == "weighted") problem.objective = robust::Objective::weighted;
+    return problem;
+}
+
+inline robust::Point point_of(const Pid& pid) {
+    return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
+}
+
+/// The cost to five digits or more; empty where a limit is exceeded by more than the product allows itself.
+inline std::optional<double> checked_cost(const robust::Problem& problem, const robust::Point& x) {
+    if (robust::excess_on(*problem.plant, problem, x, {.step = 0.05, .density = 60}) > 2e-5) return std::nullopt;
+    const double cost = robust::log_cost(problem, x, 1e-6);
+    return std::isfinite(cost) ? std::optional(std::exp(cost)) : std::nullopt;
+}
+
+/// The least cost that quadratic programming reaches from `count` random feasible points of the (Ti, Td) plane.
+inline std::optional<double> best_from_random_starts(const robust::Problem& problem, int count, std::uint64_t seed) {
+    const robust::Sweep sweep(problem, robust::reference_frequency(problem));
+    const double unit = 1 / sweep.reference();
+    Random random(seed);
+    std::optional<double> best;
+    for (int tries = 0, started = 0; started < count && tries < 20 * count; ++tries) {
+        const double Ti = unit * random.log_uniform(0.05, 100), Td = unit * random.log_uniform(0.01, 10);
+        const auto gains = robust::feasible_gains(sweep, Ti, Td);
+        if (gains.empty()) continue;
+        ++started;
+        const double Kp = gains[static_cast<std::size_t>(random.whole(0, static_cast<int>(gains.size()) - 1))];
+        const auto found = robust::minimise(
+            sweep, problem, {std::log(Kp * random.uniform(0.5, 1)), std::log(Ti), std::log(Td)}, {}, {});
+        const auto cost = std::isfinite(found.log_cost) ? checked_cost(problem, found.x) : std::nullopt;
+        if (cost && !(best && *best <= *cost)) best = cost;
+    }
+    return best;
+}
+
+}  // namespace tunewright::test

@@ -1,0 +1,125 @@
+// The search `fast` against the best design that other searches find, and the same problem in other units.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/tuning/robust/fast_search.h"
+#include "tests/engine/tuning/best_known_design.h"
+
+namespace tunewright::test {
+namespace {
+
+constexpr double kAllowed = 1e-3;  // relative, of the cost
+
+Zpk lightly_damped() { return {.K = 9, .zeros = {}, .poles = {{-0.24, 3}, {-0.24, -3}, -1.0}, .L = 0.2}; }
+
+/// False: neither search finds a controller.
+bool expect_best_known(const DesignTask& task, int random_starts, std::uint64_t seed, const std::string& name) {
+    const LinearPlant linear = *LinearPlant::make(task.plant);
+    const auto fast = designed(task, "fast"), simplex = designed(task, "nelder_mead");
+    EXPECT_TRUE(fast || !simplex) << name;
+    if (!fast) return false;
+    const robust::Problem problem = problem_of(task, linear, fast->controller);
+    const auto cost = checked_cost(problem, point_of(fast->controller));
+    EXPECT_TRUE(cost.has_value()) << name << " exceeds a limit";
+    const auto best = best_from_random_starts(problem, random_starts, seed);
+    const auto other = simplex ? checked_cost(problem, point_of(simplex->controller)) : std::nullopt;
+    EXPECT_TRUE(best || other) << name << ": nothing to compare with";
+    EXPECT_LE(cost.value_or(INFINITY), std::min(best.value_or(INFINITY), other.value_or(INFINITY)) * (1 + kAllowed))
+        << name;
+    return true;
+}
+
+// Its least Td is a local optimum: 2.10478, where 2.07482 can be had at Td = 0.239.
+TEST(RobustSearch, TheLeastTdIsNoAnswerWithoutALookElsewhere) {
+    const DesignTask task{lightly_damped(), 1.5, "load_iae"};
+    const auto fast = designed(task, "fast");
+    ASSERT_TRUE(fast.has_value());
+    EXPECT_NEAR(fast->controller.Td, 0.239, 0.01);
+    EXPECT_TRUE(expect_best_known(task, 20, 1, "load"));
+    EXPECT_TRUE(expect_best_known({lightly_damped(), 1.5, "setpoint_iae"}, 20, 1, "set point"));
+}
+
+TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {
+    int compared = 0;
+    for (int i = 1000; i < 1018; ++i) {
+        const RandomPlant drawn = random_plant(static_cast<std::uint64_t>(i), i % 3 == 0);
+        compared += expect_best_known({drawn.plant, drawn.M, i % 2 == 0 ? "load_iae" : "setpoint_iae"}, 8,
+                                      static_cast<std::uint64_t>(i), drawn.description);
+    }
+    EXPECT_GE(compared, 15) << "the others have no controller within the limits";
+}
+
+// Where one start alone ended 0.2 to 140 % above the best: at an integral behind a heavy filter (27, 195, 246, 294), at
+// a Td too short to matter (96, 357), at a Ti of hundreds of the loop's own times (399, 492), on a kink of the
+// set-point error (139, 164), and beyond the frequency grid (459).
+TEST(RobustSearch, PlantsWithSeveralValleysEndInTheCheapest) {
+    struct Case {
+        std::uint64_t plant;
+        bool resonant;
+        const char* objective;
+    };
+    for (const auto& [plant, resonant, objective] :
+         {Case{27, true, "load_iae"}, Case{96, true, "load_iae"}, Case{195, true, "load_iae"},
+          Case{246, true, "load_iae"}, Case{294, true, "load_iae"}, Case{357, true, "load_iae"},
+          Case{399, true, "setpoint_iae"}, Case{492, true, "setpoint_iae"}, Case{139, false, "setpoint_iae"},
+          Case{164, false, "setpoint_iae"}, Case{459, true, "load_ie"}}) {
+        const RandomPlant drawn = random_plant(plant, resonant);
+        EXPECT_TRUE(
+            expect_best_known({drawn.plant, drawn.M, objective}, 20, plant, drawn.description + ", " + objective));
+    }
+}
+
+Zpk in_other_units(Zpk plant, double time, double gain) {
+    for (auto& pole : plant.poles) pole /= time;
+    for (auto& zero : plant.zeros) zero /= time;
+    plant.L *= time;
+    plant.K *= gain * std::pow(time, static_cast<double>(plant.zeros.size()) - static_cast<double>(plant.poles.size()));
+    return plant;
+}
+
+// The objective without simulations shows that the search itself knows neither unit.
+TEST(RobustSearch, UnitsOfTimeAndGainChangeNothing) {
+    for (const std::uint64_t seed : {3, 7, 12, 20}) {
+        const RandomPlant drawn = random_plant(seed, seed % 3 == 0);
+        const auto base = designed({drawn.plant, drawn.M, "load_ie"}, "fast");
+        ASSERT_TRUE(base.has_value());
+        const Pid& p = base->controller;
+        for (const double time : {1e-9, 1e-4, 1e9})
+            for (const double gain : {1e-9, -3e5, 1e9}) {
+                const auto other = designed({in_other_units(drawn.plant, time, gain), drawn.M, "load_ie"}, "fast");
+                ASSERT_TRUE(other.has_value()) << seed << ": " << other.error().message;
+                const Pid& q = other->controller;
+                EXPECT_NEAR(q.Ti / q.Kp / (p.Ti / p.Kp) / time / gain, 1, 1e-6) << seed << " " << time << " " << gain;
+                EXPECT_NEAR(q.Kp * gain / p.Kp, 1, 1e-3) << seed << " " << time << " " << gain;
+                EXPECT_NEAR(q.Ti / time / p.Ti, 1, 1e-3) << seed << " " << time << " " << gain;
+                EXPECT_NEAR(q.Td / time / p.Td, 1, 1e-3) << seed << " " << time << " " << gain;
+            }
+    }
+}
+
+TEST(RobustSearch, TheBoundIsNeverAboveTheCost) {
+    using namespace robust;
+    for (const std::uint64_t seed : {1, 5, 6, 9, 14}) {
+        const RandomPlant drawn = random_plant(seed, seed % 3 == 0);
+        for (const char* objective : {"load_iae", "setpoint_iae", "weighted"}) {
+            const DesignTask task{drawn.plant, drawn.M, objective};
+            const auto fast = designed(task, "fast");
+            ASSERT_TRUE(fast.has_value()) << seed;
+            const LinearPlant linear = *LinearPlant::make(drawn.plant);
+            const Problem problem = problem_of(task, linear, fast->controller);
+            const Sweep sweep(problem, reference_frequency(problem));
+            int looked_at = 0;
+            for (const auto& point : scan(sweep)) {
+                const double cost = log_cost(problem, point.x, 1e-5);
+                if (!std::isfinite(cost)) continue;
+                EXPECT_LE(log_cost_bound(problem, point.x), cost + 1e-5) << seed << " " << objective;
+                ++looked_at;
+            }
+            EXPECT_GT(looked_at, 5) << seed;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tunewright::test

@@ -57,10 +57,10 @@ void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool iden
     if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
     const double worst = *evaluation.region->worst_Ms;
     if (worst <= kNoticeable * *limit) return;
-    evaluation.warnings.push_back({"above-limit-in-region",
-                                   "On the worst plant of the region Ms is " + text(worst) + ", above the " +
-                                       text(*limit) + " asked for.",
-                                   identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
+    evaluation.warnings.push_back(
+        {"above-limit-in-region",
+         "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*limit) + " asked for.",
+         identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
 }
 
 // "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
@@ -71,9 +71,8 @@ std::string with_variant(const std::string& title, const std::string& variant) {
 
 // The design that holds on the region stands before the one on the model alone, and says why.
 void say_choice(Evaluation& held, const Evaluation& nominal) {
-    const std::string there = nominal.region->worst_Ms
-                                  ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
-                                  : std::string("the loop may be unstable");
+    const std::string there = nominal.region->worst_Ms ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
+                                                       : std::string("the loop may be unstable");
     held.warnings.insert(held.warnings.begin(),
                          {"held-on-region",
                           "The limits hold on every plant that the record leaves possible (95 %). With the design for "

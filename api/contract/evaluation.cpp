@@ -343,9 +343,10 @@ const Description<Warning>& warning_contract() {
         };
         d.field("code", &Warning::code, words(), "Stable, in kebab-case.")
             .field("detail", &Warning::detail, words(), "One sentence with the figures.")
-            .field("level", &Warning::level,
-                   only_answered(choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}})),
-                   "bad: what it belongs to is not to be used as it stands.");
+            .field(
+                "level", &Warning::level,
+                only_answered(choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}})),
+                "bad: what it belongs to is not to be used as it stands.");
         return d;
     }();
     return description;

@@ -64,10 +64,11 @@ double quantile(std::vector<double> values, double share) {
 
 void print(const std::string& name, const Line& line) {
     const double percent = 100.0 / std::max(1, line.records), of_designs = 100.0 / std::max(1, line.designed);
-    std::printf("%-22s %6d %7.1f %7.2f %9.2f %9.2f %8.1f %8.2f %8.2f %8.2f %8.2f\n", name.c_str(), line.records, line.refused * percent,
-                line.silent * percent, line.above * of_designs, line.unstable * of_designs,
-                100.0 * line.covered / std::max(1, line.comparable), 100 * quantile(line.K_error, 0.5), 100 * quantile(line.K_error, 0.95),
-                100 * quantile(line.response_error, 0.95), quantile(line.response_ratio, 0.95));
+    std::printf("%-22s %6d %7.1f %7.2f %9.2f %9.2f %8.1f %8.2f %8.2f %8.2f %8.2f\n", name.c_str(), line.records,
+                line.refused * percent, line.silent * percent, line.above * of_designs, line.unstable * of_designs,
+                100.0 * line.covered / std::max(1, line.comparable), 100 * quantile(line.K_error, 0.5),
+                100 * quantile(line.K_error, 0.95), 100 * quantile(line.response_error, 0.95),
+                quantile(line.response_ratio, 0.95));
 }
 
 bool shown(const std::string& kind, const Judgement& j) {
@@ -81,9 +82,10 @@ bool shown(const std::string& kind, const Judgement& j) {
 
 void show(const Row& row) {
     const Judgement& j = row.judgement;
-    std::printf("\nseed %llu: %s\n   K %.4g +- %.2g (true %.4g), Ms %s, response off %.2g (stated %.2g)\n   %s\n", static_cast<unsigned long long>(row.seed),
-                row.made.text().c_str(), j.K, j.K_std, j.K_true, j.Ms_true ? std::to_string(*j.Ms_true).c_str() : "unstable", j.response_error,
-                j.response_std, (j.refused ? j.refusal : j.detail).c_str());
+    std::printf("\nseed %llu: %s\n   K %.4g +- %.2g (true %.4g), Ms %s, response off %.2g (stated %.2g)\n   %s\n",
+                static_cast<unsigned long long>(row.seed), row.made.text().c_str(), j.K, j.K_std, j.K_true,
+                j.Ms_true ? std::to_string(*j.Ms_true).c_str() : "unstable", j.response_error, j.response_std,
+                (j.refused ? j.refusal : j.detail).c_str());
 }
 
 Options parse(int argc, char** argv) {
@@ -108,7 +110,8 @@ Options parse(int argc, char** argv) {
 }
 
 bool wanted(const Options& options, const MadeRecord& made) {
-    return (options.family < 0 || static_cast<int>(made.plant.family) == options.family) && (options.test < 0 || static_cast<int>(made.test) == options.test) &&
+    return (options.family < 0 || static_cast<int>(made.plant.family) == options.family) &&
+           (options.test < 0 || static_cast<int>(made.test) == options.test) &&
            (options.noise < 0 || static_cast<int>(made.noise) == options.noise);
 }
 
@@ -143,8 +146,8 @@ int run(const Options& options) {
         for (const std::string& code : told) ++codes[code];
         if (!options.show.empty() && shown(options.show, row->judgement)) show(*row);
     }
-    std::printf("\n%-22s %6s %7s %7s %9s %9s %8s %8s %8s %8s %8s\n", "% of records", "number", "refused", "silent", "Ms > 1.25", "unstable", "covered", "K median",
-                "K 95 %", "G 95 %", "G/std 95");
+    std::printf("\n%-22s %6s %7s %7s %9s %9s %8s %8s %8s %8s %8s\n", "% of records", "number", "refused", "silent",
+                "Ms > 1.25", "unstable", "covered", "K median", "K 95 %", "G 95 %", "G/std 95");
     for (const auto& [family, line] : by[0]) print(name_of(static_cast<Family>(family)), line);
     for (const auto& [test, line] : by[1]) print(name_of(static_cast<Test>(test)), line);
     for (const auto& [noise, line] : by[2]) print(name_of(static_cast<Noise>(noise)), line);

@@ -233,8 +233,7 @@ double by_noise(int more, double independent, int parameters) {
 
 /// Whether `simple` explains the record as well as `best` does, but for noise.
 bool as_good(const Fit& simple, const Fit& best, double lead, double points, double left, double independent) {
-    const bool unusual = best.form.structure == Structure::sopdt_zero ||
-                         best.form.structure == Structure::unstable ||
+    const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
     constexpr double kPoint = 1, kMostByNoise = 3;
@@ -259,8 +258,9 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
         return name + ": the simpler structure; what " + other + " gains is within what noise explains (" + figures +
                "; information criterion within " + number_text(-lead, 3) + ").";
     }
-    return name + ": the best balance of fit and number of parameters (" + figures + "; information criterion lower by " +
-           number_text(lead, 3) + " with " + number_text(independent_samples, 3) + " independent samples).";
+    return name + ": the best balance of fit and number of parameters (" + figures +
+           "; information criterion lower by " + number_text(lead, 3) + " with " + number_text(independent_samples, 3) +
+           " independent samples).";
 }
 
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
@@ -276,8 +276,9 @@ Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
     int chosen = best;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined || looks_integrating(fits[i])) continue;
-        const bool simpler = fits[i].form.parameters() < fits[chosen].form.parameters() ||
-                             (fits[i].form.parameters() == fits[chosen].form.parameters() && criteria[i] < criteria[chosen]);
+        const bool simpler =
+            fits[i].form.parameters() < fits[chosen].form.parameters() ||
+            (fits[i].form.parameters() == fits[chosen].form.parameters() && criteria[i] < criteria[chosen]);
         if (simpler && as_good(fits[i], fits[best], criteria[i] - criteria[best], percents[best] - percents[i],
                                100 - percents[best], independent_samples))
             chosen = i;

@@ -15,9 +15,9 @@ namespace tunewright {
 /// the structures' comparison.
 struct FitContext {
     CleanRecord record, medium, thin;
-    double noise = 0;             ///< standard deviation of what changes from sample to sample, rounding included
-    double grid = 0;              ///< step that y is rounded to, 0 if none
-    bool relay = false;           ///< a relay test
+    double noise = 0;    ///< standard deviation of what changes from sample to sample, rounding included
+    double grid = 0;     ///< step that y is rounded to, 0 if none
+    bool relay = false;  ///< a relay test
     Start start = Start::at_rest;
     std::vector<Anchor> anchors;  ///< that every model is held to
     std::stop_token stop;

@@ -262,9 +262,10 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
                          number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
     model.data_quality.closed_loop = loop.told;
     model.warnings.insert(model.warnings.begin(),
-                          {"closed-loop", "A controller seems to move u in answer to y: " + loop.told.evidence +
-                                              " Then the model may be the controller's inverse in place of the plant: "
-                                              "step u in manual, or step the set point and record it as column r.",
+                          {"closed-loop",
+                           "A controller seems to move u in answer to y: " + loop.told.evidence +
+                               " Then the model may be the controller's inverse in place of the plant: "
+                               "step u in manual, or step the set point and record it as column r.",
                            WarningLevel::bad});
 }
 

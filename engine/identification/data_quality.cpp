@@ -86,7 +86,8 @@ std::string places_of_spikes(const Cleaning& done) {
     constexpr std::size_t kInSentence = 5;
     std::string places;
     for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
-        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) + " (t = " + number_text(done.spike_times[k], 10) + ")";
+        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) +
+                  " (t = " + number_text(done.spike_times[k], 10) + ")";
     return places + (done.spikes.size() > kInSentence ? ", ..." : "");
 }
 
@@ -107,10 +108,9 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
     outliers.rows.resize(std::min(kShown, outliers.rows.size()));
     quality.outliers = std::move(outliers);
-    quality.notes.push_back(std::to_string(done.spikes.size()) +
-                            " reading(s) of y are plainly false and were left out (" +
-                            (done.from_file ? "line " : "row ") + rows +
-                            (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
+    quality.notes.push_back(
+        std::to_string(done.spikes.size()) + " reading(s) of y are plainly false and were left out (" +
+        (done.from_file ? "line " : "row ") + rows + (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
 }
 
 bool on_a_level(const TwoLevels& u, double v) {
@@ -263,9 +263,9 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
                                                    "; the model rests on the others."});
     }
     if (quality.outliers) {
-        warnings.push_back({"removed-outliers",
-                            std::to_string(quality.outliers->count) + " reading(s) of y that no process makes were left out: " +
-                                places_of_spikes(done) + ". Look whether they are false."});
+        warnings.push_back({"removed-outliers", std::to_string(quality.outliers->count) +
+                                                    " reading(s) of y that no process makes were left out: " +
+                                                    places_of_spikes(done) + ". Look whether they are false."});
     }
     if (done.reversed)
         warnings.push_back({"reversed-time",

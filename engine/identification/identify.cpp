@@ -247,7 +247,8 @@ RecordKind kind_of(const CleanRecord& record) {
 /// The models of a record, its false readings left out of it.
 Search searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
     constexpr int kMostFitted = 100'000;
-    Search search = search_models(block_means(record, kMostFitted), model, kind_of(record) == RecordKind::relay, control);
+    Search search =
+        search_models(block_means(record, kMostFitted), model, kind_of(record) == RecordKind::relay, control);
     if (search.choice.index < 0 || control.stop.stop_requested()) return search;
     return without_false_readings(std::move(search), record, model, control);
 }

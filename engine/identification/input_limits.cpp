@@ -5,7 +5,8 @@
 namespace tunewright {
 
 std::vector<InputLimits> plain_limits(const Record& record) {
-    static constexpr InputLimits kUsual[] = {{0, 1}, {-1, 1}, {0, 100}, {-100, 100}, {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
+    static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
+                                             {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
     constexpr double kBeyond = 0.05, kLeastOutside = 0.02, kLeastInside = 0.1;
     std::vector<InputLimits> found;
     for (const InputLimits& limits : kUsual) {

@@ -57,10 +57,11 @@ constexpr double kSlow = 0.5;
 /// Beside a quick part a slow one of many record lengths and a drift look the same.
 void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kSlow) return;
-    warnings.push_back({"slow-part",
-                        "A part of the response has a lag of " + number_text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
-                            ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
-                            "open. Record longer, or ask for model fopdt or sopdt."});
+    warnings.push_back(
+        {"slow-part", "A part of the response has a lag of " +
+                          number_text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
+                          ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
+                          "open. Record longer, or ask for model fopdt or sopdt."});
 }
 
 /// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
@@ -76,7 +77,8 @@ void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnin
         const Fit& fit = search.fits[i];
         if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
         if (is_integrating(fit.form.structure) == integrating) continue;
-        if (search.criteria[i] - search.criteria[chosen] > kStrong && search.percents[chosen] - search.percents[i] > kPoint)
+        if (search.criteria[i] - search.criteria[chosen] > kStrong &&
+            search.percents[chosen] - search.percents[i] > kPoint)
             continue;
         const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
@@ -107,8 +109,8 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
 }
 
 /// The variance of K with the choice of structure left open: the widest of own variance and squared distance from the
-/// chosen one's K, over the structures of the same kind that Akaike's criterion does not tell from it (less than 4 apart:
-/// Burnham and Anderson 2002, section 2.6).
+/// chosen one's K, over the structures of the same kind that Akaike's criterion does not tell from it (less than 4
+/// apart: Burnham and Anderson 2002, section 2.6).
 double open_choice_variance(const Search& search, const std::vector<FittedPlant>& plants) {
     constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);

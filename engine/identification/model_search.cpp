@@ -86,7 +86,8 @@ bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
     if (best == nullptr) return false;
     constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;
     const double n = static_cast<double>(best->residual.size());
-    return best->sse > kMoreThanNoise * n * context.noise * context.noise || correlation_time(best->residual) > kNotWhite;
+    return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
+           correlation_time(best->residual) > kNotWhite;
 }
 
 Search fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
@@ -167,8 +168,8 @@ bool shows_drift(const CleanRecord& r) {
     return r.changes() > 1 || before >= kEnoughBefore;
 }
 
-/// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept in
-/// its place, and the choice made again.
+/// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
+/// in its place, and the choice made again.
 bool another_lag_does(Search& search, ModelChoice model, double by_drift, double independent) {
     constexpr double kAsGood = 2;
     const Plan plan = plan_for(model, search.context.record);

@@ -29,7 +29,9 @@ std::vector<bool> lone_misses(const Fit& fit) {
         while (end < e.size() && std::abs(e[end]) >= least) ++end;
         const double limit = kNeighbours * std::abs(e[i]);
         const bool alone = (i == 0 || std::abs(e[i - 1]) < limit) && (end == e.size() || std::abs(e[end]) < limit);
-        if (alone && end - i <= 2) std::fill(lone.begin() + static_cast<std::ptrdiff_t>(i), lone.begin() + static_cast<std::ptrdiff_t>(end), true);
+        if (alone && end - i <= 2)
+            std::fill(lone.begin() + static_cast<std::ptrdiff_t>(i), lone.begin() + static_cast<std::ptrdiff_t>(end),
+                      true);
         i = end - 1;
     }
     return lone;
@@ -45,7 +47,8 @@ void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
         if (std::abs(moves[i]) < least) continue;
         for (std::size_t k = i + 1; k < moves.size() && k <= i + kLongestRun; ++k) {
             if (moves[k] * moves[i] >= 0 || std::abs(moves[k]) < least) continue;
-            std::fill(marked.begin() + static_cast<std::ptrdiff_t>(i) + 1, marked.begin() + static_cast<std::ptrdiff_t>(k) + 1, true);
+            std::fill(marked.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                      marked.begin() + static_cast<std::ptrdiff_t>(k) + 1, true);
             break;
         }
     }

@@ -8,7 +8,8 @@ namespace tunewright {
 /// What the rows before the first move of u say of the start.
 enum class Start {
     at_rest,  ///< y rests there, u0 is given, or u moves only once and nothing else is seen
-    unseen,   ///< too few rows to tell in a record in which u moves more than once, or a relay at work from the first row
+    unseen,   ///< too few rows to tell in a record in which u moves more than once, or a relay at work from the first
+              ///< row
     moving,   ///< y moves there
 };
 

@@ -29,14 +29,14 @@ struct RecordedCycle {
     double relay_start = 0;  ///< when the relay took over
     double start = 0;        ///< of the steady periods: a switch
     double period = 0;
-    int periods = 0;                  ///< steady ones
-    int recorded_periods = 0;         ///< whole ones, steady or not
-    double period_scatter = 0;        ///< standard deviation over the steady periods
-    double v_mean = 0, y_mean = 0;    ///< over the steady periods
-    double v_middle = 0;              ///< of the relay's two levels
-    double v_half = 0, y_half = 0;    ///< half the swing of v and of y
-    double drift = 0;  ///< slope of y's mean from period to period
-    bool reversed = false;            ///< y is high when u switches up: the relay of a plant with negative gain
+    int periods = 0;                ///< steady ones
+    int recorded_periods = 0;       ///< whole ones, steady or not
+    double period_scatter = 0;      ///< standard deviation over the steady periods
+    double v_mean = 0, y_mean = 0;  ///< over the steady periods
+    double v_middle = 0;            ///< of the relay's two levels
+    double v_half = 0, y_half = 0;  ///< half the swing of v and of y
+    double drift = 0;               ///< slope of y's mean from period to period
+    bool reversed = false;          ///< y is high when u switches up: the relay of a plant with negative gain
     RestPoint rest;
     std::vector<Harmonic> harmonics;  ///< the first, then those that the relay excites and the noise leaves visible
 

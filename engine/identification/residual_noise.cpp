@@ -106,7 +106,8 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     for (Eigen::Index c = 0; c < Z.cols(); ++c) {
         double* z = Z.col(c).data();
         for (Eigen::Index i = n; i-- > 0;) {
-            for (Eigen::Index k = 1; k <= order && i + k < n; ++k) z[i] += a[static_cast<std::size_t>(k - 1)] * z[i + k];
+            for (Eigen::Index k = 1; k <= order && i + k < n; ++k)
+                z[i] += a[static_cast<std::size_t>(k - 1)] * z[i + k];
         }
     }
     Eigen::MatrixXd product = Z.transpose() * Z, next = Z.topRows(std::min(order, n));
@@ -132,7 +133,8 @@ ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, d
     if (block_ > 1) fast_ = autoregression(values(inside_blocks(e, means, block_)), 3);
     const double block = static_cast<double>(block_), count = static_cast<double>(n);
     // Each parameter takes a degree of freedom from the whole; slow regressors take it from the means.
-    slow_.innovation *= std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
+    slow_.innovation *=
+        std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
     const auto gains = slow_.gains(static_cast<std::size_t>(means.rows()));
     slow_.innovation = std::max(slow_.innovation, std::sqrt(least / block / gains.variance));
     long_run_ = block * slow_.innovation * slow_.innovation * gains.variance * gains.time;

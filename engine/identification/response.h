@@ -11,13 +11,13 @@
 namespace tunewright {
 
 enum class Structure {
-    fopdt,       ///< e^(-Ls)/(T s + 1)
-    unstable,    ///< e^(-Ls)/(1 - T s): an fopdt with a negative time constant
-    sopdt,       ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
-    sopdt_zero,  ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
-    ipdt,        ///< e^(-Ls)/s
-    ipdt_lag,    ///< e^(-Ls)/(s (T s + 1))
-    third,       ///< e^(-Ls)/((T3 s + 1)(a2 s^2 + a1 s + 1))
+    fopdt,        ///< e^(-Ls)/(T s + 1)
+    unstable,     ///< e^(-Ls)/(1 - T s): an fopdt with a negative time constant
+    sopdt,        ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
+    sopdt_zero,   ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
+    ipdt,         ///< e^(-Ls)/s
+    ipdt_lag,     ///< e^(-Ls)/(s (T s + 1))
+    third,        ///< e^(-Ls)/((T3 s + 1)(a2 s^2 + a1 s + 1))
     ipdt_second,  ///< e^(-Ls)/(s (a2 s^2 + a1 s + 1))
 };
 
@@ -33,7 +33,7 @@ struct Shape {
     double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
     double a1() const;  ///< sopdt, sopdt_zero, third, ipdt_second
     double a2() const;
-    double T3() const;  ///< third
+    double T3() const;           ///< third
     double slowest_lag() const;  ///< of a self-regulating structure, an oscillation's T for it
 };
 

@@ -38,7 +38,8 @@ std::vector<Shape> third_beside(const Shape& second) {
     const double slow = std::sqrt(second.a2());
     std::vector<Shape> shapes = {at(Structure::third, L, a1, rho, load, 1e-3 * a1)};
     if (rho > 0.25) {
-        for (const double lag : {0.1, 0.4, 1.2}) shapes.push_back(at(Structure::third, 0.5 * L, a1, rho, load, lag * slow));
+        for (const double lag : {0.1, 0.4, 1.2})
+            shapes.push_back(at(Structure::third, 0.5 * L, a1, rho, load, lag * slow));
         return shapes;
     }
     // Of the two lags and the dead time: a part of each goes to the third.
@@ -46,7 +47,8 @@ std::vector<Shape> third_beside(const Shape& second) {
     for (const double part : {0.25, 0.6, 0.95}) {
         const double spare = part * L + shorter, lag = 0.5 * spare;
         shapes.push_back(at(Structure::third, (1 - part) * L, spare, 0.2, load, longest));
-        shapes.push_back(at(Structure::third, (1 - part) * L, longest + lag, longest * lag / ((longest + lag) * (longest + lag)), load, lag));
+        shapes.push_back(at(Structure::third, (1 - part) * L, longest + lag,
+                            longest * lag / ((longest + lag) * (longest + lag)), load, lag));
     }
     return shapes;
 }
@@ -141,8 +143,8 @@ std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
     if (simpler.structure == Structure::sopdt && structure == Structure::third) return third_beside(simpler);
     if (simpler.structure == Structure::ipdt_lag && structure == Structure::ipdt_second) {
         const double T = simpler.T(), spare = 0.5 * L;
-        return {at(structure, L, T, 1e-3, load), at(structure, spare, T + spare, 0.2, load), at(structure, L, T, 0.25, load),
-                at(structure, L, T, 1.5, load)};
+        return {at(structure, L, T, 1e-3, load), at(structure, spare, T + spare, 0.2, load),
+                at(structure, L, T, 0.25, load), at(structure, L, T, 1.5, load)};
     }
     if (simpler.structure == Structure::ipdt && structure == Structure::ipdt_lag) {
         const double sum = std::max(L, 1e-4);

@@ -34,9 +34,7 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shap
                 p["zeta"] = 0.5 * std::exp(-0.5 * shape.p[2]);
             }
             break;
-        case Structure::sopdt_zero:
-            p["b"] = linear[1] / linear[0] * s.t_scale;
-            [[fallthrough]];
+        case Structure::sopdt_zero: p["b"] = linear[1] / linear[0] * s.t_scale; [[fallthrough]];
         case Structure::ipdt_second:
             p["a1"] = shape.a1() * s.t_scale;
             p["a2"] = shape.a2() * s.t_scale * s.t_scale;
@@ -92,9 +90,9 @@ double common_rounding(double grid, double noise) {
     return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
 }
 
-/// What drifts of the next two powers of time would change, were they fitted: small ones hide in gain and time constants
-/// without leaving a pattern. Each is shrunk by what chance alone would show (James and Stein 1961), so that it counts
-/// only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
+/// What drifts of the next two powers of time would change, were they fitted: small ones hide in gain and time
+/// constants without leaving a pattern. Each is shrunk by what chance alone would show (James and Stein 1961), so that
+/// it counts only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
 std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
                                           const Eigen::MatrixXd& inverse, double variance) {
     if (is_integrating(fit.form.structure)) return {};
@@ -145,8 +143,8 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
 }
 
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
-/// covariance, one per plateau of a rounded y, and what drifts too small to be found would do. The covariance of least squares under noise that is
-/// not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989, section 4.2).
+/// covariance, one per plateau of a rounded y, and what drifts too small to be found would do. The covariance of least
+/// squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989, section 4.2).
 Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
     const bool on_plateaus = common > 0.02 * grid;
@@ -167,7 +165,8 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
         J.col(k) /= length[k];
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(J.transpose() * J);
-    const Eigen::MatrixXd inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+    const Eigen::MatrixXd inverse = eigen.eigenvectors() *
+                                    eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
                                     eigen.eigenvectors().transpose();
     const Eigen::MatrixXd others = J.bottomRows(rows - n);
     const Eigen::MatrixXd spread = left.weighed(J.topRows(n)) + variance * others.transpose() * others;
@@ -200,7 +199,8 @@ Eigen::MatrixXd given_deviations(const Fit& fit) {
     const int m = fit.form.parameters();
     Eigen::MatrixXd deviations(static_cast<Eigen::Index>(fit.deviations.size()), m);
     for (std::size_t k = 0; k < fit.deviations.size(); ++k)
-        deviations.row(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::RowVectorXd>(fit.deviations[k].data(), m);
+        deviations.row(static_cast<Eigen::Index>(k)) =
+            Eigen::Map<const Eigen::RowVectorXd>(fit.deviations[k].data(), m);
     return deviations;
 }
 

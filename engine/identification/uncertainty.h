@@ -32,12 +32,12 @@ struct FittedPlant {
 Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 
 /// Needs `fit.J`. The covariance counts what the residual says of its own noise (residual_noise.h), never less than the
-/// variance of the rounding, quantisation^2/12, and is widened by Student's t so that 1.96 standard errors hold 95 %; to
-/// it are added the errors that rounding makes in common over a plateau, and what drifts too small to be found would
-/// change (`quantisation` and `noise`, y's standard deviation from sample to sample, dimensionless); carried to the plant's parameters by
-/// differences along the principal axes of the covariance. Two lags give `Sopdt` (T1 >= T2), an oscillation
-/// `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K], den [a2, a1, 1], third one with num [K], den
-/// [a3, a2, a1, 1], ipdt_second one with num [K], den [a2, a1, 1, 0].
+/// variance of the rounding, quantisation^2/12, and is widened by Student's t so that 1.96 standard errors hold 95 %;
+/// to it are added the errors that rounding makes in common over a plateau, and what drifts too small to be found would
+/// change (`quantisation` and `noise`, y's standard deviation from sample to sample, dimensionless); carried to the
+/// plant's parameters by differences along the principal axes of the covariance. Two lags give `Sopdt` (T1 >= T2), an
+/// oscillation `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K], den [a2, a1, 1], third one with
+/// num [K], den [a3, a2, a1, 1], ipdt_second one with num [K], den [a2, a1, 1, 0].
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise);
 
 }  // namespace tunewright

@@ -11,9 +11,9 @@
 namespace tunewright {
 
 /// The plants whose parameters are centre + A z, z in the cube |z_i| <= 1 or in the ball |z| <= 1. Parameters go by
-/// name: K, T, T1, T2, zeta, L, and a1, a2, a3, b of a `TransferFunction` (K b s + K)/(a3 s^3 + a2 s^2 + a1 s + 1), perhaps over s. K of a transfer
-/// function is its numerator's last coefficient other than 0, which scales all of them; of a state space a factor of C
-/// and D.
+/// name: K, T, T1, T2, zeta, L, and a1, a2, a3, b of a `TransferFunction` (K b s + K)/(a3 s^3 + a2 s^2 + a1 s + 1),
+/// perhaps over s. K of a transfer function is its numerator's last coefficient other than 0, which scales all of them;
+/// of a state space a factor of C and D.
 class PlantRegion {
 public:
     using Point = std::vector<double>;

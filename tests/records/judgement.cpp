@@ -18,8 +18,9 @@ bool integrates(const Plant& plant) {
 /// Whether a sentence warns of the gain, or of the model as a whole.
 bool names_gain(const Warning& warning) {
     static const std::set<std::string> kWhole = {
-        "unsettled-record", "slow-or-integrating", "slow-part", "looks-integrating", "structured-residuals", "structure-mismatch",
-        "closed-loop",      "not-at-rest",         "saturated-output",  "unstable-in-region", "static-gain-contradiction"};
+        "unsettled-record",         "slow-or-integrating", "slow-part",   "looks-integrating", "structured-residuals",
+        "structure-mismatch",       "closed-loop",         "not-at-rest", "saturated-output",  "unstable-in-region",
+        "static-gain-contradiction"};
     if (kWhole.contains(warning.code)) return true;
     return warning.detail.find("K = ") != std::string::npos || warning.detail.find("gain") != std::string::npos;
 }
@@ -64,7 +65,8 @@ void judge_design(const MadeRecord& made, const TuningResult& result, Judgement&
     options.points = 0;
     const auto evaluation = evaluate(PlantModel(Plant(made.plant.zpk())), first.evaluation->controller, options);
     if (evaluation && evaluation->robustness.stable) j.Ms_true = evaluation->robustness.Ms;
-    const double omega = first.evaluation->robustness.gain_crossover.value_or(1 / (made.plant.L + made.plant.lag_sum()));
+    const double omega =
+        first.evaluation->robustness.gain_crossover.value_or(1 / (made.plant.L + made.plant.lag_sum()));
     const auto found = LinearPlant::make(result.model->plant);
     if (!found) return;
     j.response_error = std::abs(found->at({0, omega}) / made.plant.response(omega) - 1.0);

@@ -13,14 +13,14 @@ namespace tunewright::records {
 struct Judgement {
     bool refused = false;
     std::string refusal;
-    std::string model;              ///< type of plant and why
+    std::string model;                    ///< type of plant and why
     double K = 0, K_true = 0, K_std = 0;  ///< static gain, or slope where the plant integrates
-    bool comparable = true;         ///< found and true plant both integrate, or neither does
-    bool gain_warned = false;       ///< a warning says that K, or the whole model, is not to be trusted
-    bool warned_badly = false;      ///< a warning of level `bad`
-    double response_error = 0;      ///< |G - G_true|/|G_true| at the loop's gain crossover
-    double response_std = 0;        ///< as the covariance states it
-    std::optional<double> Ms_true;  ///< of the default design on the true plant; empty: unstable
+    bool comparable = true;               ///< found and true plant both integrate, or neither does
+    bool gain_warned = false;             ///< a warning says that K, or the whole model, is not to be trusted
+    bool warned_badly = false;            ///< a warning of level `bad`
+    double response_error = 0;            ///< |G - G_true|/|G_true| at the loop's gain crossover
+    double response_std = 0;              ///< as the covariance states it
+    std::optional<double> Ms_true;        ///< of the default design on the true plant; empty: unstable
     double Ms_asked = 1.4;
     bool designed = false;
     std::vector<std::string> codes;  ///< of all warnings

@@ -47,14 +47,17 @@ Scale some_scale(const MadeRecord& made, Random& random) {
     const double settling = made.plant.settling();
     const int rows = static_cast<int>(random.spread(60, 500));
     const bool little = made.test == Test::step_little_rest;
-    return {settling / rows, rows, little ? random.below(9) : std::max(6, static_cast<int>(rows * random.uniform(0.1, 0.5)))};
+    return {settling / rows, rows,
+            little ? random.below(9) : std::max(6, static_cast<int>(rows * random.uniform(0.1, 0.5)))};
 }
 
 Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
     std::vector<Move> moves;
     int row = std::max(1, s.rest);
     const double sign = random.chance(0.3) ? -1 : 1;
-    auto wait = [&](double low, double high) { row += std::max(2, static_cast<int>(s.settling * random.uniform(low, high))); };
+    auto wait = [&](double low, double high) {
+        row += std::max(2, static_cast<int>(s.settling * random.uniform(low, high)));
+    };
     switch (made.test) {
         case Test::bump:
             moves.push_back({row, sign});
@@ -74,7 +77,8 @@ Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
         case Test::prbs: {
             const int clock = std::max(2, static_cast<int>(s.settling * random.uniform(0.08, 0.3)));
             const int end = row + static_cast<int>(s.settling * random.uniform(4, 6));
-            for (double level = 1; row < end; row += clock * (1 + random.below(3)), level = -level) moves.push_back({row, level});
+            for (double level = 1; row < end; row += clock * (1 + random.below(3)), level = -level)
+                moves.push_back({row, level});
             row = end;
             break;
         }
@@ -99,7 +103,8 @@ Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
 Plan relay_test(const MadeRecord& made, const Scale& s, Random& random) {
     const double bias = random.chance(0.5) ? random.uniform(0.1, 0.4) : 0, sign = made.plant.K > 0 ? 1 : -1;
     // What the relay must see: beyond the noise, within what a half swing moves.
-    const double moved = made.plant.integrating ? std::abs(made.plant.K) * (made.plant.L + made.plant.lag_sum()) : std::abs(made.plant.K);
+    const double moved = made.plant.integrating ? std::abs(made.plant.K) * (made.plant.L + made.plant.lag_sum())
+                                                : std::abs(made.plant.K);
     const double hysteresis = moved * std::max(random.uniform(0.02, 0.1), 4 * made.noise_std);
     const int rest = s.rest;
     bool up = true;
@@ -175,7 +180,8 @@ struct Disturbance {
 Disturbance make_disturbance(const MadeRecord& made, const Plan& plan, double size, Random& random) {
     Disturbance d;
     const double white = size * made.noise_std, slow = plan.dt / made.plant.settling();
-    const double pole = random.uniform(0.8, 0.97), walk = made.noise == Noise::drifting_load ? 0.02 * std::sqrt(slow) : 0;
+    const double pole = random.uniform(0.8, 0.97),
+                 walk = made.noise == Noise::drifting_load ? 0.02 * std::sqrt(slow) : 0;
     double state = random.normal(), load = 0;
     int next_load = static_cast<int>(random.uniform(0.2, 1) * made.plant.settling() / plan.dt);
     for (int row = 0; row < plan.rows; ++row) {
@@ -257,7 +263,8 @@ void log_rows(const MadeRecord& made, Record& record, double size, Random& rando
             std::size_t silent = 0;
             std::vector<bool> kept;
             for (std::size_t i = 0; i < record.t.size(); ++i) {
-                const bool now = i == 0 || record.u[i] != record.u[i - 1] || std::abs(record.y[i] - last) > band || ++silent >= 30;
+                const bool now =
+                    i == 0 || record.u[i] != record.u[i - 1] || std::abs(record.y[i] - last) > band || ++silent >= 30;
                 if (now) last = record.y[i], silent = 0;
                 kept.push_back(now);
             }
@@ -280,12 +287,14 @@ void into_units(MadeRecord& made, double u_level, double u_step, double y_level,
 }  // namespace
 
 const char* name_of(Test test) {
-    static constexpr const char* kNames[] = {"step, little rest", "step", "bump", "staircase", "prbs", "ramp", "relay", "set points", "regulation"};
+    static constexpr const char* kNames[] = {
+        "step, little rest", "step", "bump", "staircase", "prbs", "ramp", "relay", "set points", "regulation"};
     return kNames[static_cast<int>(test)];
 }
 
 const char* name_of(Noise noise) {
-    static constexpr const char* kNames[] = {"none", "white", "coloured", "drifting load", "outliers", "missing rows", "irregular times", "logged on change"};
+    static constexpr const char* kNames[] = {"none",     "white",        "coloured",        "drifting load",
+                                             "outliers", "missing rows", "irregular times", "logged on change"};
     return kNames[static_cast<int>(noise)];
 }
 
@@ -296,15 +305,18 @@ std::string MadeRecord::text() const {
         std::snprintf(line, sizeof line, " %.3g", T);
         lags += line;
     }
-    std::snprintf(line, sizeof line, "%s, %s, %s %.2g%s: K %.4g L %.3g lags%s osc %.3g/%.2g b %.3g%s, %zu rows of %.3g s", records::name_of(plant.family),
-                  records::name_of(test), records::name_of(noise), noise_std, cut_short ? " (cut short)" : "", plant.K, plant.L, lags.c_str(), plant.T_osc, plant.zeta, plant.b,
-                  plant.integrating ? " /s" : "", record.t.size(), record.t.size() > 1 ? record.t[1] - record.t[0] : 0.0);
+    std::snprintf(
+        line, sizeof line, "%s, %s, %s %.2g%s: K %.4g L %.3g lags%s osc %.3g/%.2g b %.3g%s, %zu rows of %.3g s",
+        records::name_of(plant.family), records::name_of(test), records::name_of(noise), noise_std,
+        cut_short ? " (cut short)" : "", plant.K, plant.L, lags.c_str(), plant.T_osc, plant.zeta, plant.b,
+        plant.integrating ? " /s" : "", record.t.size(), record.t.size() > 1 ? record.t[1] - record.t[0] : 0.0);
     return line;
 }
 
 MadeRecord make_record(std::uint64_t seed) {
     const int i = static_cast<int>(seed % (kFamilies * kTests * kNoises));
-    return make_record(seed, static_cast<Family>(i % kFamilies), static_cast<Test>(i / kFamilies % kTests), static_cast<Noise>(i / (kFamilies * kTests)));
+    return make_record(seed, static_cast<Family>(i % kFamilies), static_cast<Test>(i / kFamilies % kTests),
+                       static_cast<Noise>(i / (kFamilies * kTests)));
 }
 
 MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise) {
@@ -317,7 +329,8 @@ MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise
     const double size = std::abs(plant.K) * (plant.integrating ? plant.L + plant.lag_sum() : 1);
     made.record = run(made, plan, make_disturbance(made, plan, size, random), size);
     log_rows(made, made.record, size, random);
-    into_units(made, random.uniform(-50, 100), random.spread(0.1, 30), size * random.uniform(-10, 10), random.chance(0.5) ? 0 : random.uniform(0, 1e5));
+    into_units(made, random.uniform(-50, 100), random.spread(0.1, 30), size * random.uniform(-10, 10),
+               random.chance(0.5) ? 0 : random.uniform(0, 1e5));
     return made;
 }
 

@@ -16,8 +16,8 @@ enum class Test {
     prbs,
     ramp,
     relay,
-    closed_setpoints,    ///< a PI controller, set-point steps in the record
-    closed_regulation,   ///< a PI controller, loads alone
+    closed_setpoints,   ///< a PI controller, set-point steps in the record
+    closed_regulation,  ///< a PI controller, loads alone
 };
 inline constexpr int kTests = 9;
 const char* name_of(Test test);
@@ -30,7 +30,7 @@ struct MadeRecord {
     TruePlant plant;
     Test test = Test::step_much_rest;
     Noise noise = Noise::none;
-    double noise_std = 0;  ///< relative to what the test moves
+    double noise_std = 0;    ///< relative to what the test moves
     bool cut_short = false;  ///< the record ends before y rests
     Record record;
     std::string text() const;  ///< one line

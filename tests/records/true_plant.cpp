@@ -21,15 +21,16 @@ void spread_lags(TruePlant& plant, Random& random) {
         const double small = T * random.spread(0.1, 0.3);
         for (int k = 3 + random.below(4); k > 0; --k) plant.lags.push_back(small);
     } else {
-        for (int k = 1 + random.below(4); k > 0; --k) plant.lags.push_back(plant.lags.back() * random.uniform(0.2, 0.8));
+        for (int k = 1 + random.below(4); k > 0; --k)
+            plant.lags.push_back(plant.lags.back() * random.uniform(0.2, 0.8));
     }
 }
 
 }  // namespace
 
 const char* name_of(Family family) {
-    static constexpr const char* kNames[] = {"equal lags",     "spread lags",   "oscillating",     "inverse response",
-                                             "integrating",    "drifting",      "sticky valve",    "coarse sensor",
+    static constexpr const char* kNames[] = {"equal lags",      "spread lags",    "oscillating",  "inverse response",
+                                             "integrating",     "drifting",       "sticky valve", "coarse sensor",
                                              "switched heater", "two time scales"};
     return kNames[static_cast<int>(family)];
 }

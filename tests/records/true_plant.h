@@ -13,7 +13,7 @@ namespace tunewright::records {
 
 enum class Family {
     equal_lags,
-    spread_lags,      ///< a dominant one, or one behind three to six equal ones
+    spread_lags,  ///< a dominant one, or one behind three to six equal ones
     oscillating,
     inverse_response,
     integrating,
@@ -33,10 +33,10 @@ struct TruePlant {
     std::vector<double> lags;
     double T_osc = 0, zeta = 1;  ///< no oscillation where T_osc is 0
     bool integrating = false;
-    double drift = 0;      ///< of y over the time in which the plant settles, relative to what a unit of u moves
-    double dead_band = 0;  ///< of the valve, relative to the test's amplitude
-    double grid = 0;       ///< of y, relative to what the test moves
-    int switched_rows = 0; ///< period of the switching, in rows
+    double drift = 0;       ///< of y over the time in which the plant settles, relative to what a unit of u moves
+    double dead_band = 0;   ///< of the valve, relative to the test's amplitude
+    double grid = 0;        ///< of y, relative to what the test moves
+    int switched_rows = 0;  ///< period of the switching, in rows
 
     double lag_sum() const;
     double settling() const;  ///< about the time until a step response rests

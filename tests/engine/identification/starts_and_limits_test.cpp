@@ -1,0 +1,214 @@
+// How a record starts, what reaches the plant, which readings are false, and what a lag too many does to the gain.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/identify.h"
+#include "engine/identification/input_limits.h"
+#include "engine/identification/record_start.h"
+#include "engine/identification/residual_noise.h"
+#include "engine/identification/response.h"
+#include "engine/plant/linear_plant.h"
+#include "engine/tune.h"
+#include "tests/engine/identification/simulated_record.h"
+
+namespace tunewright {
+namespace {
+
+using namespace tunewright::testing;
+using ::testing::HasSubstr;
+
+double static_gain(const IdentifiedModel& model) { return LinearPlant::make(model.plant)->low_frequency_gain(); }
+
+bool noted(const IdentifiedModel& model, const std::string& words) {
+    return std::ranges::any_of(model.data_quality.notes,
+                               [&](const std::string& n) { return n.find(words) != std::string::npos; });
+}
+
+/// Lags in a row by superposition of exponentials; all different.
+StepResponse lags(double K, std::vector<double> T) {
+    return [=](double t) {
+        if (t <= 0) return 0.0;
+        double y = 1;
+        for (std::size_t i = 0; i < T.size(); ++i) {
+            double share = 1;
+            for (std::size_t k = 0; k < T.size(); ++k) share *= k == i ? 1 : T[i] / (T[i] - T[k]);
+            y -= share * std::exp(-t / T[i]);
+        }
+        return K * y;
+    };
+}
+
+TEST(RecordStart, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        Record record = simulate(even_times(600, 1), 0, 50, {{10, 5}}, lags(1.4, {80, 19, 17, 15, 13}));
+        add_noise(record, 0.03, seed);
+        const auto model = identify(record, {}, {});
+        ASSERT_TRUE(model);
+        EXPECT_NEAR(static_gain(*model), 1.4, 0.02 * 1.4) << seed << model->choice_reason;
+        EXPECT_FALSE(noted(*model, "does not start at rest")) << seed;
+    }
+}
+
+TEST(RecordStart, TellsRestFromMotion) {
+    const auto start = [](const Record& record) { return start_of(*clean_record(record), false, 0.001); };
+    Record resting = simulate(even_times(300, 1), 0, 0, {{60, 1}}, first_order(1, 20, 2));
+    add_noise(resting, 0.01, 3, 0.95);
+    EXPECT_EQ(start(resting), Start::at_rest);
+    const Record moving = simulate(even_times(300, 1), 3, 0, {{0, 1}, {60, 2}}, first_order(1, 20, 2));
+    EXPECT_EQ(start(moving), Start::moving);
+    Record given = moving;
+    given.u0 = 3;
+    EXPECT_EQ(start(given), Start::at_rest);
+    EXPECT_EQ(start(simulate(even_times(300, 1), 0, 0, {{1, 1}, {60, 2}}, first_order(1, 20, 2))), Start::unseen);
+}
+
+TEST(Records, AMoveWithTheLastRowIsNone) {
+    Record record = simulate(even_times(200, 0.5), 0, 0, {{20, 1}}, first_order(2, 8, 1));
+    record.u.back() = 0;
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    EXPECT_EQ(model->data_quality.steps, 1);
+    EXPECT_EQ(model->data_quality.kind, RecordKind::step);
+    EXPECT_TRUE(model->data_quality.settled);
+    EXPECT_TRUE(noted(*model, "nothing follows them"));
+}
+
+TEST(Records, FalseReadingsBesideAStepAreNamedAndLeftOut) {
+    Record record = simulate(even_times(300, 0.02), 0, 0, {{2, 255}}, first_order(0.0445, 0.057, 0));
+    add_noise(record, 0.05, 5);
+    record.y[101] = 16, record.y[102] = 16.7;
+    for (int i = 0; i < 300; ++i) record.line.push_back(i + 2);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    const auto& plant = std::get<Fopdt>(model->plant);
+    EXPECT_NEAR(plant.T, 0.057, 0.003);
+    const auto told = std::ranges::find(model->warnings, "removed-outliers", &Warning::code);
+    ASSERT_NE(told, model->warnings.end());
+    EXPECT_THAT(told->detail, HasSubstr("line 103 (t = 2.02), line 104 (t = 2.04)"));
+}
+
+TEST(Records, APulseThatTheProcessAnswersIsNoFalseReading) {
+    Steps steps = {{20, 1}, {22, 0}, {60, 1}};
+    Record record = simulate(even_times(400, 0.25), 0, 0, steps, first_order(2, 0.4, 0));
+    add_noise(record, 0.01, 5);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    EXPECT_FALSE(model->data_quality.outliers);
+}
+
+/// u beyond 0 to 100 has no effect of its own.
+Record beyond_its_ends() {
+    const Steps asked = {{20, 60}, {80, 400}, {140, -300}, {200, 150}, {260, 30}};
+    Steps reaching = asked;
+    for (auto& [time, level] : reaching) level = std::clamp(level, 0.0, 100.0);
+    Record record = simulate(even_times(700, 0.5), 40, 20, reaching, first_order(0.5, 15, 3));
+    record.u = simulate(record.t, 40, 20, asked, first_order(0.5, 15, 3)).u;
+    add_noise(record, 0.1, 9);
+    return record;
+}
+
+TEST(InputLimits, AreTakenAsGivenOrFoundWherePlain) {
+    Record record = beyond_its_ends();
+    const auto found = identify(record, {}, {});
+    ASSERT_TRUE(found && found->data_quality.u_limits);
+    EXPECT_EQ((*found->data_quality.u_limits)[0], 0);
+    EXPECT_EQ((*found->data_quality.u_limits)[1], 100);
+    EXPECT_NEAR(static_gain(*found), 0.5, 0.01);
+    EXPECT_TRUE(noted(*found, "logged before its limiter"));
+    record.u_limits = {0, 100};
+    const auto given = identify(record, {}, {});
+    ASSERT_TRUE(given);
+    EXPECT_EQ(static_gain(*given), static_gain(*found));
+    EXPECT_FALSE(noted(*given, "logged before its limiter"));
+}
+
+TEST(InputLimits, AreNotFoundWhereUReachesThePlantWhole) {
+    Record record =
+        simulate(even_times(700, 0.5), 40, 20, {{20, 60}, {80, 400}, {140, -300}, {200, 150}}, first_order(0.5, 15, 3));
+    add_noise(record, 0.1, 9);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    EXPECT_FALSE(model->data_quality.u_limits);
+    EXPECT_NEAR(static_gain(*model), 0.5, 0.005);
+}
+
+TEST(Response, ThirdOrderIsTheSumOfItsExponentials) {
+    // Lags 0.05, 0.11, 0.3 of a record of length 1.
+    const double T3 = 0.05, Ta = 0.11, Tb = 0.3;
+    const Shape shape{Structure::third,
+                      {0.02, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, std::log(T3)}};
+    std::vector<double> t;
+    for (int i = 0; i < 50; ++i) t.push_back(i / 50.0 + 0.003 * std::sin(i));
+    std::sort(t.begin(), t.end());
+    static constexpr double kAt[] = {0.1}, kUnit[] = {1};
+    UnitResponse got;
+    unit_response(t, {kAt, kUnit}, shape, 2, got);
+    const auto wanted = lags(1, {T3, Ta, Tb});
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        EXPECT_NEAR(got.x[i], wanted(t[i] - 0.12), 1e-12);
+        constexpr double h = 1e-5;
+        if (std::abs(t[i] - 0.12) > 2 * h) {
+            EXPECT_NEAR(got.x1[i], (wanted(t[i] - 0.12 + h) - wanted(t[i] - 0.12 - h)) / (2 * h), 1e-6);
+        }
+    }
+}
+
+TEST(Response, AnIntegratorOfTwoLagsIsTheIntegralOfTheirResponse) {
+    const double Ta = 0.05, Tb = 0.2;
+    const Shape shape{Structure::ipdt_second,
+                      {0, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, 0}};
+    static constexpr double kAt[] = {0}, kUnit[] = {1};
+    const std::vector<double> t = {0.01, 0.3, 0.31, 1};
+    UnitResponse got;
+    unit_response(t, {kAt, kUnit}, shape, 1, got);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        const double ramp =
+            t[i] - Ta - Tb + (Ta * Ta * std::exp(-t[i] / Ta) - Tb * Tb * std::exp(-t[i] / Tb)) / (Ta - Tb);
+        EXPECT_NEAR(got.x[i], ramp, 1e-13);
+        EXPECT_NEAR(got.x1[i], lags(1, {Ta, Tb})(t[i]), 1e-13);
+    }
+}
+
+TEST(ResidualNoise, KnowsTheLongRunVarianceOfSlowNoise) {
+    // First order: sigma^2 (1 + a)/(1 - a) for unit variance.
+    for (const double pole : {0.0, 0.8, 0.95}) {
+        double sum = 0;
+        for (unsigned seed = 1; seed <= 40; ++seed) {
+            Record record;
+            record.y.assign(2000, 0.0);
+            add_noise(record, 1, seed, pole);
+            sum += ResidualNoise(record.y, 0, 0).long_run_variance() / 40;
+        }
+        const double exact = (1 + pole) / (1 - pole);
+        EXPECT_GT(sum, 0.9 * exact) << pole;
+        EXPECT_LT(sum, 1.3 * exact) << pole;  // means over blocks of a slow process err to the safe side
+    }
+    EXPECT_NEAR(student_factor(10), 2.228139 / 1.959964, 2e-3);  // Abramowitz and Stegun 1964, table 26.10
+}
+
+TEST(DefaultDesign, HoldsItsLimitWhereTheModelAloneDoesNot) {
+    Record record = simulate(even_times(200, 0.5), 0, 0, {{15, 1}}, first_order(2, 10, 1.2));
+    add_noise(record, 0.15, 4);
+    TuningRequest request;
+    request.record = record;
+    request.evaluate.points = 0;
+    const auto both = tune(request, {});
+    ASSERT_TRUE(both);
+    ASSERT_EQ(both->controllers.size(), 2U);
+    EXPECT_TRUE(both->controllers[0].over_region);
+    EXPECT_EQ(both->ranking.front(), 0);
+    EXPECT_LE(*both->controllers[0].evaluation->region->worst_Ms, 1.4 * (1 + 1e-4));
+    EXPECT_EQ(both->controllers[0].evaluation->warnings.front().code, "held-on-region");
+    EXPECT_FALSE(both->controllers[1].over_region);
+    request.identified_region = IdentifiedRegion::unused;
+    const auto alone = tune(request, {});
+    ASSERT_TRUE(alone);
+    ASSERT_EQ(alone->controllers.size(), 1U);
+    EXPECT_FALSE(alone->controllers[0].over_region);
+}
+
+}  // namespace
+}  // namespace tunewright

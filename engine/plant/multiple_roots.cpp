@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using Index = std::size_t;
 
-constexpr double kRounding = 32 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
 constexpr double kSpread = 4;  // a torn root's distance from its centre, in eps^(1/m)
 
 /// Of the monic polynomial with these roots, scaled so that the roots have size one; with the sums of absolute terms.
@@ -42,31 +42,57 @@ public:
     }
 
     void run() {
-        for (Index m = degree_; m >= 2; --m)
-            for (Index i = 0; i < degree_; ++i) try_group(i, m);
+        // All groups at once, since a torn one beside it spoils the test of any; else those that stand by themselves.
+        const std::vector<Group> groups = find_groups();
+        std::vector<Complex> all = roots_;
+        for (const Group& group : groups) put(group, all);
+        if (is_given(all)) {
+            roots_ = std::move(all);
+            return;
+        }
+        for (const Group& group : groups) {
+            std::vector<Complex> one = roots_;
+            put(group, one);
+            if (is_given(one)) roots_ = std::move(one);
+        }
     }
 
 private:
-    /// The m roots nearest to root i, as one.
-    void try_group(Index i, Index m) {
-        const double reach = kSpread * std::pow(std::numeric_limits<double>::epsilon(), 1.0 / static_cast<double>(m));
-        std::vector<Index> near;
-        for (Index k = 0; k < degree_; ++k)
-            if (std::abs(roots_[k] - roots_[i]) <= 2 * reach * std::abs(roots_[i])) near.push_back(k);
-        if (near.size() != m) return;
+    using Group = std::vector<Index>;
+
+    /// Largest first: m roots that have no other within reach of an m-fold one.
+    std::vector<Group> find_groups() const {
+        std::vector<Group> groups;
+        std::vector<bool> taken(degree_, false);
+        for (Index m = degree_; m >= 2; --m)
+            for (Index i = 0; i < degree_; ++i) {
+                if (taken[i]) continue;
+                Group near;
+                for (Index k = 0; k < degree_; ++k)
+                    if (!taken[k] && std::abs(roots_[k] - roots_[i]) <= 2 * reach(m) * std::abs(roots_[i]))
+                        near.push_back(k);
+                if (near.size() != m) continue;
+                for (const Index k : near) taken[k] = true;
+                groups.push_back(std::move(near));
+            }
+        return groups;
+    }
+
+    static double reach(Index m) {
+        return kSpread * std::pow(std::numeric_limits<double>::epsilon(), 1.0 / static_cast<double>(m));
+    }
+
+    /// On one point, a real one unless the group lies on one side of the axis.
+    void put(const Group& group, std::vector<Complex>& roots) const {
         Complex centre = 0;
-        for (const Index k : near) centre += roots_[k] / static_cast<double>(m);
-        double off_axis = 0;
-        for (const Index k : near) off_axis += roots_[k].imag();
-        const bool real = std::abs(off_axis) <= reach * std::abs(centre);
-        if (real) centre = centre.real();
-        centre = refined(centre, m);
-        std::vector<Complex> merged = roots_;
-        for (const Index k : near) {
-            merged[k] = centre;
-            if (!real) merged[partner(k)] = std::conj(centre);
-        }
-        if (is_given(merged)) roots_ = std::move(merged);
+        for (const Index k : group) centre += roots_[k] / static_cast<double>(group.size());
+        const bool above = std::ranges::all_of(group, [&](Index k) { return roots_[k].imag() > 0; }),
+                   below = std::ranges::all_of(group, [&](Index k) { return roots_[k].imag() < 0; });
+        const bool real = !above && !below;
+        centre = refined(real ? centre.real() : centre, group.size());
+        for (const Index k : group) roots[k] = centre;
+        if (real) return;
+        for (const Index k : group) roots[partner(k)] = std::conj(centre);
     }
 
     Index partner(Index k) const { return roots_[k].imag() > 0 ? k + 1 : k - 1; }

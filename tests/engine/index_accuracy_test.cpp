@@ -171,7 +171,8 @@ TEST(IndexAccuracy, ATailWithoutChangeOfSignIsTheIntegralOfErrorHoweverSlow) {
             EXPECT_NEAR(*e->performance.load.IAE / (Ti / Kp), 1, 1e-12);
             EXPECT_TRUE(e->verification.load_error_keeps_sign.value_or(false));
             EXPECT_NEAR(*e->performance.load.ITAE / (Ti * Ti / Kp), 1, 1e-5 + 25 / Ti);
-            // A tail 10^7 times the dead time leaves the set-point response of two integrators to rounding, and says so.
+            // A tail 10^7 times the dead time leaves the set-point response of two integrators to rounding, and says
+            // so.
             for (const auto& warning : e->warnings)
                 if (Ti < 1e7) ADD_FAILURE() << warning.detail;
         }

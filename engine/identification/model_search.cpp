@@ -62,8 +62,9 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false, 1};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
-    // The noise is known to some ten per cent.
-    const double least = 0.8 * search.context.noise * search.context.noise;
+    // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
+    constexpr double kMostNoise = 0.03;
+    const double noise = std::min(search.context.noise, kMostNoise), least = 0.8 * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));

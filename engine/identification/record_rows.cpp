@@ -156,8 +156,8 @@ Rows collect_rows(const Record& r, Cleaning& cleaning) {
 }
 
 void drop_late_moves(Rows& rows, Cleaning& cleaning) {
-    constexpr std::size_t kMostSteps = 20;
-    if (rows.change_time.size() > kMostSteps) return;
+    constexpr std::size_t kThereAndBack = 2;
+    if (rows.change_time.size() > kThereAndBack) return;
     while (rows.change_time.size() > 1 && !rows.t.empty() && rows.change_time.back() >= rows.t.back()) {
         rows.change_time.pop_back();
         rows.change_level.pop_back();

@@ -17,7 +17,7 @@ struct Rows {
 Rows collect_rows(const Record& record, Cleaning& cleaning);
 
 /// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. The
-/// last change that there is stays, and all of an input that moves more than 20 times.
+/// last change that there is stays, and all of an input that moves more than twice: a relay, a loop.
 void drop_late_moves(Rows& rows, Cleaning& cleaning);
 
 /// Takes the readings out that are plainly false.

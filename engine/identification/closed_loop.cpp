@@ -113,13 +113,20 @@ bool usable(const Refined& r, std::size_t i) {
 }
 
 /// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
-/// or leaves plainly more.
+/// or leaves plainly more. A free run that is far worse is no model, and an integrator beside a slow disturbance
+/// whitens as well as a lag does: it must run as well.
 void choose_again(Refined& r) {
-    constexpr double kPrice = 3, kPlainly = 6;
+    constexpr double kPrice = 3, kPlainly = 6, kFarWorse = 5, kAsWell = 1.2;
     const auto cost = [&](std::size_t i) { return r.mismatch[i] + kPrice * r.search.fits[i].form.parameters(); };
-    std::size_t best = r.chosen();
+    const auto integrating = [&](std::size_t i) { return is_integrating(r.search.fits[i].form.structure); };
+    const std::size_t preferred = r.chosen();
+    const auto runs = [&](std::size_t i) {
+        const double most = integrating(i) && !integrating(preferred) ? kAsWell : kFarWorse;
+        return r.search.fits[i].sse <= most * r.search.fits[preferred].sse;
+    };
+    std::size_t best = preferred;
     for (std::size_t i = 0; i < r.search.fits.size(); ++i) {
-        if (usable(r, i) && (!usable(r, best) || cost(i) < cost(best))) best = i;
+        if (usable(r, i) && runs(i) && (!usable(r, best) || cost(i) < cost(best))) best = i;
     }
     if (best == r.chosen() || (usable(r, r.chosen()) && cost(r.chosen()) < cost(best) + kPlainly)) return;
     r.search.choice = {static_cast<int>(best),
@@ -223,7 +230,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
 }
 
 void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
-    constexpr double kHardly = 0.005, kPlainly = 0.15, kUnknown = 0.33, kNearly = 0.95, kSomewhat = 0.01;
+    constexpr double kHardly = 0.005, kPlainly = 0.15, kUnknown = 0.33, kLess = 0.8, kNearly = 0.95, kSomewhat = 0.05;
     const double restless = restlessness(beginning(full));
     if (restless < kHardly) return;
     const CleanRecord record = every_few(full, kMostFitted);
@@ -232,7 +239,7 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     if (!law) return;
     const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
     const bool at_once = by_law < kNearly && restless > kSomewhat && answers_at_once(model);
-    const bool in_doubt = error > kUnknown || (restless > kPlainly && by_law < 1) || at_once;
+    const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once;
     if (!in_doubt) return;
     LoopRecord loop;
     loop.told.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +

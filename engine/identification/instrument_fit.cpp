@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/statistics.h"
 #include "engine/identification/uncertainty.h"
 
 namespace tunewright {
@@ -168,29 +169,44 @@ double mismatch_of(const SetPointPart& part, const Equations& here, const Vector
     return share / std::max(1e-12, 1 - share) * effective_samples({e.data(), static_cast<std::size_t>(e.size())});
 }
 
-/// How much wider than by white residuals the gain's error is by what the stretches of the record pull at it, each for
-/// itself: a load that stepped once is no noise that goes on all the time.
-double pulled_apart(const Equations& here, const MatrixXd& inverse, double variance, Index gain) {
-    constexpr Index kStretches = 12;
+/// Variance of the gain, in units of its scaled column, by leaving out one stretch of the record after another
+/// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time.
+double jackknife(const Equations& here, Index gain) {
+    constexpr Index kStretches = 10;
     const Index length = here.e.size() / kStretches;
-    const VectorXd row = here.Z * inverse.row(gain).transpose();
-    double squares = 0;
-    for (Index b = 0; b < kStretches; ++b) {
-        const double pull = row.segment(b * length, length).dot(here.e.segment(b * length, length));
-        squares += pull * pull;
+    const MatrixXd A = here.Z.transpose() * here.J;
+    const VectorXd b = here.Z.transpose() * here.e;
+    std::vector<double> moved;
+    for (Index k = 0; k < kStretches; ++k) {
+        const auto Z = here.Z.middleRows(k * length, length);
+        const VectorXd step = (A - Z.transpose() * here.J.middleRows(k * length, length))
+                                  .fullPivLu()
+                                  .solve(b - Z.transpose() * here.e.segment(k * length, length));
+        moved.push_back(step[gain]);
     }
-    squares *= static_cast<double>(kStretches) / (kStretches - 1);
-    return squares / std::max(variance * row.squaredNorm(), 1e-300);
+    const double spread = deviation(moved);
+    return spread * spread * static_cast<double>((kStretches - 1) * (kStretches - 1)) / kStretches;
+}
+
+/// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
+/// worth.
+double gain_variance(const Equations& here, Index gain) {
+    const double m = static_cast<double>(here.J.cols());
+    if (gain >= here.J.cols()) return 0;
+    const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
+    const VectorXd row = here.Z * (here.Z.transpose() * here.J).fullPivLu().inverse().row(gain).transpose();
+    const double scale = here.length[gain];
+    return here.e.squaredNorm() / std::max(1.0, independent - m) * row.squaredNorm() / (scale * scale);
 }
 
 /// Rows: principal axes of the covariance, one standard deviation long.
 std::vector<std::vector<double>> deviations_of(const Equations& here, const std::vector<Index>& free, Index all,
-                                               Index gain, double inflation) {
+                                               double inflation) {
     const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
     const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();
-    const double variance = white * std::max(inflation, pulled_apart(here, inverse, white, gain));
+    const double variance = white * inflation;
     const MatrixXd covariance = variance * inverse * (here.Z.transpose() * here.Z) * inverse.transpose();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
     std::vector<std::vector<double>> rows;
@@ -210,7 +226,7 @@ std::vector<std::vector<double>> deviations_of(const Equations& here, const std:
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
                                                std::stop_token stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
-    constexpr double kSmall = 1e-6, kUsualMismatch = 8;
+    constexpr double kSmall = 1e-6, kUsualMismatch = 8, kOfUnfiltered = 0.5;
     Problem problem(record, part);
     const ShapeBounds bounds = shape_bounds(record, start.form.structure);
     Fit fit = start;
@@ -250,8 +266,13 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
     out.fit.sse = problem.e.squaredNorm();
     const auto gain = fit.form.searched().size();
     const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
+    // A filter of a few rows does not make white what a load leaves for the rest of the record.
+    const Equations unfiltered(problem, VectorXd::Ones(1), free);
+    const double scale = here.length[place], white = std::max(gain_variance(here, place), 1e-300);
+    const double slow =
+        std::max(kOfUnfiltered * gain_variance(unfiltered, place), jackknife(here, place) / (scale * scale)) / white;
     out.fit.deviations =
-        deviations_of(here, free, problem.J.cols(), place, std::max(1.0, out.mismatch / kUsualMismatch));
+        deviations_of(here, free, problem.J.cols(), std::max({1.0, out.mismatch / kUsualMismatch, slow}));
     double squares = 0;
     for (const auto& row : out.fit.deviations) squares += row[gain] * row[gain];
     out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), 1e-300);

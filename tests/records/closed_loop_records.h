@@ -49,7 +49,7 @@ private:
 class PlantRun {
 public:
     PlantRun(const LoopPlant& plant, double step)
-        : plant_(plant), step_(step), line_(static_cast<std::size_t>(std::lround(plant.L / step)) + 1, 0.0) {}
+        : plant_(plant), step_(step), line_(static_cast<std::size_t>(std::lround(plant.L / step)), 0.0) {}
 
     double advance(double input) {
         line_.push_back(input);

@@ -8,14 +8,19 @@ using Index = std::size_t;
 
 namespace {
 
-using Cubic = std::array<double, 4>;
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+}
 
-Cubic derivative(const Cubic& c) { return {c[1], c[2], c[3], 0}; }
-
-void add_product(const std::vector<double>& F, const std::vector<double>& x, std::vector<double>& sum) {
-    const Index n = x.size();
+/// row A
+std::vector<double> product(const std::vector<double>& row, const std::vector<double>& A) {
+    const Index n = row.size();
+    std::vector<double> result(n, 0.0);
     for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) sum[i] += F[i * n + j] * x[j];
+        for (Index j = 0; j < n; ++j) result[j] += row[i] * A[i * n + j];
+    return result;
 }
 
 /// Of length (2^(level - level_of_L) - 1) L.
@@ -33,41 +38,46 @@ LongStep::LongStep(const ResponseSystem& system, Propagator& propagator, int lev
 
 LongStep::LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep rest)
     : system_(&system), over_L_(std::move(over_L)), rest_(std::move(rest)), h_(over_L_.h + rest_.h) {
+    work_out_rows();
     effects_ = {effect({1, 0, 0}), effect({0, 1 / h_, 0}), effect({0, 0, 1 / (h_ * h_)})};
     invert();
 }
 
+void LongStep::work_out_rows() {
+    std::vector<double> row = system_->s.M;
+    row.resize(Index(system_->n), 0.0);  // the error's integral is no part of the output
+    for (Index j = 0; j < 4; ++j) rest_moments_[j] = dot(row, rest_.Gamma[j]);
+    row = product(row, rest_.Phi);
+    rest_G_ = dot(row, system_->G);
+    for (Index j = 0; j < 4; ++j) over_L_moments_[j] = dot(row, over_L_.Gamma[j]);
+    row = product(row, over_L_.Phi);
+    whole_G_ = dot(row, system_->G);
+    whole_b_ = dot(row, system_->b);
+    to_slope_ = product(row, system_->F);
+    slope_G_ = dot(to_slope_, system_->G);
+    slope_b_ = dot(to_slope_, system_->b);
+    to_curvature_ = product(to_slope_, system_->F);
+}
+
 void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch,
                      Start& start) const {
-    start.x = x;
-    start.rate = system_->b;
-    add_input(v0.value, start.rate);
-    add_product(system_->F, x, start.rate);
-    start.curvature.assign(x.size(), 0.0);
-    add_input(v0.slope, start.curvature);
-    add_product(system_->F, start.rate, start.curvature);
     const Cubic over_L = hermite_taylor(over_L_.h, v0.value, v0.slope, w0.value, w0.slope);
-    advance(over_L_, over_L, start.x, scratch);
-    advance_rate(over_L_, derivative(over_L), start.rate, scratch);
-    advance_rate(over_L_, derivative(derivative(over_L)), start.curvature, scratch);
-    add_input(-w0.slope, start.curvature);
     const Cubic known = cubic(w0.value, {});
-    advance(rest_, known, start.x, scratch);
-    to_end(known, start, scratch);
     start.v_end = delayed_end(known);
-    start.w_end = output(start, known);
-    start.w_end[0] += system_->s.R * system_->in.r + system_->in.d;
-}
-
-/// The derivatives over the rest of the step; v' jumps at its beginning to the cubic's.
-void LongStep::to_end(const Cubic& c, Start& states, std::vector<double>& scratch) const {
-    add_input(c[1], states.curvature);
-    advance_rate(rest_, derivative(c), states.rate, scratch);
-    advance_rate(rest_, derivative(derivative(c)), states.curvature, scratch);
-}
-
-void LongStep::add_input(double v, std::vector<double>& rate) const {
-    for (Index i = 0; i < rate.size(); ++i) rate[i] += system_->G[i] * v;
+    start.w_end = through_cubic(known);
+    // x' = F x + G v0 + b at the start, then x'' = F x' + G v'; v' jumps to the cubic's where the rest begins.
+    const auto& m = over_L_moments_;
+    start.w_end[1] +=
+        dot(to_slope_, x) + whole_G_ * v0.value + whole_b_ + m[0] * over_L[1] + m[1] * over_L[2] + m[2] * over_L[3];
+    start.w_end[2] += dot(to_curvature_, x) + slope_G_ * v0.value + slope_b_ + whole_G_ * v0.slope + m[0] * over_L[2] +
+                      m[1] * over_L[3] - rest_G_ * w0.slope;
+    start.x = x;
+    advance(over_L_, over_L, start.x, scratch);
+    advance(rest_, known, start.x, scratch);
+    // The value from the states themselves: the input over the rest is in them.
+    const DelaySystem& s = system_->s;
+    start.w_end[0] = s.N * start.v_end.value + s.R * system_->in.r + system_->in.d;
+    for (Index i = 0; i < Index(s.n); ++i) start.w_end[0] += s.M[i] * start.x[i];
 }
 
 Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double>& x) const {
@@ -96,28 +106,21 @@ Signal LongStep::delayed_end(const Cubic& c) const {
     return {c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)), c[1] + s * (c[2] + s * c[3] / 2)};
 }
 
-/// w, w' and w'' at the end, without the constant inputs.
-LongStep::Jet LongStep::output(const Start& at_end, const Cubic& c) const {
-    const DelaySystem& s = system_->s;
+/// What w, w' and w'' at the end get from the delayed signal over the rest of the step.
+LongStep::Jet LongStep::through_cubic(const Cubic& c) const {
+    const auto& m = rest_moments_;
     const Signal v = delayed_end(c);
-    Jet w{s.N * v.value, s.N * v.slope, s.N * (c[2] + rest_.h * c[3])};
-    for (Index i = 0; i < Index(s.n); ++i) {
-        w[0] += s.M[i] * at_end.x[i];
-        w[1] += s.M[i] * at_end.rate[i];
-        w[2] += s.M[i] * at_end.curvature[i];
-    }
-    return w;
+    const double N = system_->s.N;
+    return {N * v.value + m[0] * c[0] + m[1] * c[1] + m[2] * c[2] + m[3] * c[3],
+            N * v.slope + m[0] * c[1] + m[1] * c[2] + m[2] * c[3],
+            N * (c[2] + rest_.h * c[3]) + m[0] * c[2] + m[1] * c[3] + rest_G_ * c[1]};
 }
 
 LongStep::Effect LongStep::effect(const Jet& end) const {
     const Cubic c = cubic(0, end);
-    const Index n = Index(system_->n);
-    Start states;
-    std::vector<double> scratch(n);
-    for (auto* vector : {&states.x, &states.rate, &states.curvature}) vector->assign(n, 0.0);
-    advance_rate(rest_, c, states.x, scratch);
-    to_end(c, states, scratch);
-    Effect e{states.x, delayed_end(c), output(states, c)};
+    Effect e{std::vector<double>(Index(system_->n), 0.0), delayed_end(c), through_cubic(c)};
+    for (Index j = 0; j < 4; ++j)
+        for (Index i = 0; i < e.x.size(); ++i) e.x[i] += rest_.Gamma[j][i] * c[j];
     e.out[1] *= h_;
     e.out[2] *= h_ * h_;
     return e;

@@ -5,8 +5,9 @@
 // integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
 // (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
 // for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
-// w' and w'' come from the states' derivatives, stepped like the states: as F x + G v they would be differences of
-// large numbers, whose rounding the step's length magnifies.
+// w' and w'' come from the states' derivatives, carried over the step like the states: as F x + G v at its end they
+// would be differences of large numbers, whose rounding the step's length magnifies. What they come to is a fixed row
+// for the states at the start, worked out once.
 #pragma once
 
 #include <array>
@@ -33,7 +34,7 @@ public:
     struct Start {
         Signal v_end;  ///< the delayed signal at the end, as far as it follows from what is known now
         Jet w_end{};   ///< the same of the output
-        std::vector<double> x, rate, curvature;  ///< the same of the states and their derivatives
+        std::vector<double> x;
     };
     void start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch, Start& start) const;
 
@@ -49,18 +50,22 @@ private:
     };
     using Cubic = std::array<double, 4>;  // Taylor coefficients at the start
 
+    void work_out_rows();
     Cubic cubic(double w0, const Jet& end) const;
     Signal delayed_end(const Cubic& c) const;
-    Jet output(const Start& at_end, const Cubic& c) const;
+    Jet through_cubic(const Cubic& c) const;
     Effect effect(const Jet& end) const;
-    void to_end(const Cubic& c, Start& states, std::vector<double>& scratch) const;
-    void add_input(double v, std::vector<double>& rate) const;
     void invert();
 
     const ResponseSystem* system_;
     ExactStep over_L_, rest_;
     double h_ = 0;
-    std::array<Effect, 3> effects_;     // of value, slope and curvature at the end
+    // M e^(F h) F and M e^(F h) F^2: what the states at the start leave of w' and w''.
+    std::vector<double> to_slope_, to_curvature_;
+    // The same for what comes in: M e^(F (h - L)) and M e^(F h) by the moments of the input, by G, by the constant.
+    std::array<double, 4> rest_moments_{}, over_L_moments_{};
+    double rest_G_ = 0, whole_G_ = 0, slope_G_ = 0, whole_b_ = 0, slope_b_ = 0;
+    std::array<Effect, 3> effects_;     // of value, slope and curvature at the end, times 1, h and h^2
     std::array<double, 9> solution_{};  // (1 - effects on the output)^-1, row by row
 };
 

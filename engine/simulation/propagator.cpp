@@ -53,23 +53,6 @@ std::vector<double> phi_action(const std::vector<double>& F, std::vector<double>
     return sum;
 }
 
-/// x := Phi x + Gamma v + constant, which may be null.
-void add_step(const ExactStep& step, const double* constant, const std::array<double, 4>& v, std::vector<double>& x,
-              std::vector<double>& scratch) {
-    const Index n = x.size();
-    const double *row = step.Phi.data(), *in = x.data();
-    const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
-                 *g3 = step.Gamma[3].data();
-    double* out = scratch.data();
-    for (Index i = 0; i < n; ++i, row += n) {
-        double sum =
-            (constant != nullptr ? constant[i] : 0) + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
-        for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
-        out[i] = sum;
-    }
-    x.swap(scratch);
-}
-
 }  // namespace
 
 std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double v1, double slope1) {
@@ -130,12 +113,16 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
 
 void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
              std::vector<double>& scratch) {
-    add_step(step, step.constant.data(), v, x, scratch);
-}
-
-void advance_rate(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& rate,
-                  std::vector<double>& scratch) {
-    add_step(step, nullptr, v, rate, scratch);
+    const Index n = x.size();
+    const double *row = step.Phi.data(), *in = x.data();
+    const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
+                 *g3 = step.Gamma[3].data();
+    for (Index i = 0; i < n; ++i, row += n) {
+        double sum = step.constant[i] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
+        for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
+        scratch[i] = sum;
+    }
+    x.swap(scratch);
 }
 
 }  // namespace tunewright

@@ -22,10 +22,6 @@ std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double 
 void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
              std::vector<double>& scratch);
 
-/// The same for a derivative of x, without the constant: v are the Taylor coefficients of the derivative of the input.
-void advance_rate(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& rate,
-                  std::vector<double>& scratch);
-
 class Propagator {
 public:
     Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0);

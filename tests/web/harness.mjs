@@ -1,5 +1,6 @@
 // Runs the page's tests and gives the browser tests what they need: the real service, a real browser, one page under watch.
 // `node harness.mjs unit` bundles unit/*.test.ts (Node 18 strips no types) and runs them; `node harness.mjs browser` runs browser/*.test.mjs.
+import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -221,13 +222,24 @@ export async function dropFile(page, selector, name, text) {
   await page.locator(selector).dispatchEvent("drop", { dataTransfer: transfer });
 }
 
-/** How many traces a plot shows; a path that is not a number fails. */
-export async function drawnTraces(page, title) {
+/** How many traces a plot shows now; a path that is not a number fails. */
+async function drawnTraces(page, title) {
   const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
   const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
   const broken = paths.find((d) => /NaN|Infinity|undefined/.test(d));
   if (broken) throw new Error(`${title}: ${broken.slice(0, 200)}`);
   return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
+}
+
+/** A plot shows so many traces, at the latest 5 s from now: plots are drawn a moment after what they show has changed. */
+export async function tracesShown(page, title, count) {
+  const until = Date.now() + 5000;
+  let drawn = await drawnTraces(page, title);
+  while (drawn !== count && Date.now() < until) {
+    await page.waitForTimeout(50);
+    drawn = await drawnTraces(page, title);
+  }
+  assert.equal(drawn, count, `traces of the plot "${title}"`);
 }
 
 /** What axe-core finds wrong with the page, one line each. */

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;
@@ -142,13 +142,13 @@ test("a reactor tuned by emulation shows both levels and the responses on both p
     assert.match(facts, /Relative degree\s+1\b/);
     assert.match(facts, /before J grows by 5 %/);
     assert.ok((await emulationCard(page).innerText()).includes(emulation.fit.sentence));
-    assert.equal(await drawnTraces(page, "PID and nonlinear controller"), 4);
+    await tracesShown(page, "PID and nonlinear controller", 4);
     // Classical settings join on request.
     await emulationCard(page).getByRole("checkbox", { disabled: false }).first().check();
-    assert.equal(await drawnTraces(page, "PID and nonlinear controller"), 6);
+    await tracesShown(page, "PID and nonlinear controller", 6);
     // Two controllers, each on the equations and on their linear model, in y and u.
     assert.ok(linear.responses.setpoint.t.length > 20);
-    assert.equal(await drawnTraces(page, "Set-point step"), 8);
+    await tracesShown(page, "Set-point step", 8);
     await page.getByText("Responses are those of the equations").waitFor();
     assert.match(await operating(page).innerText(), /CA\s+0\.520330\s+0\.520000/);
     assert.deepEqual(await accessibilityViolations(page), []);
@@ -177,14 +177,14 @@ test("other scenarios are drawn on request, and settings by hand answer on the e
     assert.equal(sent.plant.type, "nonlinear");
     assert.equal(sent.evaluate.setpoint_step, -10);
     await emulationCard(page).getByText("by hand", { exact: true }).waitFor();
-    assert.equal(await drawnTraces(page, "PID and nonlinear controller"), 6);
+    await tracesShown(page, "PID and nonlinear controller", 6);
     const sentence = await emulationCard(page)
       .getByText(/^J of this scenario/)
       .innerText();
     const [, tried, best] = /^J of this scenario ([\d.]+); of the optimum ([\d.]+)$/.exec(sentence).map(Number);
     assert.ok(tried > best && best > 0, sentence);
     await emulationCard(page).getByRole("button", { name: "Back to the optimum" }).click();
-    assert.equal(await drawnTraces(page, "PID and nonlinear controller"), 4);
+    await tracesShown(page, "PID and nonlinear controller", 4);
   });
 });
 
@@ -194,7 +194,7 @@ test("the league table takes a nonlinear plant's methods, with their curves toge
     await page.getByRole("link", { name: "League table" }).click();
     await page.getByRole("heading", { name: "Chosen rows, together" }).waitFor();
     assert.equal(await page.locator(".league tbody tr").count(), 2);
-    assert.equal(await drawnTraces(page, "Load step at the plant input"), 8);
+    await tracesShown(page, "Load step at the plant input", 8);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
 });
@@ -208,7 +208,7 @@ test("all methods are compared on equations, the emulation among them", async ()
     assert.ok(result.controllers.some((entry) => entry.emulation));
     const answers = result.controllers.filter((entry) => !entry.error).length;
     assert.equal(await page.locator(".league tbody:not(.refused) tr").count(), answers);
-    assert.equal(await drawnTraces(page, "Set-point step"), 8);
+    await tracesShown(page, "Set-point step", 8);
   });
 });
 

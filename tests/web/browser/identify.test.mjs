@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
-import { accessibilityViolations, browserTests, drawnTraces, dropFile, overflow, root, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, dropFile, overflow, root, tracesShown, WINDOWS } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage } = tests;
@@ -40,7 +40,7 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
     assert.match(chosen, new RegExp(`fit ${shown(model.fit_percent)}`));
     assert.match(chosen, /K 2\.000\d+ ± 0\.000\d+/);
     await page.getByText(model.choice_reason).waitFor();
-    assert.equal(await drawnTraces(page, "Record and model"), 4, "record, model, u and residual");
+    await tracesShown(page, "Record and model", 4);
     assert.match(await page.getByRole("region", { name: "Was the test good enough?" }).innerText(), /Good enough/);
     await page.getByText("u steps once, at 20 s, from 0 to 5.").waitFor();
 
@@ -50,8 +50,8 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
     assert.equal(request.record.csv, stepTest);
     assert.deepEqual(result.model.plant, model.plant);
     assert.ok(Math.abs(result.model.plant.K / 2 - 1) < 0.01);
-    assert.equal(await drawnTraces(page, "Recorded test and model"), 3);
-    assert.equal(await drawnTraces(page, "Load step at the plant input"), 2);
+    await tracesShown(page, "Recorded test and model", 3);
+    await tracesShown(page, "Load step at the plant input", 2);
   });
 });
 
@@ -239,7 +239,7 @@ test("a record that no model explains is still drawn, and the part that one expl
       const summary = page.getByRole("group", { name: "What to mend" });
       await summary.waitFor();
       assert.ok((await summary.innerText()).includes(errors[0].detail));
-      assert.equal(await drawnTraces(page, "Record"), 2);
+      await tracesShown(page, "Record", 2);
       assert.equal(await page.getByRole("button", { name: "Use and tune" }).count(), 0);
       const answered = identified(page);
       await page.getByLabel("Use up to (s)", { exact: true }).fill("245");
@@ -247,7 +247,7 @@ test("a record that no model explains is still drawn, and the part that one expl
       assert.ok(Math.abs((await (await answered).json()).model.plant.K / 2 - 1) < 0.01);
       await candidatesShown(page);
       assert.ok(await summary.isHidden());
-      assert.equal(await drawnTraces(page, "Record and model"), 4);
+      await tracesShown(page, "Record and model", 4);
     },
     ["422"],
   );

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
 
 const { withPage } = browserTests();
 
@@ -52,7 +52,7 @@ test("from a model to the relay test on it: record, limit cycle and plan as the 
     );
     assert.equal(await figure(page, "Au"), shown(answer.limit_cycle.Au, 4));
     assert.equal(await figure(page, "φu"), shown(answer.limit_cycle.phi_u, 4));
-    assert.equal(await drawnTraces(page, "The test as it would be recorded"), 2);
+    await tracesShown(page, "The test as it would be recorded", 2);
     const plan = await page.getByRole("region", { name: "A test worth making" }).innerText();
     assert.match(plan, new RegExp(`period of ${Number(answer.plan.expected_period).toPrecision(3)} s`));
     if (answer.plan.reason) assert.ok(plan.includes(answer.plan.reason));

@@ -90,11 +90,14 @@ void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band
              "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
 }
 
-// The 95 % confidence region of the chosen model.
+// The 95 % confidence region of the chosen model, and beside it the best of every structure that the record does not
+// tell from its own.
 Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
     auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
     if (!region) return region.error();
-    return PlantFamily{{std::move(*region)}};
+    PlantFamily family{{std::move(*region)}};
+    for (const Plant& other : model.alternatives) family.regions.push_back(PlantRegion::of_ranges(other));
+    return family;
 }
 
 // One run of tune(): what its steps share.

@@ -77,7 +77,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
 }
 
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
-constexpr double kSimpler = 5, kPositive = 6, kStrong = 10;
+constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
 
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
@@ -265,13 +265,14 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
 
 Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
               double independent_samples) {
-    int best = -1;
-    for (const bool any : {false, true}) {
-        for (int i = 0; i < static_cast<int>(fits.size()) && (best < 0 || !any); ++i) {
-            if (!fits[i].determined || (!any && looks_integrating(fits[i]))) continue;
-            if (best < 0 || criteria[i] < criteria[best]) best = i;
-        }
+    int best = -1, slowest = -1;  // among all, those without end included
+    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
+        if (!fits[i].determined) continue;
+        if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;
+        if (!looks_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
     }
+    // What looks like an integrator is left to the integrators' structures, unless none of them explains the record.
+    if (best < 0 || criteria[slowest] + kFarBetter < criteria[best]) best = slowest;
     if (best < 0) return {-1, ""};
     int chosen = best;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {

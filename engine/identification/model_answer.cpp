@@ -108,24 +108,35 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
     }
 }
 
-/// The variance of K with the choice of structure left open: the widest of own variance and squared distance from the
-/// chosen one's K, over the structures of the same kind that Akaike's criterion does not tell from it (less than 4
-/// apart: Burnham and Anderson 2002, section 2.6).
-double open_choice_variance(const Search& search, const std::vector<FittedPlant>& plants) {
+/// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
+/// less than 4 above it (Burnham and Anderson 2002, section 2.6), with a gain that the record determines.
+std::vector<std::size_t> open_choices(const Search& search, const std::vector<FittedPlant>& plants) {
     constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
-    const double log_n = std::log(search.independent), K = plants[chosen].values.at("K");
+    const double log_n = std::log(search.independent);
     const auto akaike = [&](std::size_t i) {
         return search.criteria[i] + (2 - log_n) * search.fits[i].form.parameters();
     };
-    double widest = std::pow(plants[chosen].standard_errors.at("K"), 2);
+    std::vector<std::size_t> open;
+    if (search.chosen().form.structure == Structure::unstable) return open;
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const Fit& fit = search.fits[i];
-        if (!fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
-            is_integrating(fit.form.structure) != is_integrating(search.fits[chosen].form.structure))
+        if (i == chosen || !fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
+            is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
             continue;
-        const double own = plants[i].standard_errors.at("K"), apart = plants[i].values.at("K") - K;
-        if (akaike(i) - akaike(chosen) > kOpen || own > std::abs(plants[i].values.at("K"))) continue;
+        const bool known = plants[i].standard_errors.at("K") <= std::abs(plants[i].values.at("K"));
+        if (known && akaike(i) - akaike(chosen) <= kOpen) open.push_back(i);
+    }
+    return open;
+}
+
+/// The variance of K with the choice of structure left open: the widest of own variance and squared distance from the
+/// chosen one's K.
+double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedPlant>& plants,
+                            const std::vector<std::size_t>& open) {
+    double widest = std::pow(chosen.standard_errors.at("K"), 2);
+    for (const std::size_t i : open) {
+        const double own = plants[i].standard_errors.at("K"), apart = plants[i].values.at("K") - chosen.values.at("K");
         widest = std::max(widest, own * own + apart * apart);
     }
     return widest;
@@ -157,8 +168,9 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
         fit.J.clear();
     }
     const auto chosen = static_cast<std::size_t>(search.choice.index);
-    if (search.fits[chosen].form.structure != Structure::unstable)
-        widen_gain(plants[chosen], open_choice_variance(search, plants));
+    const std::vector<std::size_t> open = open_choices(search, plants);
+    for (const std::size_t i : open) model.alternatives.push_back(plants[i].plant);
+    if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
@@ -196,6 +208,11 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
              "The unstable model's time constant is at the least that a record of this length can "
              "show (a twentieth of it), so it is only a bound. Give the first few oscillations alone "
              "(`from`, `to`)."});
+    }
+    if (search.placed_moves > 0) {
+        model.data_quality.notes.push_back(
+            std::to_string(search.placed_moves) +
+            " change(s) of u happened while rows are missing: each is placed where it explains y best.");
     }
     if (search.between_rows) {
         model.data_quality.notes.push_back(

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "engine/identification/gap_moves.h"
 #include "engine/identification/uncertainty.h"
 
 namespace tunewright {
@@ -59,7 +60,7 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
     });
-    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances, false, 1};
+    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
     // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
@@ -158,6 +159,28 @@ void try_between_rows(Search& search, ModelChoice model, const RunControl& contr
     if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
     search.between_rows = true;
+}
+
+/// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
+/// that leaves a third of the sum of squares or less.
+void try_gap_moves(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMuchLess = 3;
+    constexpr int kMost = 200;
+    // Misses of a few rows here and there are no pattern, and look like noise.
+    constexpr double kWorthLooking = 95;  // per cent
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
+    const std::vector<int> moves = gap_moves(search.context.record);
+    if (moves.empty() || static_cast<int>(moves.size()) > kMost) return;
+    Search other = search;
+    for (int round = 0; round < 2; ++round) {
+        CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
+        Search next = fit_all(fit_context(std::move(placed), search.context.relay, control.stop), model, {}, control);
+        if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
+        other = std::move(next);
+    }
+    if (kMuchLess * other.chosen().sse > search.chosen().sse) return;
+    search = std::move(other);
+    search.placed_moves = static_cast<int>(moves.size());
 }
 
 /// A late load can be told from the response only where u moves again; a drift also by what y does before u moves.
@@ -303,6 +326,7 @@ Search search_models(const CleanRecord& record, ModelChoice model, bool relay, c
         try_beginning(search, record, model, control);
     if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
+    if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
         try_drift_for_slow_part(search, model, control);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/load_doubt.h"
 #include "engine/identification/residual_noise.h"
 
 namespace tunewright {
@@ -128,10 +129,15 @@ std::vector<double> block_sums(const std::vector<double>& values, std::size_t n,
     return sums;
 }
 
+constexpr std::size_t kEnough = 2000;
+
+/// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
+/// few lags is the plant.
+constexpr double kLinearity = 0.003;
+
 /// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
 /// number, say as much of parameters and noise. `t` follows.
 Fit condensed(const Fit& fit, std::vector<double>& t) {
-    constexpr std::size_t kEnough = 2000;
     const std::size_t n = fit.residual.size(), block = n / kEnough;
     if (block < 2) return fit;
     Fit less;
@@ -140,6 +146,25 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
     for (const std::vector<double>& column : fit.J) less.J.push_back(block_sums(column, n, block));
     t = block_sums(t, t.size(), block);
     return less;
+}
+
+/// A hundred or two rows: a load that walks is slow. J's columns are divided by `length`.
+FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
+    constexpr std::size_t kFew = 64;
+    const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew),
+                      count = (n + block - 1) / block;
+    const auto rows = static_cast<Eigen::Index>(count);
+    const auto sums = [&](std::span<const double> values) {
+        const std::vector<double> means =
+            block_sums({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n)}, n, block);
+        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(means.data(), rows));
+    };
+    FittedRows few{sums(times), sums(std::vector<double>(n, 1)), sums(fit.residual),
+                   Eigen::MatrixXd(rows, length.size())};
+    few.time.array() /= few.weight.array();
+    for (Eigen::Index k = 0; k < length.size(); ++k)
+        few.J.col(k) = sums(fit.J[static_cast<std::size_t>(k)]) / length[k];
+    return few;
 }
 
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
@@ -170,7 +195,15 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
                                     eigen.eigenvectors().transpose();
     const Eigen::MatrixXd others = J.bottomRows(rows - n);
     const Eigen::MatrixXd spread = left.weighed(J.topRows(n)) + variance * others.transpose() * others;
-    const Eigen::MatrixXd covariance = inverse * spread * inverse;
+    Eigen::MatrixXd covariance = inverse * spread * inverse;
+    // A noise that is slow may be a load that walks: the explanation that leaves the gain more open counts.
+    if (!on_plateaus) {
+        for (const Eigen::MatrixXd& spread_by_load : weighed_with_load(whole, few_rows(whole, times, length))) {
+            const Eigen::MatrixXd walked =
+                inverse * (spread_by_load + variance * others.transpose() * others) * inverse;
+            if (walked(shape, shape) > covariance(shape, shape)) covariance = walked;
+        }
+    }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
     // Rounding that is the same over a plateau is no noise of which few samples are known.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
@@ -290,6 +323,8 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
             for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
         }
     }
+    const auto gain = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
+    covariance.matrix[gain][gain] += std::pow(kLinearity * best.at("K"), 2);
     for (std::size_t i = 0; i < best.size(); ++i)
         result.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
     return result;

@@ -52,6 +52,16 @@ void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement&
     if (const auto at = model.standard_errors.find("K"); at != model.standard_errors.end()) j.K_std = at->second;
 }
 
+/// Of the default design for the true plant.
+std::optional<double> least_load_IAE(const TruePlant& plant) {
+    TuningRequest request;
+    request.plant = PlantModel(Plant(plant.zpk()));
+    request.evaluate.points = 0;
+    const auto result = tune(request, {});
+    if (!result || result->controllers.empty() || !result->controllers.front().evaluation) return std::nullopt;
+    return result->controllers.front().evaluation->performance.load.IAE;
+}
+
 void judge_design(const MadeRecord& made, const TuningResult& result, Judgement& j) {
     if (result.controllers.empty() || !result.controllers.front().evaluation) return;
     const TuningEntry& first = result.controllers.front();
@@ -64,7 +74,11 @@ void judge_design(const MadeRecord& made, const TuningResult& result, Judgement&
     EvaluateOptions options;
     options.points = 0;
     const auto evaluation = evaluate(PlantModel(Plant(made.plant.zpk())), first.evaluation->controller, options);
-    if (evaluation && evaluation->robustness.stable) j.Ms_true = evaluation->robustness.Ms;
+    if (evaluation && evaluation->robustness.stable) {
+        j.Ms_true = evaluation->robustness.Ms;
+        const auto best = least_load_IAE(made.plant);
+        if (best && evaluation->performance.load.IAE) j.IAE_ratio = *evaluation->performance.load.IAE / *best;
+    }
     const double omega =
         first.evaluation->robustness.gain_crossover.value_or(1 / (made.plant.L + made.plant.lag_sum()));
     const auto found = LinearPlant::make(result.model->plant);

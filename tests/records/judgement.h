@@ -21,6 +21,7 @@ struct Judgement {
     double response_error = 0;            ///< |G - G_true|/|G_true| at the loop's gain crossover
     double response_std = 0;              ///< as the covariance states it
     std::optional<double> Ms_true;        ///< of the default design on the true plant; empty: unstable
+    std::optional<double> IAE_ratio;      ///< load IAE of that loop over that of a design for the true plant itself
     double Ms_asked = 1.4;
     bool designed = false;
     std::vector<std::string> codes;  ///< of all warnings

@@ -32,6 +32,11 @@ constexpr ScanBox kWideBox = {
 constexpr ScanBox kLongTiBox = {
     .Ti_points = 2, .Td_points = 5, .Ti_low = 300, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 2};
 
+// Islands of high gain, which may be narrower than any scan's spacing, are wider under wider limits.
+constexpr double kWiderLimits = 1.4;  // times M - 1
+constexpr ScanBox kIslandBox = {
+    .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
+
 struct Candidate {
     Point x{};
     double log_cost = std::numeric_limits<double>::infinity();
@@ -187,6 +192,19 @@ Candidate cheapest(const Problem& problem, const std::vector<ScanPoint>& points)
     return best;
 }
 
+/// The cheapest of the points that wider limits admit, moved inside the true ones; none that costs `below` or more.
+Candidate cheapest_island(const Sweep& sweep, const Problem& problem, double below) {
+    Problem wider = problem;
+    for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
+    Candidate best;
+    best.log_cost = below;
+    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox)) {
+        if (log_cost_bound(problem, point.x) >= best.log_cost) continue;
+        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, *inside);
+    }
+    return best;
+}
+
 /// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
 /// against the least one and against a long one.
 void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem, std::vector<ScanPoint> points) {
@@ -205,6 +223,9 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const Problem& problem, co
     if (!has_resonant_plant(problem)) return;
     for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox))) runs.from(valley);
     if (has_setpoint(problem)) runs.from(cheapest(problem, scan(sweep, kLongTiBox)));
+    const double before = runs.best()->log_cost;
+    const Candidate island = cheapest_island(sweep, problem, before);
+    if (island.log_cost < before) runs.from(island);
 }
 
 }  // namespace

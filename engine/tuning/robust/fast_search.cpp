@@ -140,15 +140,25 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem
     runs.from(cheapest(problem, points));
 }
 
+/// Where long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
+void look_at_long_Ti(Runs& runs, const Sweep& sweep, const Problem& problem) {
+    const double before = runs.best()->log_cost;
+    const auto starts = valley_starts(problem, scan(sweep, kLongTiBox));
+    const bool wins = !starts.empty() && starts.front().log_cost < before;
+    for (const auto& start : starts) {
+        if (start.log_cost < before + kHopeless) runs.from(start);
+        if (!wins) break;
+    }
+}
+
 void look_for_valleys(Runs& runs, const Sweep& sweep, const Problem& problem, const std::vector<ScanPoint>& points) {
-    const auto not_hopeless = [&] { return runs.best()->log_cost + kHopeless; };
     // Under a limit on |C S| gain is traded against filtering, with several valleys along Td.
     if (problem.limits.Mks)
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
-    if (has_setpoint(problem)) runs.from(cheapest(problem, scan(sweep, kLongTiBox), not_hopeless()));
+    if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
     if (!has_resonant_plant(problem)) return;
     for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox))) runs.from(valley);
-    runs.from(cheapest(problem, scan(sweep, kIntegralBox), not_hopeless()));
+    runs.from(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
     runs.from(cheapest_island(sweep, problem, runs.best()->log_cost));
 }
 

@@ -140,15 +140,15 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem
     runs.from(cheapest(problem, points));
 }
 
-/// Where long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
+/// Where a long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
 void look_at_long_Ti(Runs& runs, const Sweep& sweep, const Problem& problem) {
+    const auto points = scan(sweep, kLongTiBox);
     const double before = runs.best()->log_cost;
-    const auto starts = valley_starts(problem, scan(sweep, kLongTiBox));
-    const bool wins = !starts.empty() && starts.front().log_cost < before;
-    for (const auto& start : starts) {
+    const auto best = cheapest(problem, points, before + kHopeless);
+    runs.from(best);
+    if (!best || best->log_cost >= before) return;
+    for (const auto& start : valley_starts(problem, points))
         if (start.log_cost < before + kHopeless) runs.from(start);
-        if (!wins) break;
-    }
 }
 
 void look_for_valleys(Runs& runs, const Sweep& sweep, const Problem& problem, const std::vector<ScanPoint>& points) {

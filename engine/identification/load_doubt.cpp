@@ -95,7 +95,7 @@ Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, 
 }  // namespace
 
 std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows& rows) {
-    constexpr double kAsLikely = 3;  // of minus twice the logarithm of the likelihood
+    constexpr double kAsLikely = 2;  // of minus twice the logarithm of the likelihood
     const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
     if (n < m + kSteps + 8 || !(rows.residual.squaredNorm() > 0)) return {};
     const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);

@@ -108,16 +108,22 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
     }
 }
 
+/// A structure that Akaike's criterion does not tell from the chosen one.
+struct OpenChoice {
+    std::size_t index = 0;  ///< into the fits
+    double weight = 0;      ///< its likelihood by that criterion, the chosen one's is 1
+};
+
 /// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
 /// less than 4 above it (Burnham and Anderson 2002, section 2.6), with a gain that the record determines.
-std::vector<std::size_t> open_choices(const Search& search, const std::vector<FittedPlant>& plants) {
+std::vector<OpenChoice> open_choices(const Search& search, const std::vector<FittedPlant>& plants) {
     constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const double log_n = std::log(search.independent);
     const auto akaike = [&](std::size_t i) {
         return search.criteria[i] + (2 - log_n) * search.fits[i].form.parameters();
     };
-    std::vector<std::size_t> open;
+    std::vector<OpenChoice> open;
     if (search.chosen().form.structure == Structure::unstable) return open;
     for (std::size_t i = 0; i < plants.size(); ++i) {
         const Fit& fit = search.fits[i];
@@ -125,21 +131,25 @@ std::vector<std::size_t> open_choices(const Search& search, const std::vector<Fi
             is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
             continue;
         const bool known = plants[i].standard_errors.at("K") <= std::abs(plants[i].values.at("K"));
-        if (known && akaike(i) - akaike(chosen) <= kOpen) open.push_back(i);
+        const double above = akaike(i) - akaike(chosen);
+        if (known && above <= kOpen) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kOpen))});
     }
     return open;
 }
 
-/// The variance of K with the choice of structure left open: the widest of own variance and squared distance from the
-/// chosen one's K.
+/// The variance of K with the choice of structure left open, at least the chosen one's own: the mean of own variance
+/// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3).
 double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedPlant>& plants,
-                            const std::vector<std::size_t>& open) {
-    double widest = std::pow(chosen.standard_errors.at("K"), 2);
-    for (const std::size_t i : open) {
-        const double own = plants[i].standard_errors.at("K"), apart = plants[i].values.at("K") - chosen.values.at("K");
-        widest = std::max(widest, own * own + apart * apart);
+                            const std::vector<OpenChoice>& open) {
+    const double its_own = std::pow(chosen.standard_errors.at("K"), 2);
+    double sum = its_own, weights = 1;
+    for (const auto& [index, weight] : open) {
+        const FittedPlant& other = plants[index];
+        const double own = other.standard_errors.at("K"), apart = other.values.at("K") - chosen.values.at("K");
+        sum += weight * (own * own + apart * apart);
+        weights += weight;
     }
-    return widest;
+    return std::max(its_own, sum / weights);
 }
 
 void widen_gain(FittedPlant& plant, double variance) {
@@ -168,8 +178,8 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
         fit.J.clear();
     }
     const auto chosen = static_cast<std::size_t>(search.choice.index);
-    const std::vector<std::size_t> open = open_choices(search, plants);
-    for (const std::size_t i : open) model.alternatives.push_back(plants[i].plant);
+    const std::vector<OpenChoice> open = open_choices(search, plants);
+    for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);

@@ -133,7 +133,7 @@ constexpr std::size_t kEnough = 2000;
 
 /// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
 /// few lags is the plant.
-constexpr double kLinearity = 0.001;
+constexpr double kLinearity = 0.0005;
 
 /// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
 /// number, say as much of parameters and noise. `t` follows.

@@ -52,6 +52,9 @@ struct CleanRecord {
     Cleaning cleaning;
     int dropped = 0;  ///< rows of which no y is used
     int u_only = 0;   ///< of them, rows whose u counts
+    bool moved_between_rows =
+        false;             ///< each change of u was put midway between the row that shows it and the one before
+    int moves_placed = 0;  ///< changes of u that were put at rows that are missing (gap_moves.h)
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

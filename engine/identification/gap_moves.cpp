@@ -1,21 +1,12 @@
 #include "engine/identification/gap_moves.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
+
+#include "engine/identification/statistics.h"
 
 namespace tunewright {
 namespace {
-
-double usual_spacing(const CleanRecord& r) {
-    std::vector<double> spacings;
-    for (std::size_t i = 1; i < r.t.size(); ++i) {
-        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
-    }
-    if (spacings.empty()) return 0;
-    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-    std::nth_element(spacings.begin(), middle, spacings.end());
-    return *middle;
-}
 
 /// The time of the last row before the one at or after `time`.
 double row_before(const CleanRecord& r, double time) {
@@ -24,6 +15,14 @@ double row_before(const CleanRecord& r, double time) {
 }
 
 }  // namespace
+
+double usual_spacing(const CleanRecord& r) {
+    std::vector<double> spacings;
+    for (std::size_t i = 1; i < r.t.size(); ++i) {
+        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
+    }
+    return spacings.empty() ? 0 : median(std::move(spacings));
+}
 
 std::vector<int> gap_moves(const CleanRecord& record) {
     constexpr double kLong = 1.5;
@@ -40,6 +39,7 @@ CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, con
     constexpr int kRounds = 3, kFarthest = 8;  // rows back
     const double usual = usual_spacing(record);
     CleanRecord placed = record;
+    placed.moves_placed = static_cast<int>(moves.size());
     const auto misses = [&] { return project({&placed, {}}, fit.form, fit.shape).sse; };
     double least = misses();
     for (int round = 0; round < kRounds; ++round) {

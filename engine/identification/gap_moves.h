@@ -7,6 +7,9 @@
 
 namespace tunewright {
 
+/// The median time from one sample to the next, equal times left out.
+double usual_spacing(const CleanRecord& record);
+
 /// Indices of the changes of u that were first seen after a spacing of more than 1.5 times the usual one: when they
 /// happened in it is not recorded.
 std::vector<int> gap_moves(const CleanRecord& record);

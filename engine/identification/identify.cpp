@@ -213,11 +213,19 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
 }
 
 /// At the oscillation a lag much longer than its period looks like an integrator: the static gain comes from the
-/// structure alone.
-void warn_extrapolated_gain(const RecordedCycle& cycle, const Fit& fit, std::vector<Warning>& warnings) {
-    constexpr double kFar = 2;
+/// structure alone. Where the model leaves more than noise (`left` of y's variation), so does whether there is one.
+void warn_extrapolated_gain(const RecordedCycle& cycle, const Fit& fit, double left, std::vector<Warning>& warnings) {
+    constexpr double kFar = 2, kPlainly = 0.02;
     const Structure structure = fit.form.structure;
-    if (is_integrating(structure) || structure == Structure::unstable) return;
+    if (is_integrating(structure) || structure == Structure::unstable) {
+        if (left < kPlainly) return;
+        warnings.push_back(
+            {"gain-from-oscillation",
+             "The model leaves " + number_text(100 * left, 2) +
+                 " % of y's variation beyond noise, so whether the plant integrates, is unstable or has a "
+                 "static gain K is open: a relay's oscillation hardly tells. A step test does."});
+        return;
+    }
     const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();
     if (lag * cycle.omega() < kFar) return;
     warnings.push_back({"gain-from-oscillation",
@@ -271,7 +279,7 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     const double left = misfit(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
     const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
-    if (whole && cycle && unexplained && cycle->periods > 1 && !search.between_rows) {
+    if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
         const std::vector<Anchor> anchors = anchors_of(search, *cycle);
         hold_to(search, anchors, options.model, control);
         if (control.stop.stop_requested()) return cancelled();
@@ -281,7 +289,7 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
         search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
 
     std::vector<Warning> last;
-    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), last);
+    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), left, last);
     const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());

@@ -111,7 +111,7 @@ struct IdentifiedModel {
     std::vector<Candidate> candidates;
     std::map<std::string, double> standard_errors;
     ParameterCovariance covariance;
-    std::vector<Plant> alternatives;  ///< fits of other structures, less than 4 above it by Akaike's criterion
+    std::vector<Plant> alternatives;        ///< fits of other structures, less than 4 above it by Akaike's criterion
     std::optional<LimitCycle> limit_cycle;  ///< of a relay test
     std::vector<FrequencyPoint> frequency_points;
     std::optional<UltimatePoint> ultimate_point;  ///< of the plant; empty where no P gain makes it oscillate

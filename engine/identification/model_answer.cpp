@@ -219,12 +219,12 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
              "show (a twentieth of it), so it is only a bound. Give the first few oscillations alone "
              "(`from`, `to`)."});
     }
-    if (search.placed_moves > 0) {
+    if (record.moves_placed > 0) {
         model.data_quality.notes.push_back(
-            std::to_string(search.placed_moves) +
+            std::to_string(record.moves_placed) +
             " change(s) of u happened while rows are missing: each is placed where it explains y best.");
     }
-    if (search.between_rows) {
+    if (record.moved_between_rows) {
         model.data_quality.notes.push_back(
             "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "
             "spaced, and y follows earlier than the rows of u say.");

@@ -132,17 +132,16 @@ CleanRecord changed_between_rows(CleanRecord record) {
         const auto row = std::lower_bound(record.t.begin(), record.t.end(), time);
         if (row != record.t.begin()) time = 0.5 * (time + *std::prev(row));
     }
+    record.moved_between_rows = true;
     return record;
 }
 
 bool irregular(const CleanRecord& record) {
-    std::vector<double> spacings;
-    for (std::size_t i = 1; i < record.t.size(); ++i) spacings.push_back(record.t[i] - record.t[i - 1]);
-    const auto [low, high] = std::minmax_element(spacings.begin(), spacings.end());
-    const double mean = record.t.back() / static_cast<double>(spacings.size());
-    const auto off =
-        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - mean) > 0.1 * mean; });
-    return *high - *low > 0.2 * mean && static_cast<double>(off) > 0.2 * static_cast<double>(spacings.size());
+    const double usual = usual_spacing(record);
+    std::size_t off = 0;
+    for (std::size_t i = 1; i < record.t.size(); ++i)
+        off += std::abs(record.t[i] - record.t[i - 1] - usual) > 0.1 * usual ? 1 : 0;
+    return 5 * off > record.t.size() - 1;
 }
 
 bool usable(const Search& search) { return search.choice.index >= 0; }
@@ -158,7 +157,6 @@ void try_between_rows(Search& search, ModelChoice model, const RunControl& contr
     Search other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
     if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
-    search.between_rows = true;
 }
 
 /// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
@@ -180,7 +178,6 @@ void try_gap_moves(Search& search, ModelChoice model, const RunControl& control)
     }
     if (kMuchLess * other.chosen().sse > search.chosen().sse) return;
     search = std::move(other);
-    search.placed_moves = static_cast<int>(moves.size());
 }
 
 /// A late load can be told from the response only where u moves again; a drift also by what y does before u moves.
@@ -205,9 +202,7 @@ bool another_lag_does(Search& search, ModelChoice model, double by_drift, double
     if (!richer.determined || information_criterion(richer, independent) > by_drift + kAsGood) return false;
     std::vector<Fit> fits = std::move(search.fits);
     fits.push_back(std::move(richer));
-    const bool between_rows = search.between_rows;
     search = ranked(search.context, std::move(fits), plan, search.disturbances);
-    search.between_rows = between_rows;
     return true;
 }
 
@@ -222,7 +217,6 @@ void try_drift_for_slow_part(Search& search, ModelChoice model, const RunControl
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     const double n = other.independent;
     if (information_criterion(other.chosen(), n) > information_criterion(now, n) + kAsGood) return;
-    other.between_rows = search.between_rows;
     search = std::move(other);
 }
 
@@ -245,7 +239,6 @@ void try_drift(Search& search, ModelChoice model, const RunControl& control) {
     if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
     Search other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
-    other.between_rows = search.between_rows;
     search = std::move(other);
 }
 
@@ -272,9 +265,7 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
             best = &other;
     }
     if (best == &search) return;
-    const bool between_rows = search.between_rows;
     search = fit_all(search.context, model, best->disturbances, control);
-    search.between_rows = between_rows;
 }
 
 /// Of an unstable model, over so many time constants that its free run is all but arbitrary.
@@ -343,9 +334,7 @@ void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, con
     for (const Fit& fit : search.fits) {
         fits.push_back(fit.determined ? fit_shape(context.some(), fit.form, fit.shape, {}, control.stop) : fit);
     }
-    const bool between_rows = search.between_rows;
     search = ranked(std::move(context), std::move(fits), plan, search.disturbances);
-    search.between_rows = between_rows;
 }
 
 }  // namespace tunewright

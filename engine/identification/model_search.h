@@ -18,9 +18,7 @@ struct Search {
     double independent = 4;  ///< samples that the best residual is worth
     Choice choice;
     Disturbances disturbances;
-    bool between_rows = false;  ///< u was taken to change midway between the rows
-    int placed_moves = 0;       ///< changes of u that were placed at rows that are missing
-    double part = 1;            ///< of the record, from its start: less than all for an unstable plant's long record
+    double part = 1;  ///< of the record, from its start: less than all for an unstable plant's long record
 
     const Fit& chosen() const { return fits[static_cast<std::size_t>(choice.index)]; }
 };

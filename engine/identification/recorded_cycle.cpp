@@ -302,8 +302,10 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     cycle.rest = rest_point(r, u, cycle.relay_start, noise, cycle.y_half);
     add_harmonics(signals, noise, cycle);
     if (cycle.harmonics.empty()) {
-        return Error{ErrorKind::not_identifiable, "record",
-                     "The oscillation is sampled fewer than 8 times a period; record faster."};
+        return Error{
+            ErrorKind::not_identifiable, "record",
+            "The oscillation is sampled fewer than 8 times a period: when u switched, and with it the gain, is known "
+            "poorly. Record faster."};
     }
     // Under a relay that is not reversed the first harmonic lags by about half a turn.
     const double phase = std::arg(cycle.harmonics.front().G);

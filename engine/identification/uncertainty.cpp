@@ -129,8 +129,6 @@ std::vector<double> block_sums(const std::vector<double>& values, std::size_t n,
     return sums;
 }
 
-constexpr std::size_t kEnough = 2000;
-
 /// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
 /// few lags is the plant.
 constexpr double kLinearity = 0.0005;
@@ -138,6 +136,7 @@ constexpr double kLinearity = 0.0005;
 /// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
 /// number, say as much of parameters and noise. `t` follows.
 Fit condensed(const Fit& fit, std::vector<double>& t) {
+    constexpr std::size_t kEnough = 2000;
     const std::size_t n = fit.residual.size(), block = n / kEnough;
     if (block < 2) return fit;
     Fit less;
@@ -148,7 +147,7 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
     return less;
 }
 
-/// A hundred or two rows: a load that walks is slow. J's columns are divided by `length`.
+/// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
     constexpr std::size_t kFew = 64;
     const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew),
@@ -167,64 +166,83 @@ FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::
     return few;
 }
 
+/// The least-squares problem at a fit, each column of J of length 1.
+struct ScaledProblem {
+    Eigen::MatrixXd J;        ///< samples, rows beside them, then one for each shape parameter
+    Eigen::VectorXd length;   ///< of the columns before
+    Eigen::MatrixXd inverse;  ///< of J'J
+    Eigen::Index samples = 0;
+    int shape = 0;  ///< parameters before the linear ones
+
+    auto of_samples() const { return J.topRows(samples); }
+    Eigen::MatrixXd beside_samples() const { return J.bottomRows(J.rows() - samples); }
+};
+
+/// `variance`: the noise's over a long run.
+ScaledProblem scaled_problem(const Fit& fit, double variance) {
+    const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
+    ScaledProblem p;
+    p.shape = static_cast<int>(fit.form.searched().size());
+    p.samples = static_cast<Eigen::Index>(fit.residual.size());
+    p.J = Eigen::MatrixXd::Zero(data + p.shape, m);
+    p.length.resize(m);
+    for (int k = 0; k < m; ++k) {
+        p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
+        // What no sample shows is still no longer than the record, and no lag is thousands of times another.
+        if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
+        p.length[k] = std::max(p.J.col(k).norm(), 1e-12);
+        p.J.col(k) /= p.length[k];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.J.transpose() * p.J);
+    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+                eigen.eigenvectors().transpose();
+    return p;
+}
+
+/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
+/// section 4.2). What the residual shows may be slow noise or, unless `rounded`, a load that walks: the explanation
+/// that leaves the gain more open counts.
+Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
+                                std::span<const double> times, bool rounded) {
+    const Eigen::MatrixXd others = p.beside_samples();
+    const Eigen::MatrixXd prior = left.long_run_variance() * others.transpose() * others;
+    Eigen::MatrixXd covariance = p.inverse * (left.weighed(p.of_samples()) + prior) * p.inverse;
+    if (rounded) return covariance;
+    for (const Eigen::MatrixXd& spread : weighed_with_load(whole, few_rows(whole, times, p.length))) {
+        const Eigen::MatrixXd with_load = p.inverse * (spread + prior) * p.inverse;
+        if (with_load(p.shape, p.shape) > covariance(p.shape, p.shape)) covariance = with_load;
+    }
+    return covariance;
+}
+
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
-/// covariance, one per plateau of a rounded y, and what drifts too small to be found would do. The covariance of least
-/// squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989, section 4.2).
+/// covariance, and one per plateau of a rounded y, or what drifts too small to be found would do.
 Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
     const bool on_plateaus = common > 0.02 * grid;
     std::vector<double> t(times.begin(), times.end());
     const Fit fit = on_plateaus ? whole : condensed(whole, t);
-    const int m = fit.form.parameters(), shape = static_cast<int>(fit.form.searched().size());
-    const int data = static_cast<int>(fit.J[0].size()), rows = data + shape;
-    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    const int m = fit.form.parameters();
     const ResidualNoise left(fit.residual, m, grid * grid / 12);
-    const double variance = left.long_run_variance();
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows, m);
-    Eigen::VectorXd length(m);
-    for (int k = 0; k < m; ++k) {
-        J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
-        // What no sample shows is still no longer than the record, and no lag is thousands of times another.
-        if (k < shape) J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
-        length[k] = std::max(J.col(k).norm(), 1e-12);
-        J.col(k) /= length[k];
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(J.transpose() * J);
-    const Eigen::MatrixXd inverse = eigen.eigenvectors() *
-                                    eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
-                                    eigen.eigenvectors().transpose();
-    const Eigen::MatrixXd others = J.bottomRows(rows - n);
-    const Eigen::MatrixXd spread = left.weighed(J.topRows(n)) + variance * others.transpose() * others;
-    Eigen::MatrixXd covariance = inverse * spread * inverse;
-    // A noise that is slow may be a load that walks: the explanation that leaves the gain more open counts.
-    if (!on_plateaus) {
-        for (const Eigen::MatrixXd& spread_by_load : weighed_with_load(whole, few_rows(whole, times, length))) {
-            const Eigen::MatrixXd walked =
-                inverse * (spread_by_load + variance * others.transpose() * others) * inverse;
-            if (walked(shape, shape) > covariance(shape, shape)) covariance = walked;
-        }
-    }
+    const ScaledProblem p = scaled_problem(fit, left.long_run_variance());
+    const Eigen::MatrixXd covariance = open_covariance(p, left, whole, times, on_plateaus);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
     // Rounding that is the same over a plateau is no noise of which few samples are known.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
-    for (int k = 0; k < m; ++k) {
-        const double value = std::max(axes.eigenvalues()[k], 0.0);
-        all.emplace_back(widened * std::sqrt(value) * axes.eigenvectors().col(k).array() / length.array());
-    }
-    if (on_plateaus) {
-        for (const auto& [first, last] : plateaus(fit, grid)) {
-            const Eigen::VectorXd pull = J.middleRows(first, last - first).colwise().sum().transpose();
-            all.emplace_back((common * (inverse * pull)).array() / length.array());
-        }
-    }
+    for (int k = 0; k < m; ++k)
+        all.emplace_back(widened * std::sqrt(std::max(axes.eigenvalues()[k], 0.0)) * axes.eigenvectors().col(k));
     // Nor is it a drift, though it looks like one.
-    if (!on_plateaus) {
-        for (const Eigen::VectorXd& change : drift_doubts(fit, t, J, inverse, variance))
-            all.emplace_back(change.array() / length.array());
+    if (on_plateaus) {
+        for (const auto& [first, last] : plateaus(fit, grid))
+            all.emplace_back(common * (p.inverse * p.J.middleRows(first, last - first).colwise().sum().transpose()));
+    } else {
+        for (Eigen::VectorXd& change : drift_doubts(fit, t, p.J, p.inverse, left.long_run_variance()))
+            all.push_back(std::move(change));
     }
     Eigen::MatrixXd deviations(static_cast<Eigen::Index>(all.size()), m);
-    for (std::size_t k = 0; k < all.size(); ++k) deviations.row(static_cast<Eigen::Index>(k)) = all[k].transpose();
+    for (std::size_t k = 0; k < all.size(); ++k)
+        deviations.row(static_cast<Eigen::Index>(k)) = (all[k].array() / p.length.array()).transpose();
     return deviations;
 }
 

@@ -64,20 +64,23 @@ TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
     EXPECT_LE(above, 0.015 * designed);
 }
 
-/// The share of step tests whose stated 95 % interval holds K.
-double coverage(double noise, double pole, int seeds) {
+/// The share of step tests whose stated 95 % interval holds K. `walk`: standard deviation of a load at the plant's
+/// input that has walked for 50 units of time.
+double coverage(double noise, double pole, int seeds, double walk = 0) {
     int covered = 0;
     for (int seed = 0; seed < seeds; ++seed) {
         Random random(static_cast<std::uint64_t>(7000 + seed));
         const double K = 1.5, T = random.uniform(8, 16), L = random.uniform(0.5, 6);
         Record record;
-        double state = random.normal();
+        double state = random.normal(), load = 0, by_load = 0;
         for (int i = 0; i < 400; ++i) {
             const double t = 0.25 * i, after = t - 10 - L;
+            by_load += (K * load - by_load) * -std::expm1(-0.25 / T);
+            if (walk > 0) load += walk * std::sqrt(0.25 / 50) * random.normal();
             state = pole * state + std::sqrt(1 - pole * pole) * random.normal();
             record.t.push_back(t);
             record.u.push_back(t < 10 ? 0 : 1);
-            record.y.push_back((after > 0 ? K * -std::expm1(-after / T) : 0) + noise * state);
+            record.y.push_back((after > 0 ? K * -std::expm1(-after / T) : 0) + by_load + noise * state);
         }
         const auto model = identify(record, {}, {});
         if (!model || !model->standard_errors.contains("K")) continue;
@@ -93,6 +96,7 @@ TEST(MadeRecords, StatedIntervalsOfTheGainHoldIt) {
         EXPECT_GE(coverage(noise, 0, 200), 0.90) << noise;
         EXPECT_LE(coverage(noise, 0, 200), 0.99) << noise;
     }
+    EXPECT_GE(coverage(0.005, 0, 200, 0.03), 0.85) << "a load that walks";
     for (const double pole : {0.8, 0.97}) EXPECT_GE(coverage(0.03, pole, 200), 0.85) << pole;
 }
 

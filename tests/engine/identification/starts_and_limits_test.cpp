@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "engine/identification/identify.h"
 #include "engine/identification/input_limits.h"
@@ -74,6 +75,64 @@ TEST(Records, AMoveWithTheLastRowIsNone) {
     EXPECT_EQ(model->data_quality.kind, RecordKind::step);
     EXPECT_TRUE(model->data_quality.settled);
     EXPECT_TRUE(noted(*model, "nothing follows them"));
+}
+
+TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {
+    // A relay's square wave of about nine rows a half period; every third move falls among missing rows.
+    Steps moves;
+    std::vector<double> t;
+    std::mt19937 random(5);
+    for (double time = 20; time < 380; time += 8 + static_cast<double>(random() % 3))
+        moves.emplace_back(time, moves.size() % 2 == 0 ? 1 : -0.6);
+    for (int i = 0; i < 400; ++i) {
+        const bool lost = std::ranges::any_of(moves, [&, k = 0](const auto& move) mutable {
+            return k++ % 3 == 0 && i >= move.first && i < move.first + 3;
+        });
+        if (!lost) t.push_back(i);
+    }
+    Record record = simulate(t, 0, 10, moves, first_order(2, 6, 1.5));
+    add_noise(record, 0.01, 11);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    EXPECT_NEAR(static_gain(*model), 2, 0.03 * 2) << model->choice_reason;
+    EXPECT_GT(model->fit_percent, 97);
+    EXPECT_TRUE(noted(*model, "happened while rows are missing"));
+}
+
+TEST(Records, WhatOnlyASlowPartExplainsIsNotExplainedAway) {
+    // The record ends in the inverse response of a plant that goes the other way: gain 5, b = -6, lags 9 and 4.
+    const auto inverse = [](double t) {
+        if (t <= 0) return 0.0;
+        const double by_nine = (9 + 6) / (9.0 - 4), by_four = (4 + 6) / (9.0 - 4);
+        return 5 * (1 - by_nine * std::exp(-t / 9) + by_four * std::exp(-t / 4));
+    };
+    Record record = simulate(even_times(140, 0.1), 0, 0, {{2, 1}}, inverse);
+    add_noise(record, 0.005, 4);
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model);
+    const double K = static_gain(*model), std = model->standard_errors.at("K");
+    EXPECT_TRUE(std::abs(K - 5) <= 0.1 * 5 || std::abs(K - 5) <= 3 * std) << K << " +- " << std;
+}
+
+TEST(Records, TheDefaultDesignHoldsOnStructuresThatTheRecordDoesNotTellApart) {
+    TuningRequest request;
+    EvaluateOptions options;
+    options.points = 0;
+    int open = 0;
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+        Record record = simulate(even_times(150, 1), 0, 0, {{20, 1}}, two_lags(1, 14, 7, 2));
+        add_noise(record, 0.04, seed);
+        request.record = record;
+        const auto result = tune(request, {});
+        ASSERT_TRUE(result);
+        for (const Plant& other : result->model->alternatives) {
+            const auto there = evaluate(PlantModel(other), result->controllers.front().evaluation->controller, options);
+            ASSERT_TRUE(there);
+            EXPECT_LE(there->robustness.Ms.value_or(99), 1.4 * 1.02) << seed;
+            ++open;
+        }
+    }
+    EXPECT_GE(open, 4);
 }
 
 TEST(Records, FalseReadingsBesideAStepAreNamedAndLeftOut) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/identification/record.h"
+#include "engine/identification/record/record.h"
 
 namespace tunewright::api {
 

@@ -4,7 +4,7 @@
 #include "api/contract/record.h"
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
-#include "api/contract/result.h"
+#include "api/contract/result/result.h"
 #include "api/json/digest.h"
 #include "api/json/parse.h"
 

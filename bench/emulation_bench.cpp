@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "engine/plant/nonlinear_system.h"
-#include "engine/tuning/method.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/tuning/method/method.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -1,10 +1,10 @@
 // One evaluation as a slider asks for it: margins, both responses, traces of 400 points; and the steps it is made of.
 #include <benchmark/benchmark.h>
 
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/simulation/linear_response.h"
+#include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "engine/identification/identify.h"
-#include "engine/simulation/relay.h"
+#include "engine/simulation/relay/relay.h"
 
 namespace tunewright {
 namespace {

@@ -1,7 +1,7 @@
 // The league table on a FOPDT plant as a browser asks for it: every method in all its variants, traces of 400 points.
 #include <benchmark/benchmark.h>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

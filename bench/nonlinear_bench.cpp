@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "engine/evaluate.h"
-#include "engine/simulation/nonlinear_experiments.h"
-#include "engine/simulation/nonlinear_response.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/simulation/experiment/nonlinear_experiments.h"
+#include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "engine/plant/expression/parser.h"
-#include "engine/plant/lie_derivatives.h"
-#include "engine/plant/nonlinear_system.h"
-#include "engine/simulation/linearising_response.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/simulation/nonlinear/linearising_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/simulation/relay.h"
+#include "engine/simulation/relay/relay.h"
 
 namespace tunewright {
 namespace {

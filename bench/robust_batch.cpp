@@ -12,7 +12,7 @@
 
 #include "bench/batch.h"
 #include "engine/loop/peaks.h"
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright::bench {
 namespace {

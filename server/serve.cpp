@@ -15,7 +15,7 @@
 #include "server/http/router.h"
 #include "server/http/server.h"
 #include "server/http/static_files.h"
-#include "server/jobs/batches.h"
+#include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/log.h"
 #include "server/metrics.h"

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "api/csv/heading.h"
+#include "api/csv/columns/heading.h"
 #include "api/csv/table.h"
 #include "api/describe/suggest.h"
 #include "api/json/parse.h"
 #include "api/json/writer.h"
 #include "api/service.h"
-#include "engine/plan.h"
+#include "engine/request/plan.h"
 
 namespace tunewright::api {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "api/describe/union.h"
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 
 namespace tunewright::api {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "api/describe/codec.h"
-#include "engine/tuning/options.h"
+#include "engine/tuning/method/options.h"
 
 namespace tunewright::api {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "api/describe/codec.h"
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright::api {
 

@@ -1,9 +1,9 @@
 #include "api/contract/relay.h"
 
-#include "api/contract/evaluation.h"
-#include "api/contract/limit_cycle.h"
-#include "api/contract/plant.h"
-#include "engine/plant/linear_plant.h"
+#include "api/contract/plant/plant.h"
+#include "api/contract/result/evaluation.h"
+#include "api/contract/result/limit_cycle.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::api {
 namespace {

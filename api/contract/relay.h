@@ -4,7 +4,7 @@
 #include <string>
 
 #include "api/contract/record.h"
-#include "engine/simulation/relay.h"
+#include "engine/simulation/relay/relay.h"
 
 namespace tunewright::api {
 

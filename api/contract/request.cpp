@@ -2,10 +2,10 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
-#include "api/contract/plant.h"
+#include "api/contract/plant/plant.h"
 #include "engine/loop/loop.h"
-#include "engine/plant/linear_plant.h"
-#include "engine/plant/linearised_plant.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/nonlinear/linearised_plant.h"
 
 namespace tunewright::api {
 namespace {

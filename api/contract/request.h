@@ -2,7 +2,7 @@
 #pragma once
 
 #include "api/contract/record.h"
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright::api {
 

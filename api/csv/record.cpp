@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "api/csv/columns.h"
+#include "api/csv/columns/columns.h"
 #include "api/csv/encoding.h"
 #include "api/csv/time_column.h"
 #include "api/csv/time_stamp.h"

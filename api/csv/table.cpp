@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "api/csv/heading.h"
+#include "api/csv/columns/heading.h"
 #include "api/csv/text_lines.h"
 #include "api/csv/time_stamp.h"
 

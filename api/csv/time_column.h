@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/csv/columns.h"
+#include "api/csv/columns/columns.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/closed_loop.h"
-#include "engine/identification/data_quality.h"
-#include "engine/identification/diagnosis.h"
-#include "engine/identification/input_limits.h"
-#include "engine/identification/model_answer.h"
-#include "engine/identification/model_search.h"
-#include "engine/identification/reading_check.h"
-#include "engine/identification/record_kind.h"
-#include "engine/identification/relay_fourier.h"
+#include "engine/identification/closed_loop/closed_loop.h"
+#include "engine/identification/fit/diagnosis.h"
+#include "engine/identification/fit/model_answer.h"
+#include "engine/identification/fit/model_search.h"
+#include "engine/identification/fit/reading_check.h"
+#include "engine/identification/record/data_quality.h"
+#include "engine/identification/record/input_limits.h"
+#include "engine/identification/record/record_kind.h"
+#include "engine/identification/relay_test/relay_fourier.h"
 #include "engine/identification/two_point.h"
 #include "engine/identification/wording.h"
 

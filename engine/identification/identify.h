@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "engine/expected.h"
-#include "engine/identification/excited_band.h"
-#include "engine/identification/record.h"
-#include "engine/plant/plant_family.h"
+#include "engine/identification/fit/excited_band.h"
+#include "engine/identification/record/record.h"
+#include "engine/plant/uncertain/plant_family.h"
 #include "engine/progress.h"
-#include "engine/simulation/limit_cycle.h"
+#include "engine/simulation/relay/limit_cycle.h"
 #include "engine/warning.h"
 
 namespace tunewright {

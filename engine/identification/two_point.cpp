@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
-#include "engine/identification/record_kind.h"
-#include "engine/identification/statistics.h"
+#include "engine/identification/record/record_kind.h"
 #include "engine/identification/wording.h"
+#include "engine/numerics/statistics.h"
 
 namespace tunewright {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/expected.h"
-#include "engine/identification/clean_record.h"
-#include "engine/identification/response.h"
+#include "engine/identification/fit/response.h"
+#include "engine/identification/record/clean_record.h"
 
 namespace tunewright {
 

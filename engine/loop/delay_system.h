@@ -11,7 +11,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
 

@@ -7,7 +7,7 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/plant/quick_complex.h"
+#include "engine/numerics/quick_complex.h"
 
 namespace tunewright {
 namespace {

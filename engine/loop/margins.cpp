@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/loop/log_root.h"
-#include "engine/plant/quick_complex.h"
+#include "engine/numerics/log_root.h"
+#include "engine/numerics/quick_complex.h"
 
 namespace tunewright {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "engine/loop/delay_system.h"
 #include "engine/loop/stability.h"
-#include "engine/plant/linear_algebra.h"
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
 

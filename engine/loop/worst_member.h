@@ -5,8 +5,8 @@
 #include <stop_token>
 
 #include "engine/controller/pid.h"
-#include "engine/plant/linear_plant.h"
-#include "engine/plant/plant_region.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/uncertain/plant_region.h"
 
 namespace tunewright {
 

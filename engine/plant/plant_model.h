@@ -1,12 +1,12 @@
-// What a request may be about: one linear plant (perhaps with uncertain parameters), several, measured points of one, or
-// differential equations.
+// What a request may be about: one linear plant (perhaps with uncertain parameters), several, measured points of one,
+// or differential equations.
 #pragma once
 
 #include <variant>
 #include <vector>
 
 #include "engine/plant/frequency_response.h"
-#include "engine/plant/nonlinear_plant.h"
+#include "engine/plant/nonlinear/nonlinear_plant.h"
 #include "engine/plant/plant.h"
 
 namespace tunewright {

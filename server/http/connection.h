@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "server/http/body/incoming_body.h"
 #include "server/http/head.h"
-#include "server/http/incoming_body.h"
 #include "server/http/message.h"
 #include "server/http/outgoing.h"
 #include "server/http/pace.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "server/http/body_stream.h"
+#include "server/http/body/body_stream.h"
 #include "server/http/message.h"
 
 namespace tunewright::server::http {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "server/executor.h"
-#include "server/http/compression.h"
+#include "server/http/body/compression.h"
 #include "server/http/problems.h"
 #include "server/log.h"
 

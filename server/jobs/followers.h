@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/held.h"
 #include "server/jobs/job_view.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
+#include "server/jobs/work/held.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {

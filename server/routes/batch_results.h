@@ -5,8 +5,8 @@
 #include <string>
 
 #include "server/executor.h"
-#include "server/http/body_stream.h"
-#include "server/jobs/batches.h"
+#include "server/http/body/body_stream.h"
+#include "server/jobs/batch/batches.h"
 
 namespace tunewright::server {
 

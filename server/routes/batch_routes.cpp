@@ -2,7 +2,7 @@
 
 #include "api/csv/encoding.h"
 #include "api/json/parse.h"
-#include "server/http/body_source.h"
+#include "server/http/body/body_source.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 #include "server/routes/batch_json.h"

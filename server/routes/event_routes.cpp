@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "server/http/body_stream.h"
+#include "server/http/body/body_stream.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 #include "server/routes/job_access.h"

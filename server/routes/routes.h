@@ -5,7 +5,7 @@
 
 #include "server/executor.h"
 #include "server/http/router.h"
-#include "server/jobs/batches.h"
+#include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
 #include "server/metrics.h"
@@ -30,7 +30,8 @@ struct BatchLimits {
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Timer& timer, Executor& pool,
                       Executor& lane, const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or until `closing`.
+/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or
+/// until `closing`.
 void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);
 
 /// /v1/methods, /v1/examples, /openapi.json: the same for the life of the process.

@@ -1,8 +1,8 @@
 // Answers end to end: the engine's results as JSON, held against the document.
 #include <gmock/gmock.h>
 
-#include "api/contract/evaluation.h"
-#include "engine/tuning/method.h"
+#include "api/contract/result/evaluation.h"
+#include "engine/tuning/method/method.h"
 #include "support.h"
 
 namespace tunewright::api {

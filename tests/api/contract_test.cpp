@@ -1,6 +1,6 @@
 // Plants and controllers: golden pairs of JSON and engine types, in both directions.
 #include "api/contract/controller.h"
-#include "api/contract/plant.h"
+#include "api/contract/plant/plant.h"
 #include "api/contract/request.h"
 #include "support.h"
 

@@ -1,7 +1,7 @@
 // Sets, ranges and measured points through JSON: read, refused, answered.
 #include <gmock/gmock.h>
 
-#include "api/contract/plant.h"
+#include "api/contract/plant/plant.h"
 #include "api/contract/request.h"
 #include "support.h"
 

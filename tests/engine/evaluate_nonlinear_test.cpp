@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/evaluate.h"
-#include "engine/plant/linear_equations.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/plant/nonlinear/linear_equations.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -1,6 +1,6 @@
 // One evaluation against closed forms and against a plain simulation with tiny steps that shares no code with the
 // engine's.
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 
 #include <gtest/gtest.h>
 

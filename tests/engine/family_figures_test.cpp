@@ -1,5 +1,5 @@
 // How one controller serves every plant of a family.
-#include "engine/family_figures.h"
+#include "engine/evaluation/family_figures.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 
 namespace tunewright {
 namespace {

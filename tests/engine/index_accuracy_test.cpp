@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/evaluate.h"
-#include "engine/measured_response.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/measured_response.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

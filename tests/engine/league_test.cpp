@@ -1,12 +1,12 @@
 // Method "all": its rows, why a method has none, and how far each row lies above the optimum at its Ms.
-#include "engine/league.h"
+#include "engine/request/league.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

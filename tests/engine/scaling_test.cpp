@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

@@ -1,5 +1,5 @@
 // The trade-off between servo and regulation of any controller: what the optima are, how figures scale, what is empty.
-#include "engine/tradeoff_entry.h"
+#include "engine/evaluation/tradeoff_entry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

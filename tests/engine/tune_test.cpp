@@ -1,5 +1,5 @@
 // tune(): the request's methods in order, failures as entries, ranking, progress, cancellation, records.
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

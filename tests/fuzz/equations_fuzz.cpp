@@ -8,8 +8,8 @@
 #include <iostream>
 #include <string>
 
-#include "engine/plant/lie_derivatives.h"
-#include "engine/plant/nonlinear_system.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
 
 namespace {
 

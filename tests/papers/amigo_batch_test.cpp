@@ -2,7 +2,7 @@
 // solver's Ms, Mt and IAE (tests/data/robust, cases amigo_pid and amigo_pi).
 #include <gtest/gtest.h>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 #include "tests/engine/tuning/reference_batch.h"
 
 namespace tunewright {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/identification/reduction.h"
-#include "engine/tune.h"
-#include "engine/tuning/arrieta_rule.h"
+#include "engine/reduction/reduction.h"
+#include "engine/request/tune.h"
+#include "engine/tuning/arrieta/arrieta_rule.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/evaluate.h"
-#include "engine/tuning/method.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/tuning/method/method.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

@@ -1,7 +1,7 @@
 // Jin & Son (2019), Tables 4, 6 and 8: the linear rules' rows on the paper's own models.
 #include <gtest/gtest.h>
 
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright {
 namespace {

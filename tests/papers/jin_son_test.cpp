@@ -10,10 +10,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/evaluate.h"
-#include "engine/simulation/indices.h"
-#include "engine/simulation/npid_response.h"
-#include "engine/tuning/method.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/nonlinear/npid_response.h"
+#include "engine/tuning/method/method.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

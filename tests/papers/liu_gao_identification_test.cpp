@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "engine/identification/identify.h"
-#include "engine/simulation/relay.h"
+#include "engine/simulation/relay/relay.h"
 
 namespace tunewright {
 namespace {

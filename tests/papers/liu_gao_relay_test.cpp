@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "engine/simulation/relay.h"
+#include "engine/simulation/relay/relay.h"
 
 namespace tunewright {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/evaluate.h"
-#include "engine/tune.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/request/tune.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/identification/record.h"
+#include "engine/identification/record/record.h"
 
 namespace tunewright::testing {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "engine/plant/linear_plant.h"
-#include "engine/plant/plant_region.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/uncertain/plant_region.h"
 
 namespace tunewright::records {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 #include "tests/records/made_record.h"
 
 namespace tunewright::records {

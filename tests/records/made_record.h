@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/identification/record.h"
+#include "engine/identification/record/record.h"
 #include "tests/records/true_plant.h"
 
 namespace tunewright::records {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 #include "tests/records/judgement.h"
 
 namespace tunewright::records {

@@ -1,4 +1,4 @@
-#include "server/http/body_decoder.h"
+#include "server/http/body/body_decoder.h"
 
 #include <gtest/gtest.h>
 

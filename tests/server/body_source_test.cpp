@@ -1,4 +1,4 @@
-#include "server/http/body_source.h"
+#include "server/http/body/body_source.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "server/http/body_stream.h"
+#include "server/http/body/body_stream.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,10 @@
-#include "server/http/compression.h"
+#include "server/http/body/compression.h"
 
 #include <gmock/gmock.h>
 #include <zlib.h>
 
 #include "loopback.h"
-#include "server/http/body_stream.h"
+#include "server/http/body/body_stream.h"
 #include "server/http/negotiation.h"
 
 namespace tunewright::server::http {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "loopback.h"
-#include "server/http/body_stream.h"
+#include "server/http/body/body_stream.h"
 
 namespace tunewright::server::http {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/number_text.h"
-#include "engine/simulation/nonlinear_experiments.h"
+#include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/tuning/emulation/step_model.h"
 #include "engine/tuning/emulation/target.h"
 

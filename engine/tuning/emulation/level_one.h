@@ -2,7 +2,7 @@
 // bounds that follow from them (Eq. 3).
 #pragma once
 
-#include "engine/tuning/emulation/parameters.h"
+#include "engine/tuning/emulation/search/parameters.h"
 
 namespace tunewright::emulation {
 

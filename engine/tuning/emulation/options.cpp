@@ -1,6 +1,6 @@
 #include "engine/tuning/emulation/options.h"
 
-#include "engine/tuning/rule.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright::emulation {
 namespace {

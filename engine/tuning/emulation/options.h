@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/tuning/options.h"
+#include "engine/tuning/method/options.h"
 
 namespace tunewright::emulation {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/plant/linear_equations.h"
+#include "engine/plant/nonlinear/linear_equations.h"
 #include "engine/tuning/emulation/target.h"
-#include "engine/tuning/rule.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright::emulation {
 namespace {

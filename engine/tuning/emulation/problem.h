@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/plant/lie_derivatives.h"
-#include "engine/simulation/linearising_response.h"
-#include "engine/tuning/method.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
+#include "engine/simulation/nonlinear/linearising_response.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright::emulation {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "engine/tuning/emulation/parameters.h"
+#include "engine/tuning/emulation/search/parameters.h"
 #include "engine/tuning/emulation/trajectories.h"
 
 namespace tunewright::emulation {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/emulation/flatness.h"
-#include "engine/tuning/emulation/search.h"
+#include "engine/tuning/emulation/search/flatness.h"
+#include "engine/tuning/emulation/search/search.h"
 
 namespace tunewright::emulation {
 namespace {

@@ -1,8 +1,8 @@
 // What is told of the emulating controller and of the runs that it was chosen from.
 #pragma once
 
-#include "engine/tuning/emulation/criterion.h"
 #include "engine/tuning/emulation/remark6.h"
+#include "engine/tuning/emulation/search/criterion.h"
 
 namespace tunewright::emulation {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/local_minimum.h"
+#include "engine/numerics/local_minimum.h"
 
 namespace tunewright::emulation {
 namespace {

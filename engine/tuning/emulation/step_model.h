@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/plant/plant.h"
-#include "engine/simulation/nonlinear_experiments.h"
+#include "engine/simulation/experiment/nonlinear_experiments.h"
 
 namespace tunewright::emulation {
 

@@ -1,9 +1,9 @@
 // The response that the nonlinear controller is to give: as asked for, or from the linearisation.
 #pragma once
 
-#include "engine/plant/linear_plant.h"
-#include "engine/simulation/linearising_response.h"
-#include "engine/tuning/options.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/simulation/nonlinear/linearising_response.h"
+#include "engine/tuning/method/options.h"
 
 namespace tunewright::emulation {
 

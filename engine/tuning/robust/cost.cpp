@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "engine/simulation/indices.h"
+#include "engine/simulation/linear/indices.h"
 
 namespace tunewright::robust {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "engine/simulation/linear_response.h"
+#include "engine/simulation/linear/linear_response.h"
 #include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {

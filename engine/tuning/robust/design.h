@@ -9,7 +9,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/plant/frequency_response.h"
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::robust {
 

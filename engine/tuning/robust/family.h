@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/expected.h"
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/local_minimum.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/numerics/local_minimum.h"
 #include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/expected.h"
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {

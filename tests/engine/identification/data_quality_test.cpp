@@ -1,12 +1,12 @@
 // What a record shows before any fit, and what is done about it.
-#include "engine/identification/data_quality.h"
+#include "engine/identification/record/data_quality.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "engine/identification/false_readings.h"
+#include "engine/identification/record/false_readings.h"
 #include "tests/engine/identification/simulated_record.h"
 
 namespace tunewright {

@@ -1,6 +1,6 @@
 // Closed loops: found, warned of, identified where set points move, refused where nothing but feedback moves u. Loops
 // and open-loop tests are simulated from seeds (tests/records/closed_loop_records.h).
-#include "engine/identification/feedback.h"
+#include "engine/identification/closed_loop/feedback.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "engine/identification/identify.h"
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 #include "tests/engine/identification/record_files.h"
 #include "tests/engine/identification/simulated_record.h"
 #include "tests/records/closed_loop_records.h"

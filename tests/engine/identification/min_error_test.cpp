@@ -1,6 +1,6 @@
 // Reductions by least difference of step responses: Jin & Son's three processes against an independent optimisation,
 // closed forms, properties, refusals.
-#include "engine/identification/min_error.h"
+#include "engine/reduction/min_error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/identification/step_difference.h"
+#include "engine/reduction/step_difference.h"
 
 namespace tunewright {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/identification/record.h"
+#include "engine/identification/record/record.h"
 #include "tests/test_data.h"
 
 namespace tunewright::testing {

@@ -1,5 +1,5 @@
 // Records of every kind, told apart by u and by what y does when u moves.
-#include "engine/identification/record_kind.h"
+#include "engine/identification/record/record_kind.h"
 
 #include <gtest/gtest.h>
 

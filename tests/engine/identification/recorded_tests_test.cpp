@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "engine/identification/identify.h"
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 #include "tests/engine/identification/record_files.h"
 
 namespace tunewright {

@@ -1,5 +1,5 @@
 // Reduction to the forms of the rules: published examples of the half rule, exact tangents, error paths.
-#include "engine/identification/reduction.h"
+#include "engine/reduction/reduction.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "engine/identification/excited_band.h"
-#include "engine/tune.h"
+#include "engine/identification/fit/excited_band.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/identification/record.h"
+#include "engine/identification/record/record.h"
 
 namespace tunewright::testing {
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "engine/identification/fit/residual_noise.h"
+#include "engine/identification/fit/response.h"
 #include "engine/identification/identify.h"
-#include "engine/identification/input_limits.h"
-#include "engine/identification/record_start.h"
-#include "engine/identification/residual_noise.h"
-#include "engine/identification/response.h"
-#include "engine/plant/linear_plant.h"
-#include "engine/tune.h"
+#include "engine/identification/record/input_limits.h"
+#include "engine/identification/record/record_start.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/request/tune.h"
 #include "tests/engine/identification/simulated_record.h"
 
 namespace tunewright {

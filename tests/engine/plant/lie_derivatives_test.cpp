@@ -1,5 +1,5 @@
 // Relative degrees and Lie derivatives against formulas derived by hand.
-#include "engine/plant/lie_derivatives.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
 
 #include <gtest/gtest.h>
 

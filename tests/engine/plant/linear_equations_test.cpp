@@ -1,9 +1,9 @@
 // A linear plant written as equations is the same plant.
-#include "engine/plant/linear_equations.h"
+#include "engine/plant/nonlinear/linear_equations.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/plant/lie_derivatives.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
 
 namespace tunewright {
 namespace {

@@ -1,11 +1,11 @@
 // LinearPlant: factors and realisation describe the same transfer function as the user's numbers.
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/plant/linear_algebra.h"
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -1,12 +1,12 @@
 // Linear systems in any units.
-#include "engine/plant/matrix_scaling.h"
+#include "engine/numerics/matrix_scaling.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "engine/plant/linear_algebra.h"
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -1,12 +1,12 @@
 // Multiple roots on one point, and simple ones left alone.
-#include "engine/plant/multiple_roots.h"
+#include "engine/numerics/multiple_roots.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/plant/linear_algebra.h"
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

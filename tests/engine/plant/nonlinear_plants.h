@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "engine/plant/nonlinear_system.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
 
 namespace tunewright {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "engine/plant/lie_derivatives.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -1,11 +1,11 @@
 // A nonlinear plant's steady state and linearisation against independently computed values.
-#include "engine/plant/nonlinear_system.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/plant/linear_plant.h"
+#include "engine/plant/linear/linear_plant.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 
 namespace tunewright {
 namespace {

@@ -1,6 +1,6 @@
 // The loop with actuator limits against a plain simulation with tiny steps, against the loop without limits, and
 // against cases known in closed form.
-#include "engine/simulation/limited_response.h"
+#include "engine/simulation/limited/limited_response.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/simulation/indices.h"
+#include "engine/simulation/linear/indices.h"
 
 namespace tunewright {
 namespace {

@@ -1,5 +1,5 @@
 // The loop under input/output linearisation: its output is the linear target's, its input what the paper's plant needs.
-#include "engine/simulation/linearising_response.h"
+#include "engine/simulation/nonlinear/linearising_response.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "engine/simulation/nonlinear_experiments.h"
+#include "engine/simulation/experiment/nonlinear_experiments.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "engine/identification/identify.h"
-#include "engine/plant/linear_equations.h"
-#include "engine/simulation/step_response.h"
+#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/simulation/linear/step_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

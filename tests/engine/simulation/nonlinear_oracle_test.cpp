@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/simulation/nonlinear_response.h"
+#include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/engine/simulation/cvode.h"
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/nonlinear_response.h"
+#include "engine/simulation/nonlinear/nonlinear_response.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/plant/linear_equations.h"
-#include "engine/simulation/indices.h"
+#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/simulation/linear/indices.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/test_data.h"
 

@@ -1,4 +1,4 @@
-#include "engine/simulation/npid_response.h"
+#include "engine/simulation/nonlinear/npid_response.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/controller/error_scaling.h"
-#include "engine/simulation/indices.h"
+#include "engine/simulation/linear/indices.h"
 
 namespace tunewright {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/simulation/ode_integrator.h"
+#include "engine/numerics/ode_integrator.h"
 
 #include <gtest/gtest.h>
 

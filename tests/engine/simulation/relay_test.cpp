@@ -5,10 +5,10 @@
 #include <complex>
 #include <numbers>
 
-#include "engine/plant/linear_plant.h"
-#include "engine/simulation/relay.h"
-#include "engine/simulation/relay_plan.h"
-#include "engine/simulation/relay_sampled.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/simulation/relay/relay.h"
+#include "engine/simulation/relay/relay_plan.h"
+#include "engine/simulation/relay/relay_sampled.h"
 
 namespace tunewright {
 namespace {

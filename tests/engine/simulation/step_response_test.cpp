@@ -1,5 +1,5 @@
 // The exact open-loop step response against closed formulas.
-#include "engine/simulation/step_response.h"
+#include "engine/simulation/linear/step_response.h"
 
 #include <gtest/gtest.h>
 

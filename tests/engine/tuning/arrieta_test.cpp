@@ -6,9 +6,9 @@
 
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
-#include "engine/tuning/arrieta_rule.h"
-#include "engine/tuning/method.h"
-#include "engine/tuning/tradeoff.h"
+#include "engine/tuning/arrieta/arrieta_rule.h"
+#include "engine/tuning/arrieta/tradeoff.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright {
 namespace {

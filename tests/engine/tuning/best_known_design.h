@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/cost.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/scan.h"

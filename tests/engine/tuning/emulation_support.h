@@ -5,8 +5,8 @@
 
 #include <memory>
 
-#include "engine/plant/nonlinear_system.h"
-#include "engine/tuning/method.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright {
 

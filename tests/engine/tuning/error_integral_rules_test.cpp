@@ -1,10 +1,10 @@
 // Rules fitted to optima of error integrals: the published constants, and that their settings are near the optimum that
 // they claim.
-#include "engine/identification/local_minimum.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
-#include "engine/simulation/indices.h"
-#include "engine/simulation/linear_response.h"
+#include "engine/numerics/local_minimum.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/linear/linear_response.h"
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {

@@ -1,13 +1,13 @@
-#include "engine/tuning/npid_rule.h"
+#include "engine/tuning/npid/npid_rule.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "engine/evaluate.h"
+#include "engine/evaluation/evaluate.h"
 #include "engine/loop/stability.h"
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

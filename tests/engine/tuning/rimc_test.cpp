@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "engine/tune.h"
-#include "engine/tuning/rimc_branch.h"
+#include "engine/request/tune.h"
+#include "engine/tuning/rimc/rimc_branch.h"
 
 namespace tunewright {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "engine/evaluate.h"
-#include "engine/tuning/robust.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/tuning/robust/robust.h"
 
 namespace tunewright {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/loop/measured_loop.h"
-#include "engine/tune.h"
+#include "engine/request/tune.h"
 
 namespace tunewright {
 namespace {

@@ -1,13 +1,13 @@
 // Robust design: properties that hold for any plant, the honest ways of having no answer, and the small solvers it is
 // made of.
-#include "engine/tuning/robust.h"
+#include "engine/tuning/robust/robust.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/evaluate.h"
-#include "engine/identification/local_minimum.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/numerics/local_minimum.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep.h"
 

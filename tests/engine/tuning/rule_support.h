@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright::test {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/tuning/method.h"
+#include "engine/tuning/method/method.h"
 #include "tests/engine/tuning/reference_batch.h"
 #include "tests/engine/tuning/rule_support.h"
 

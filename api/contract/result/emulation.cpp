@@ -1,0 +1,228 @@
+#include "api/contract/result/emulation.h"
+
+#include "api/contract/controller.h"
+#include "api/contract/plant/plant.h"
+
+namespace tunewright::api {
+namespace {
+
+// Left out where there is nothing to say.
+Codec<std::string> words_if_any() {
+    return unless<std::string>(words(), [](const std::string& value) { return value.empty(); });
+}
+
+Codec<std::vector<double>> trace_if_any() {
+    return unless<std::vector<double>>(trace(), [](const std::vector<double>& values) { return values.empty(); });
+}
+
+using Values = std::map<std::string, double>;
+
+Codec<Values> values(const char* keys) { return numbers_by_name(keys); }
+
+Codec<Values> values_if_any(const char* keys) {
+    return unless<Values>(values(keys), [](const Values& map) { return map.empty(); });
+}
+
+void write_pair(double first, double second, Writer& out) {
+    out.begin_array();
+    out.number(first);
+    out.number(second);
+    out.end_array();
+}
+
+Json pair_of_numbers() {
+    return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+}
+
+Codec<std::map<std::string, NumberRange>> ranges() {
+    return {{},
+            [](const std::map<std::string, NumberRange>& map, Writer& out) {
+                out.begin_object();
+                for (const auto& [name, range] : map) {
+                    out.key(name);
+                    write_pair(range.low, range.high, out);
+                }
+                out.end_object();
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "object"},
+                            {"description", "Symbol of the parameter."},
+                            {"additionalProperties", pair_of_numbers()}};
+            }};
+}
+
+Codec<std::vector<std::complex<double>>> complex_numbers() {
+    return {{},
+            [](const std::vector<std::complex<double>>& numbers, Writer& out) {
+                out.begin_array();
+                for (const auto& z : numbers)
+                    z.imag() == 0 ? out.number(z.real()) : write_pair(z.real(), z.imag(), out);
+                out.end_array();
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "array"},
+                            {"items", {{"oneOf", Json::array({Json{{"type", "number"}}, pair_of_numbers()})}}}};
+            }};
+}
+
+const Description<ActiveBound>& active_bound_contract() {
+    static const auto description = [] {
+        Description<ActiveBound> d("ActiveBound", "A bound that the optimum lies on.");
+        d.field("parameter", &ActiveBound::parameter, words(), "Kp, Ti, Td or Tf.")
+            .field(
+                "bound", {}, [](const ActiveBound& at, Writer& out) { out.text(at.high ? "high" : "low"); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}, {"enum", {"low", "high"}}};
+                },
+                "Which end.")
+            .field("value", &ActiveBound::value, only_answered(number()), "Its value.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<EmulationFit>& fit_contract() {
+    static const auto description = [] {
+        using F = EmulationFit;
+        Description<F> d("EmulationFit", "How much of the nonlinear controller's action the PID's leaves (Remark 7).");
+        d.field("u_left", &F::u_left, only_answered(number()),
+                "int (u_nl - u)^2 dt over int (u_nl - u_rest)^2 dt, mean over the scenarios.")
+            .field("y_left", &F::y_left, only_answered(number()),
+                   "int (y_nl - y)^2 dt over int (y_nl - y_rest)^2 dt, mean over the scenarios.")
+            .field("adequate", &F::adequate, only_answered(boolean()), "Whether a PID is enough.")
+            .field("sentence", &F::sentence, words(), "The judgement with its figure.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<LevelOneRow>& level_one_contract() {
+    static const auto description = [] {
+        using R = LevelOneRow;
+        Description<R> d("LevelOneRow",
+                         "Classical settings beside the emulating ones, on the same plant and scenario.");
+        d.field("method", &R::method, words(), "Id of the method.")
+            .field(
+                "test", {}, [](const R& row, Writer& out) { out.text(row.test); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}, {"enum", {"step", "relay", "linear"}}};
+                },
+                "What its model comes from: a simulated step test, a simulated relay test, the linearisation.")
+            .field("title", &R::title, words(), "Its name.")
+            .field("model", &R::model, maybe(only_answered(one_of(plant_contract()))), "What the rule worked on.")
+            .field("controller", &R::controller, maybe(only_answered(one_of(controller_contract()))), "The settings.")
+            .field("error", &R::error, words_if_any(), "Why there are none.")
+            .field("J", &R::J, figure(), "As of the answer.")
+            .field("ended", &R::ended, words_if_any(), "Why its run ended before the horizon.")
+            .field("t", &R::t, trace_if_any(), "Time, first scenario.", {.unit = "time"})
+            .field("y", &R::y, trace_if_any(), "Output, absolute.", {.unit = "y"})
+            .field("u", &R::u, trace_if_any(), "Input, absolute.", {.unit = "u"})
+            .why_null("There is no run to the horizon.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<EmulatedScenario>& scenario_contract() {
+    static const auto description = [] {
+        using S = EmulatedScenario;
+        Description<S> d("EmulatedScenario", "A run that the optimum is averaged over; y and u absolute.");
+        d.field("setpoint_step", &S::setpoint_step, only_answered(number()), "From its steady state.", {.unit = "y"})
+            .field("initial", &S::initial, values_if_any("State."), "States at t = 0; the others are steady.")
+            .field("parameters", &S::parameters, values_if_any("Parameter."), "Other values of the plant's parameters.")
+            .field("y_rest", &S::y_rest, only_answered(number()), "Output at its steady state.", {.unit = "y"})
+            .field("u_rest", &S::u_rest, only_answered(number()), "Input there.", {.unit = "u"})
+            .field("limited", &S::limited, only_answered(boolean()), "Whether limits clip the nonlinear controller.")
+            .field("ended", &S::ended, words_if_any(), "Why the PID's run ended before the horizon.")
+            .field("t", &S::t, trace_if_any(), "Time.", {.unit = "time"})
+            .field("y_nl", &S::y_nl, trace_if_any(), "Output under the nonlinear controller.", {.unit = "y"})
+            .field("u_nl", &S::u_nl, trace_if_any(), "Input under it.", {.unit = "u"})
+            .field("y", &S::y, trace_if_any(), "Output under the PID.", {.unit = "y"})
+            .field("u", &S::u, trace_if_any(), "Input under it.", {.unit = "u"});
+        return d;
+    }();
+    return description;
+}
+
+// A trace of the first scenario at the entry's own level.
+void first_scenario(Description<EmulationReport>& d, const char* name, std::vector<double> EmulatedScenario::*member,
+                    const char* sentence, const char* unit) {
+    d.field(
+        name, {},
+        [member](const EmulationReport& report, Writer& out) { trace().write(report.scenarios.front().*member, out); },
+        trace().schema, sentence, {.unit = unit},
+        [member](const EmulationReport& report) {
+            return report.scenarios.empty() || (report.scenarios.front().*member).empty();
+        });
+}
+
+void add_criterion(Description<EmulationReport>& d) {
+    using R = EmulationReport;
+    d.field("formulation", &R::formulation, words(), "full or remark6.")
+        .field("J", &R::J, only_answered(number()), "wy J_y + wu J_u, mean over the scenarios.")
+        .field("J_y", &R::J_y, figure(), "int (y_nl - y)^2 dt.", {.unit = "y^2 time"})
+        .field("J_u", &R::J_u, only_answered(number()), "int (u_nl - u)^2 dt.", {.unit = "u^2 time"})
+        .field(
+            "weights", {},
+            [](const R& report, Writer& out) {
+                out.begin_object();
+                out.key("wy");
+                out.number(report.wy);
+                out.key("wu");
+                out.number(report.wu);
+                out.end_object();
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "object"},
+                            {"properties", {{"wy", {{"type", "number"}}}, {"wu", {{"type", "number"}}}}}};
+            },
+            "Of the two parts.")
+        .field("horizon", &R::horizon, only_answered(number()), "Where the integrals end.", {.unit = "time"});
+}
+
+}  // namespace
+
+const Description<EmulationReport>& emulation_contract() {
+    static const auto description = [] {
+        using R = EmulationReport;
+        Description<R> d("Emulation", "How the PID emulates the nonlinear controller, and what it was chosen from.");
+        add_criterion(d);
+        d.field("active_bounds", &R::active_bounds, list_of(answer(active_bound_contract())), "Bounds that hold it.")
+            .field("bounds", &R::bounds, ranges(), "Where the optimum was searched.")
+            .field("flatness", &R::flatness, values("Symbol of the parameter."),
+                   "Change of one parameter for which J rises by 5 %, the others re-optimised.")
+            .field("flatness_alone", &R::flatness_alone, values("Symbol of the parameter."),
+                   "The same with the others fixed.")
+            .field("relative_degree", &R::relative_degree, only_answered(integer(1, 100)),
+                   "Order of the first derivative of y that u enters.")
+            .field("zero_dynamics_stable", &R::zero_dynamics_stable, only_answered(boolean()),
+                   "Whether all zeros of the linearisation lie in the open left half-plane.")
+            .field("zeros", &R::zeros, complex_numbers(), "Of the linearisation.", {.unit = "1/time"})
+            .field(
+                "target", {},
+                [](const R& report, Writer& out) {
+                    out.begin_object();
+                    out.key("beta");
+                    out.begin_array();
+                    for (const double beta : report.beta) out.number(beta);
+                    out.end_array();
+                    out.end_object();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "object"},
+                                {"properties", {{"beta", {{"type", "array"}, {"items", {{"type", "number"}}}}}}}};
+                },
+                "beta_r y^(r) + ... + beta_1 y' + beta_0 y = set point under the nonlinear controller.")
+            .field("fit", &R::fit, answer(fit_contract()), "Remark 7.")
+            .field("level1", &R::level1, list_of(answer(level_one_contract())), "The first level.")
+            .field("scenarios", &R::scenarios, list_of(answer(scenario_contract())), "The second level's runs.");
+        first_scenario(d, "t", &EmulatedScenario::t, "Time of the first scenario.", "time");
+        first_scenario(d, "y_nl", &EmulatedScenario::y_nl, "Its output under the nonlinear controller, absolute.", "y");
+        first_scenario(d, "u_nl", &EmulatedScenario::u_nl, "Its input, absolute.", "u");
+        d.why_null("Remark 6 leaves the output out.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,355 @@
+#include "api/contract/result/evaluation.h"
+
+#include "api/contract/plant/plant.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr const char* kNoFigure = "Infinite or not defined for this loop.";
+
+using Tolerates = Robustness::Tolerates;
+
+std::string reason(const WhyNull& reasons, const char* field) {
+    const auto at = reasons.find(field);
+    return at == reasons.end() ? kNoFigure : at->second;
+}
+
+void write_figure(const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); }
+
+// The limits are the margins seen from the plant: a missing one has the margin's reason.
+void write_tolerates(const Robustness& robustness, Writer& out) {
+    const Tolerates& tolerates = robustness.tolerates;
+    out.begin_object();
+    out.key("gain");
+    out.begin_array();
+    write_figure(tolerates.gain_low, out);
+    write_figure(tolerates.gain_high, out);
+    out.end_array();
+    out.key("extra_dead_time");
+    write_figure(tolerates.extra_dead_time, out);
+    const bool gain = !tolerates.gain_low || !tolerates.gain_high, dead_time = !tolerates.extra_dead_time;
+    if (gain || dead_time) {
+        out.key("why_null");
+        out.begin_object();
+        if (gain) {
+            out.key("gain");
+            out.text(reason(robustness.why_null, tolerates.gain_high ? "gain_margin_low" : "gain_margin"));
+        }
+        if (dead_time) {
+            out.key("extra_dead_time");
+            out.text(reason(robustness.why_null, "delay_margin"));
+        }
+        out.end_object();
+    }
+    out.end_object();
+}
+
+Json tolerates_schema(SchemaBook&) {
+    const Json figure{{"type", {"number", "null"}}};
+    Json gain{{"type", "array"},
+              {"items", figure},
+              {"minItems", 2},
+              {"maxItems", 2},
+              {"description", "Factors of the plant's gain, lowest and highest."}};
+    Json dead_time = figure;
+    dead_time["description"] = "Dead time that may come on top.";
+    dead_time["x-unit"] = "time";
+    return {{"type", "object"},
+            {"properties",
+             {{"gain", gain},
+              {"extra_dead_time", dead_time},
+              {"why_null", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
+            {"required", {"gain", "extra_dead_time"}},
+            {"additionalProperties", false}};
+}
+
+const Description<SetpointPerformance>& setpoint_contract() {
+    static const auto description = [] {
+        using P = SetpointPerformance;
+        Description<P> d("SetpointPerformance", "Of the response to the set-point step.");
+        d.field("IAE", &P::IAE, figure(), "Integral of |r - y|.", {.unit = "y time"})
+            .field("ISE", &P::ISE, figure(), "Integral of (r - y)^2.", {.unit = "y^2 time"})
+            .field("ITAE", &P::ITAE, figure(), "Integral of t |r - y|.", {.unit = "y time^2"})
+            .field("overshoot_percent", &P::overshoot_percent, figure(), "Beyond r, in percent of the step.",
+                   {.unit = "%"})
+            .field("rise_time", &P::rise_time, figure(), "From 10 to 90 % of the step.", {.unit = "time"})
+            .field("rise_time_5_95", &P::rise_time_5_95, figure(), "From 5 to 95 % of the step.", {.unit = "time"})
+            .field("settling_time", &P::settling_time, figure(), "Last time outside 2 % of the step.", {.unit = "time"})
+            .field("TV", &P::TV, figure(), "Total variation of u, the jump at 0 included.", {.unit = "u"})
+            .field("first_move", &P::first_move, figure(), "u(0+).", {.unit = "u"})
+            .why_null(&P::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<NoisePerformance>& noise_contract() {
+    static const auto description = [] {
+        using P = NoisePerformance;
+        Description<P> d("NoisePerformance", "What measurement noise does to u.");
+        d.field("u_std", &P::u_std, figure(), "Standard deviation of u.", {.unit = "u"})
+            .field("gain", &P::gain, figure(), "Ratio of the standard deviations of u and the noise.", {.unit = "u/y"})
+            .why_null(&P::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<Trace>& trace_contract() {
+    static const auto description = [] {
+        Description<Trace> d("Trace", "A response, six significant digits.");
+        d.field("t", &Trace::t, trace(), "Time from the step.", {.unit = "time"})
+            .field("y", &Trace::y, trace(), "Measurement.", {.unit = "y"})
+            .field("u", &Trace::u, trace(), "Controller output.", {.unit = "u"});
+        return d;
+    }();
+    return description;
+}
+
+void write_loop_gain(const FrequencyTraces& traces, Writer& out) {
+    out.begin_object();
+    out.key("re");
+    out.trace(traces.L_re);
+    out.key("im");
+    out.trace(traces.L_im);
+    out.key("phase_deg");
+    out.trace(traces.L_phase_deg);
+    out.end_object();
+}
+
+Json loop_gain_schema(SchemaBook& book) {
+    const Json column = trace().schema(book);
+    return {{"type", "object"},
+            {"properties", {{"re", column}, {"im", column}, {"phase_deg", column}}},
+            {"required", {"re", "im", "phase_deg"}},
+            {"additionalProperties", false}};
+}
+
+}  // namespace
+
+const Description<Robustness>& robustness_contract() {
+    static const auto description = [] {
+        using R = Robustness;
+        Description<R> d("Robustness", "Suprema over 0 <= omega <= infinity, and margins over all crossings.");
+        d.field("stable", &R::stable, boolean(), "Whether the closed loop is stable.")
+            .field("Ms", &R::Ms, figure(), "Largest |S|, S = 1/(1 + P C).")
+            .field("omega_Ms", &R::omega_Ms, figure(), "Where.", {.unit = "rad/time"})
+            .field("Mt", &R::Mt, figure(), "Largest |T|, T = P C/(1 + P C).")
+            .field("omega_Mt", &R::omega_Mt, figure(), "Where.", {.unit = "rad/time"})
+            .field("Mks", &R::Mks, figure(), "Largest |C S|.", {.unit = "u/y"})
+            .field("gain_margin", &R::gain_margin, figure(), "Smallest factor > 1 of the gain that loses stability.")
+            .field("gain_margin_low", &R::gain_margin_low, figure(), "Largest factor < 1 that does.")
+            .field("phase_margin_deg", &R::phase_margin_deg, figure(), "Smallest over all crossings.", {.unit = "deg"})
+            .field("delay_margin", &R::delay_margin, figure(), "Smallest over all crossings.", {.unit = "time"})
+            .field("gain_crossover", &R::gain_crossover, figure(), "Where |P C| = 1.", {.unit = "rad/time"})
+            .field("phase_crossover", &R::phase_crossover, figure(), "Where P C crosses -180 degrees.",
+                   {.unit = "rad/time"})
+            .field(
+                "binding", {}, [](const R& value, Writer& out) { out.text(value.binding); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}};
+                },
+                "Which limit holds the design.", {}, [](const R& value) { return value.binding.empty(); })
+            .field("tolerates", {}, write_tolerates, tolerates_schema,
+                   "Model errors that leave the loop stable, one at a time.")
+            .why_null(&R::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<LoadPerformance>& load_contract() {
+    static const auto description = [] {
+        using P = LoadPerformance;
+        Description<P> d("LoadPerformance", "Of the response to the load step at the plant's input.");
+        d.field("IAE", &P::IAE, figure(), "Integral of |y|.", {.unit = "y time"})
+            .field("ISE", &P::ISE, figure(), "Integral of y^2.", {.unit = "y^2 time"})
+            .field("ITAE", &P::ITAE, figure(), "Integral of t |y|.", {.unit = "y time^2"})
+            .field("peak", &P::peak, figure(), "Largest deviation, signed.", {.unit = "y"})
+            .field("recovery_time", &P::recovery_time, figure(), "Last time outside 2 % of the peak.", {.unit = "time"})
+            .field("TV", &P::TV, figure(), "Total variation of u.", {.unit = "u"})
+            .why_null(&P::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<Performance>& performance_contract() {
+    static const auto description = [] {
+        Description<Performance> d("Performance",
+                                   "Figures of the two step responses and, where noise was asked for, of the noise.");
+        d.field("setpoint", &Performance::setpoint, answer(setpoint_contract()), "Of the set-point step.")
+            .field("load", &Performance::load, answer(load_contract()), "Of the load step.")
+            .field("noise", &Performance::noise, maybe(answer(noise_contract())), "Of the measurement noise.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<Responses>& responses_contract() {
+    static const auto description = [] {
+        Description<Responses> d("Responses", "Both step responses, from t = 0 at the step.");
+        d.field("setpoint", &Responses::setpoint, answer(trace_contract()), "To the set-point step.")
+            .field("load", &Responses::load, answer(trace_contract()), "To the load step.")
+            .field("settles", &Responses::settles, Codec<bool>{{}, boolean().write, boolean().schema},
+                   "False: the horizon ends before the responses do.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<LinearisedResponse>& linear_contract() {
+    static const auto description = [] {
+        using R = LinearisedResponse;
+        Description<R> d(
+            "LinearResponse",
+            "What the linearisation of a nonlinear plant does with the same controller, steps and limits.");
+        d.field("performance", &R::performance, answer(performance_contract()), "Figures of its responses.")
+            .field("responses", &R::responses, maybe(answer(responses_contract())),
+                   "Its traces; left out with points 0 and for unstable loops.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<FrequencyTraces>& frequency_contract() {
+    static const auto description = [] {
+        using F = FrequencyTraces;
+        Description<F> d("Frequency", "The loop over frequency, six significant digits.");
+        d.field("omega", &F::omega, trace(), "Angular frequency.", {.unit = "rad/time"})
+            .field("L", {}, write_loop_gain, loop_gain_schema, "Loop gain P C; the phase is unwrapped.")
+            .field("S_abs", &F::S_abs, trace(), "|S|.")
+            .field("T_abs", &F::T_abs, trace(), "|T|.")
+            .field("CS_abs", &F::CS_abs, trace(), "|C S|.", {.unit = "u/y"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<NonlinearFigures>& nonlinear_contract() {
+    static const auto description = [] {
+        using N = NonlinearFigures;
+        const auto given = [](auto codec) {
+            codec.read = {};
+            return codec;
+        };
+        Description<N> d("Nonlinear",
+                         "Of the form npid, whose linear part is stable: the integral sees k e with k between 0 (large "
+                         "errors) and 1 (small ones). Do errors of every size die out?");
+        d.field("delta_r", &N::delta_r, only_answered(number()), "The error's measure, as used.", {.unit = "y"})
+            .field(
+                "sector", {},
+                [](const N&, Writer& out) {
+                    out.begin_array();
+                    out.integer(0);
+                    out.integer(1);
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+                },
+                "Between which gains the integral's input lies.")
+            .field("stable_without_integral", &N::stable_without_integral, given(boolean()),
+                   "Whether proportional and derivative action alone keep the loop stable.")
+            .field(
+                "circle_criterion", &N::circle_criterion, given(boolean()),
+                "Holds: Re G > -1 at all frequencies, G = (Ki/s) P/(1 + P C) with C without integral. Then every error "
+                "dies out.")
+            .field("popov_criterion", &N::popov_criterion, given(boolean()),
+                   "Holds: Re (1 + j omega q) G > -1 for some q >= 0. The same conclusion, less conservative.")
+            .field("popov_q", &N::popov_q, figure(), "Such a q.", {.unit = "time"})
+            .field("limit_cycle_predicted", &N::limit_cycle_predicted, given(boolean()),
+                   "The describing function's prediction, an approximation: some integral gain below 1 makes the "
+                   "loop oscillate.")
+            .field("limit_cycle_amplitude", &N::limit_cycle_amplitude, figure(), "Of y; larger errors may grow.",
+                   {.unit = "y"})
+            .field("limit_cycle_omega", &N::limit_cycle_omega, figure(), "Its frequency.", {.unit = "rad/time"})
+            .field(
+                "statement", {}, [](const N& value, Writer& out) { out.text(value.statement); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}};
+                },
+                "What follows, in a sentence.")
+            .why_null(&N::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<IndexErrors>& index_errors_contract() {
+    static const auto description = [] {
+        using E = IndexErrors;
+        Description<E> d("IndexErrors",
+                         "Relative change of each index when every time step, and its quadrature with it, was last "
+                         "halved: the error that is left is below it or 1e-6, whichever is larger.");
+        d.field("IAE", &E::IAE, figure(), "Promised: 1e-5 or less.")
+            .field("ISE", &E::ISE, figure(), "Promised: 1e-5 or less.")
+            .field("ITAE", &E::ITAE, figure(), "Promised: 2e-5 or less.")
+            .field("TV", &E::TV, figure(), "Promised: 5e-5 or less.")
+            .why_null("The index has no value, or was checked step by step instead (on a nonlinear plant).");
+        return d;
+    }();
+    return description;
+}
+
+const Description<Verification>& verification_contract() {
+    static const auto description = [] {
+        using V = Verification;
+        Description<V> d("Verification", "How the figures were checked.");
+        d.field("setpoint_errors", &V::setpoint_errors, answer(index_errors_contract()),
+                "How exact the indices of the set-point response are.")
+            .field("load_errors", &V::load_errors, answer(index_errors_contract()),
+                   "How exact the indices of the load response are.")
+            .field("iae_step_halving", &V::iae_step_halving, figure(),
+                   "Relative change of the load IAE when every time step is halved.")
+            .field("load_error_keeps_sign", &V::load_error_keeps_sign, truth_figure(),
+                   "Whether the error after the load step keeps its sign: then its IAE is exactly d Ti/Kp (in "
+                   "magnitude), however slow the tail.")
+            .field("ie_identity", &V::ie_identity, figure(), "Relative difference of the integral of y and d Ti/Kp.")
+            .field("ms_grid_difference", &V::ms_grid_difference, figure(),
+                   "Relative difference of Ms on an independent grid.")
+            .field("stability_methods_agree", &V::stability_methods_agree, truth_figure(),
+                   "Whether two independent stability tests agree.")
+            .why_null("This check does not apply to this loop.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<RegionFigures>& region_contract() {
+    static const auto description = [] {
+        using R = RegionFigures;
+        Description<R> d("Region",
+                         "The controller on all plants that it must serve: of a set, of uncertainty ranges, or of the "
+                         "95 % confidence region of a record.");
+        d.field(
+             "stable_fraction", &R::stable_fraction, only_answered(number()),
+             "Fraction of the plants (of the region's volume, by samples) whose loop is stable, 0 to 1; 1 only where "
+             "no unstable one was found.")
+            .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all plants looked at.")
+            .field("worst_plant", &R::worst_plant, only_answered(one_of(plant_contract())),
+                   "The plant of that Ms, or one whose loop is unstable.")
+            .why_null(&R::why_null, kNoFigure);
+        return d;
+    }();
+    return description;
+}
+
+const Description<Warning>& warning_contract() {
+    static const auto description = [] {
+        Description<Warning> d("Warning", "A remark: a code for programs, a sentence for people.");
+        const auto words = [] {
+            return Codec<std::string>{{}, text(0).write, [](SchemaBook&) { return Json{{"type", "string"}}; }};
+        };
+        d.field("code", &Warning::code, words(), "Stable, in kebab-case.")
+            .field("detail", &Warning::detail, words(), "One sentence with the figures.")
+            .field(
+                "level", &Warning::level,
+                only_answered(choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}})),
+                "bad: what it belongs to is not to be used as it stands.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,31 @@
+// Answers of the contract: a tuning result, evaluated controllers, an identified model.
+#pragma once
+
+#include <string>
+
+#include "api/contract/record.h"
+#include "engine/request/tune.h"
+
+namespace tunewright::api {
+
+/// A tuning result with what only the request knew.
+struct ResultAnswer {
+    TuningResult result;
+    std::optional<Units> units;
+    std::string request_hash;
+};
+
+struct EvaluateAnswer {
+    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
+    std::vector<TuningEntry> controllers;           ///< without a method
+};
+
+struct IdentifyAnswer {
+    IdentifiedModel model;
+};
+
+const Description<ResultAnswer>& result_contract();
+const Description<EvaluateAnswer>& evaluate_answer_contract();
+const Description<IdentifyAnswer>& identify_answer_contract();
+
+}  // namespace tunewright::api

@@ -1,0 +1,77 @@
+#include "api/contract/result/rimc.h"
+
+#include "api/contract/result/evaluation.h"
+
+namespace tunewright::api {
+namespace {
+
+const Description<DisturbancePeakCurve>& curve_contract() {
+    static const auto description = [] {
+        using C = DisturbancePeakCurve;
+        Description<C> d(
+            "DisturbancePeakCurve",
+            "The load response's peak and Ms of this design over its parameter, on the model; scaled, so that "
+            "they depend on L/T alone.");
+        d.field("lambda_over_tau", &C::lambda_over_tau, trace(), "lambda over the model's T.")
+            .field("DP_over_kp", &C::DP_over_kp, trace(), "Peak of y after a unit load step over the model's gain.")
+            .field("Ms", &C::Ms, trace(), "Largest |S|.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<FullController>& full_controller_contract() {
+    static const auto description = [] {
+        using F = FullController;
+        Description<F> d(
+            "FullController",
+            "The controller of Eq. 23, with the model's dead time inside, on the plant as given: what the PID "
+            "approximates.");
+        d.field("robustness", &F::robustness, answer(robustness_contract()), "Peaks and margins.")
+            .field("load", &F::load, answer(load_contract()), "Of the response to the load step.")
+            .field("responses", &F::responses, maybe(answer(responses_contract())),
+                   "Traces over time; left out with points 0 and for unstable loops.");
+        return d;
+    }();
+    return description;
+}
+
+// An object or null, which why_null explains.
+Codec<std::optional<FullController>> full_controller() {
+    const auto inner = answer(full_controller_contract());
+    Codec<std::optional<FullController>> codec;
+    codec.write = [write = inner.write](const auto& value, Writer& out) { value ? write(*value, out) : out.null(); };
+    codec.schema = [schema = inner.schema](SchemaBook& book) {
+        return Json{{"oneOf", {schema(book), Json{{"type", "null"}}}}};
+    };
+    codec.undefined = [](const auto& value) { return !value.has_value(); };
+    return codec;
+}
+
+}  // namespace
+
+const Description<RimcEntry>& rimc_contract() {
+    static const auto description = [] {
+        using R = RimcEntry;
+        Description<R> d("Rimc", "Figures of the PID, with its filter, on the model that it was designed for.");
+        d.field("lambda", &R::lambda, only_answered(number()), "Time constant of the closed loop.", {.unit = "time"})
+            .field("Ms", &R::Ms, figure(), "Largest |S|.")
+            .field("disturbance_peak", &R::disturbance_peak, figure(),
+                   "Largest deviation of y after a unit load step, signed.", {.unit = "y/u"})
+            .field("dead_time_error", &R::dead_time_error, figure(),
+                   "Error of the model's dead time up to which Eq. 29 of the source holds (the one asked for, if one "
+                   "was): "
+                   "sufficient for stability, not necessary.",
+                   {.unit = "time"})
+            .field("stability_limit", &R::stability_limit, figure(), "lambda below which the loop is unstable.",
+                   {.unit = "time"})
+            .field("full_controller", &R::full_controller, full_controller(), "Beside the PID.")
+            .field("disturbance_peak_curve", &R::disturbance_peak_curve, maybe(answer(curve_contract())),
+                   "With the option curve.")
+            .why_null(&R::why_null, "Not defined for this design.");
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,73 @@
+#include "api/csv/columns/column_refusals.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "api/describe/suggest.h"
+
+namespace tunewright::api {
+namespace {
+
+template <std::size_t N>
+bool is_one_of(const std::string& word, const std::string_view (&list)[N]) {
+    return std::find(std::begin(list), std::end(list), word) != std::end(list);
+}
+
+std::vector<std::string> quoted_all(const std::vector<std::string>& texts) {
+    std::vector<std::string> out;
+    for (const std::string& text : texts) out.push_back(quoted(text));
+    return out;
+}
+
+// "Line 1 has 13 headings and the rows have 8 values".
+std::string surplus_counted(const CsvLayout& layout) {
+    return "Line " + std::to_string(layout.heading_line) + " has " +
+           std::to_string(layout.headings.size() + layout.surplus.size()) + " headings and the rows have " +
+           std::to_string(layout.headings.size()) + " values";
+}
+
+}  // namespace
+
+std::optional<CsvFault> one_line_a_tag(const ColumnFacts& facts) {
+    static constexpr std::string_view kTags[] = {"tagname",  "tag",    "varname", "pointname", "name",   "tag name",
+                                                 "variable", "series", "_field",  "entity_id", "metric", "signal",
+                                                 "point",    "sensor", "channel", "item",      "tagid",  "point name"};
+    static constexpr std::string_view kValues[] = {"value",  "varvalue", "wert", "vvalue",
+                                                   "_value", "state",    "val",  "reading"};
+    bool tag = false, value = false;
+    for (std::size_t i = 0; i < facts.size(); ++i) {
+        const std::string& name = facts.heading(i).name;
+        const ColumnProfile& p = facts.profile(i);
+        tag = tag || (p.text_changes > 0 && !facts.holds_numbers(i) && is_one_of(name, kTags));
+        value = value || is_one_of(name, kValues);
+    }
+    if (!tag || !value) return std::nullopt;
+    return CsvFault{"csv", "csv has one line for each tag and time (columns " + facts.headings_listed() +
+                               "); export it with one column for each tag, so that u and y stand in one line."};
+}
+
+std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value) {
+    if (value == 0 || value - 1 == time) return std::nullopt;
+    const std::size_t left = value - 1;
+    if (!facts.is_clock(left) || !run_apart(facts.text(), facts.layout(), time, left)) return std::nullopt;
+    return CsvFault{"csv", "csv has two clocks: " + facts.shown(value) + " has its own times in " + facts.shown(left) +
+                               ", which are not those of " + facts.shown(time) +
+                               ". Export all tags at common times (sampled or interpolated data), so that u and y "
+                               "stand in one line."};
+}
+
+std::string surplus_note(const CsvLayout& layout) {
+    return surplus_counted(layout) + ": they are read as those of the first " + std::to_string(layout.headings.size()) +
+           " headings, and " + listed(quoted_all(layout.surplus), "and") +
+           (layout.surplus.size() == 1 ? " has none." : " have none.");
+}
+
+CsvFault surplus_fault(const CsvLayout& layout) {
+    std::vector<std::string> headings = layout.headings;
+    headings.insert(headings.end(), layout.surplus.begin(), layout.surplus.end());
+    return {"csv", surplus_counted(layout) + ", so which belongs to which is open: headings " +
+                       listed(quoted_all(headings), "and") + "; values " + listed(quoted_all(layout.first), "and") +
+                       ". Give each column one heading."};
+}
+
+}  // namespace tunewright::api

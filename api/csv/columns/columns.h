@@ -1,0 +1,32 @@
+// Which columns of a CSV file hold time, controller output and measurement.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/csv/columns/column_facts.h"
+#include "api/csv/columns/heading.h"
+#include "api/csv/record.h"
+#include "api/csv/table.h"
+
+namespace tunewright::api {
+
+struct FoundColumns {
+    std::array<std::optional<std::size_t>, kRoleCount> at;
+    std::optional<std::size_t> clock;    ///< a second column of times of day, where at[kTimeRole] holds dates alone
+    std::optional<std::size_t> spacing;  ///< instead of times: a column that holds the samples' spacing
+    std::vector<std::string> notes;
+};
+
+/// The columns as chosen; then by their headings; then, where headings do not say, by what they hold: time rises, u
+/// stays on its levels while y moves. What remains open is a fault that lists the headings. A set point is told where
+/// it is found, and is never u or y.
+FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
+                          const CsvOptions& options, std::vector<CsvFault>& faults);
+
+const char* role_name(std::size_t role);  ///< t, u, y, r
+
+}  // namespace tunewright::api

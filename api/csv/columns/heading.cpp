@@ -1,0 +1,547 @@
+#include "api/csv/columns/heading.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "api/csv/cell.h"
+#include "api/csv/time_stamp.h"
+
+namespace tunewright::api {
+namespace {
+
+// In the order of preference; several languages, several makers' conventions.
+constexpr std::string_view kTimeNames[] = {"t",
+                                           "time",
+                                           "timestamp",
+                                           "date time",
+                                           "datetime",
+                                           "date_time",
+                                           "time stamp",
+                                           "time_stamp",
+                                           "t_stamp",
+                                           "date/time",
+                                           "date & time",
+                                           "timestring",
+                                           "date",
+                                           "seconds",
+                                           "sec",
+                                           "elapsed",
+                                           "elapsed time",
+                                           "elapsed_time",
+                                           "zeit",
+                                           "zeitstempel",
+                                           "uhrzeit",
+                                           "datum",
+                                           "datum/zeit",
+                                           "temps",
+                                           "tiempo",
+                                           "tempo",
+                                           "tijd",
+                                           "tid",
+                                           "x_value",
+                                           "relative time",
+                                           "sample time",
+                                           "fecha",
+                                           "time_ms",
+                                           "millis",
+                                           "millis()",
+                                           "ms",
+                                           "milliseconds",
+                                           "micros",
+                                           "minutes",
+                                           "min",
+                                           "hours",
+                                           "uptime",
+                                           "clock",
+                                           "_time",
+                                           "ts",
+                                           "epoch",
+                                           "unix time",
+                                           "unixtime",
+                                           "last_changed",
+                                           "last_updated",
+                                           "created_at",
+                                           "recorded_at",
+                                           "date/heure",
+                                           "horodatage",
+                                           "hora",
+                                           "fecha y hora",
+                                           "fecha/hora",
+                                           "data/ora",
+                                           "local time",
+                                           "time(t)",
+                                           "logged at"};
+constexpr std::string_view kInputNames[] = {"u",
+                                            "op",
+                                            "mv",
+                                            "co",
+                                            "out",
+                                            "output",
+                                            "controller output",
+                                            "controlleroutput",
+                                            "control output",
+                                            "manipulated variable",
+                                            "cv",
+                                            "lmn",
+                                            "cveu",
+                                            "cvout",
+                                            "input",
+                                            "valve",
+                                            "valve position",
+                                            "heater",
+                                            "heater power",
+                                            "power",
+                                            "duty",
+                                            "pwm",
+                                            "stellgr\xC3\xB6\xC3\x9F"
+                                            "e",
+                                            "stellgroesse",
+                                            "stellwert",
+                                            "ventil",
+                                            "heizung",
+                                            "heizleistung",
+                                            "ausgang",
+                                            "commande",
+                                            "sortie",
+                                            "vanne",
+                                            "salida",
+                                            "valvula",
+                                            "v\xC3\xA1lvula",
+                                            "uscita",
+                                            "valvola",
+                                            "klep",
+                                            "y_out",
+                                            "control",
+                                            "u(t)",
+                                            "actuator",
+                                            "pump",
+                                            "damper",
+                                            "fan",
+                                            "q",
+                                            "q1",
+                                            "dac",
+                                            "duty cycle",
+                                            "dutycycle",
+                                            "duty_cycle",
+                                            "control signal",
+                                            "control_signal",
+                                            "control effort",
+                                            "control value",
+                                            "pid output",
+                                            "pid_output",
+                                            "pidout",
+                                            "effort",
+                                            "throttle",
+                                            "voltage",
+                                            "voltaje",
+                                            "spannung",
+                                            "heat",
+                                            "heating",
+                                            "cooling",
+                                            "burner",
+                                            "compressor",
+                                            "relay",
+                                            "ssr",
+                                            "boiler",
+                                            "motor",
+                                            "puissance",
+                                            "potencia",
+                                            "calentador",
+                                            "bomba",
+                                            "pompe",
+                                            "stellsignal",
+                                            "stellgrad",
+                                            "q2",
+                                            "heater output"};
+constexpr std::string_view kOutputNames[] = {"y",
+                                             "pv",
+                                             "pv_in",
+                                             "temp",
+                                             "temperature",
+                                             "measurement",
+                                             "process value",
+                                             "process variable",
+                                             "processvalue",
+                                             "processvariable",
+                                             "measured",
+                                             "measured value",
+                                             "value",
+                                             "mess",
+                                             "istwert",
+                                             "messwert",
+                                             "regelgr\xC3\xB6\xC3\x9F"
+                                             "e",
+                                             "regelgroesse",
+                                             "level",
+                                             "flow",
+                                             "pressure",
+                                             "speed",
+                                             "position",
+                                             "ph",
+                                             "concentration",
+                                             "temperatur",
+                                             "druck",
+                                             "durchfluss",
+                                             "f\xC3\xBCllstand",
+                                             "niveau",
+                                             "mesure",
+                                             "temp\xC3\xA9rature",
+                                             "temperatura",
+                                             "medida",
+                                             "misura",
+                                             "meting",
+                                             "sensor",
+                                             "thermocouple",
+                                             "y(t)",
+                                             "response",
+                                             "rpm",
+                                             "t1",
+                                             "pv1",
+                                             "adc",
+                                             "actual",
+                                             "actual value",
+                                             "ist",
+                                             "velocity",
+                                             "velocidad",
+                                             "vitesse",
+                                             "drehzahl",
+                                             "geschwindigkeit",
+                                             "velocit\xC3\xA0",
+                                             "angle",
+                                             "height",
+                                             "humidity",
+                                             "presi\xC3\xB3n",
+                                             "presion",
+                                             "nivel",
+                                             "caudal",
+                                             "pression",
+                                             "d\xC3\xA9"
+                                             "bit",
+                                             "thermistor",
+                                             "temp1",
+                                             "t2",
+                                             "pv2",
+                                             "process_value",
+                                             "process_variable",
+                                             "feedback",
+                                             "distance",
+                                             "encoder"};
+constexpr std::string_view kReferenceNames[] = {"r",
+                                                "sp",
+                                                "setpoint",
+                                                "set point",
+                                                "set_point",
+                                                "set-point",
+                                                "target",
+                                                "sollwert",
+                                                "soll",
+                                                "consigne",
+                                                "reference",
+                                                "ref",
+                                                "w",
+                                                "consigna",
+                                                "set value",
+                                                "setvalue",
+                                                "target value",
+                                                "setpt",
+                                                "spt",
+                                                "sv",
+                                                "sp_in",
+                                                "wsp",
+                                                "lsp",
+                                                "rsp",
+                                                "csp",
+                                                "desired",
+                                                "desired value",
+                                                "referencia",
+                                                "riferimento",
+                                                "f\xC3\xBChrungsgr\xC3\xB6\xC3\x9F"
+                                                "e",
+                                                "r(t)",
+                                                "w(t)",
+                                                "punto de consigna",
+                                                "y_ref",
+                                                "ysp",
+                                                "y_sp"};
+/// Behind "y", "pv", "pv_in" and before what may also name a command, such as "speed".
+constexpr int kMeasuredOrder = 2;
+
+template <std::size_t N>
+bool is_one_of(std::string_view word, const std::string_view (&list)[N]) {
+    return std::find(std::begin(list), std::end(list), word) != std::end(list);
+}
+
+std::span<const std::string_view> names(Role role) {
+    switch (role) {
+        case kTimeRole: return kTimeNames;
+        case kInputRole: return kInputNames;
+        case kOutputRole: return kOutputNames;
+        default: return kReferenceNames;
+    }
+}
+
+std::optional<int> place(std::string_view name, Role role) {
+    const auto all = names(role);
+    const auto found = std::find(all.begin(), all.end(), name);
+    if (found == all.end()) return std::nullopt;
+    return static_cast<int>(found - all.begin());
+}
+
+// "heater_bed targetTemp": where a small letter is followed by a capital one a word begins, too.
+std::vector<std::string> words(std::string_view text) {
+    constexpr std::string_view kBetween = " ._-/\\:!|[]()<>'";
+    std::vector<std::string> out;
+    bool small = false, open = false;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool between = kBetween.find(c) != kBetween.npos;
+        if (between || (small && std::isupper(byte))) open = false;
+        small = std::islower(byte) != 0;
+        if (between) continue;
+        if (!open) out.emplace_back();
+        open = true;
+        out.back() += static_cast<char>(std::tolower(byte));
+    }
+    return out;
+}
+
+bool has_word(const Heading& heading, std::string_view word) {
+    return std::find(heading.words.begin(), heading.words.end(), word) != heading.words.end();
+}
+
+// "pv1" -> "pv"; single letters say too little, and what else stands beside a word may say that another thing of it is
+// meant: motor speed, cooling water temperature.
+std::optional<int> word_place(std::string_view word, Role role) {
+    static constexpr std::string_view kOnlyAlone[] = {"heat", "heating", "cooling", "burner", "compressor", "relay",
+                                                      "ssr",  "boiler",  "motor",   "bomba",  "pompe",      "voltage",
+                                                      "min",  "ms",      "clock",   "hours",  "feedback",   "actual",
+                                                      "ist",  "encoder", "ts",      "epoch"};
+    if (is_one_of(word, kOnlyAlone)) return std::nullopt;
+    constexpr std::size_t kShortest = 2;
+    if (word.size() >= kShortest) {
+        if (const auto at = place(word, role)) return at;
+    }
+    while (!word.empty() && std::isdigit(static_cast<unsigned char>(word.back()))) word.remove_suffix(1);
+    return word.size() >= kShortest ? place(word, role) : std::nullopt;
+}
+
+}  // namespace
+
+namespace {
+
+Heading heading_of(std::string_view whole, std::string_view name, std::string_view unit) {
+    name = trimmed(name);
+    return {std::string(whole), lower_case(name), std::string(trimmed(unit)), words(name)};
+}
+
+// "time_ms", "elapsedMs", "TimeUS": the unit behind a name of time.
+std::optional<Heading> with_unit_of_time(std::string_view text) {
+    const std::vector<std::string> parts = words(text);
+    if (parts.size() < 2 || !seconds_per(parts.back())) return std::nullopt;
+    if (!place(parts.front(), kTimeRole) || seconds_per(parts.front())) return std::nullopt;
+    const std::size_t length = parts.back().size();
+    std::string_view name = text.substr(0, text.size() - length);
+    while (!name.empty() && (name.back() == '_' || name.back() == ' ' || name.back() == '-' || name.back() == '.'))
+        name.remove_suffix(1);
+    return heading_of(text, name, lower_case(text.substr(text.size() - length)));
+}
+
+bool may_command(const Heading& heading) {
+    return has_word(heading, "cmd") || has_word(heading, "command") || has_word(heading, "commanded");
+}
+
+bool names_role(const Heading& heading, Role role) {
+    return std::any_of(heading.words.begin(), heading.words.end(),
+                       [&](const std::string& word) { return word_place(word, role).has_value(); });
+}
+
+/// "SP", "TIC101.SP", "T_set", "setTemp", "targetSpeed", "speed_cmd".
+std::optional<NameMatch> reference_match(const Heading& heading) {
+    if (const auto at = place(heading.name, kReferenceRole)) return NameMatch{1, *at};
+    static constexpr std::string_view kWords[] = {
+        "sp",     "spt",     "setpoint", "sollwert", "soll", "consigne", "consigna", "reference", "ref",
+        "target", "desired", "setpt",    "wsp",      "lsp",  "rsp",      "csp",      "setvalue"};
+    static constexpr std::string_view kHeld[] = {"setpoint", "sollwert", "target", "consigne"};
+    const auto& words = heading.words;
+    bool found = std::any_of(words.begin(), words.end(), [](const auto& word) { return is_one_of(word, kWords); }) ||
+                 std::any_of(std::begin(kHeld), std::end(kHeld),
+                             [&](std::string_view held) { return heading.name.find(held) != std::string::npos; });
+    if (words.size() > 1 && !names_role(heading, kInputRole)) {
+        const std::string& last = words.back();
+        found = found || words.front() == "set" || last == "set" || last == "sv" || last == "w" ||
+                (may_command(heading) && names_role(heading, kOutputRole));
+    }
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) found = found || (words[i] == "set" && words[i + 1] == "point");
+    return found ? std::optional<NameMatch>(NameMatch{2, 0}) : std::nullopt;
+}
+
+}  // namespace
+
+Heading split_heading(std::string_view text) {
+    text = trimmed(text);
+    for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+        const std::size_t start = text.rfind(open);
+        if (start != text.npos && start > 0 && text.back() == close) {
+            return heading_of(text, text.substr(0, start), text.substr(start + 1, text.size() - start - 2));
+        }
+    }
+    for (const std::string_view between : {" / ", " in ", ", "}) {
+        const std::size_t at = text.rfind(between);
+        if (at != text.npos && at > 0) return heading_of(text, text.substr(0, at), text.substr(at + between.size()));
+    }
+    if (auto timed = with_unit_of_time(text)) return *std::move(timed);
+    return heading_of(text, text, {});
+}
+
+std::optional<NameMatch> match(const Heading& heading, Role role) {
+    if (role == kReferenceRole) return reference_match(heading);
+    // A capital T is a temperature before it is a time.
+    constexpr int kLast = 1000;
+    if (heading.name == "t" && heading.text.front() == 'T') {
+        if (role == kTimeRole) return NameMatch{1, kLast};
+        if (role == kOutputRole) return NameMatch{2, kLast};
+    }
+    if (const auto at = place(heading.name, role)) return NameMatch{1, *at};
+    if (role == kOutputRole && is_measured(heading)) return NameMatch{1, kMeasuredOrder};
+    std::vector<std::string> parts = heading.words;
+    if (parts.empty()) return std::nullopt;
+    // The parameter's own current value, as in PID1/OUT.CV.
+    if (parts.size() > 1 && (parts.back() == "cv" || parts.back() == "value" || parts.back() == "val") &&
+        (word_place(parts[parts.size() - 2], kInputRole) || word_place(parts[parts.size() - 2], kOutputRole)))
+        parts.pop_back();
+    // The command of a named actuator is what it does: "valve cmd".
+    if (parts.size() > 1 && role == kInputRole && (parts.back() == "cmd" || parts.back() == "command") &&
+        word_place(parts[parts.size() - 2], kInputRole))
+        parts.pop_back();
+    if (role == kInputRole && is_state(heading)) {
+        const auto at = place(parts[parts.size() - 2], role);
+        return at ? std::optional<NameMatch>(NameMatch{3, *at}) : std::nullopt;
+    }
+    if (const auto at = word_place(parts.back(), role)) {
+        bool other = false;
+        for (const Role rival : {kInputRole, kOutputRole}) {
+            for (std::size_t i = 0; i + 1 < parts.size() && heading.name.find(' ') != heading.name.npos; ++i)
+                other = other || (rival != role && role != kTimeRole && word_place(parts[i], rival));
+        }
+        return other ? std::nullopt : std::optional<NameMatch>(NameMatch{2, *at});
+    }
+    std::optional<int> held;
+    for (const std::string& word : parts) {
+        if (role != kTimeRole && word_place(word, role == kInputRole ? kOutputRole : kInputRole)) return std::nullopt;
+        if (const auto at = word_place(word, role); at && !held) held = at;
+    }
+    if (!held) return std::nullopt;
+    return NameMatch{3, *held};
+}
+
+bool is_measured(const Heading& heading) {
+    static constexpr std::string_view kMeasured[] = {"measured", "actual", "act", "ist", "meas", "gemessen", "real"};
+    if (heading.words.size() < 2 || names_role(heading, kInputRole)) return false;
+    return std::any_of(heading.words.begin(), heading.words.end(),
+                       [](const std::string& word) { return is_one_of(word, kMeasured); });
+}
+
+bool is_command(const Heading& heading) {
+    return may_command(heading) && !names_role(heading, kInputRole) && !names_role(heading, kOutputRole);
+}
+
+bool is_index(std::string_view heading) {
+    const std::string name = lower_case(trimmed(heading));
+    return name.empty() || name == "index" || name == "#" || name == "no" || name == "no." || name == "nr" ||
+           name == "nr." || name == "row" || name == "sample" || name == "id" || name == "samples" ||
+           name == "sample number" || name == "record" || name.rfind("unnamed:", 0) == 0;
+}
+
+bool is_spacing(const Heading& heading) {
+    static constexpr std::string_view kNames[] = {"ts",
+                                                  "dt",
+                                                  "sample time",
+                                                  "sampling time",
+                                                  "sample_time",
+                                                  "sampling_time",
+                                                  "sample period",
+                                                  "sampling period",
+                                                  "sampling interval",
+                                                  "tsample",
+                                                  "t_s",
+                                                  "delta t",
+                                                  "deltat",
+                                                  "abtastzeit"};
+    return is_one_of(heading.name, kNames);
+}
+
+bool is_state(const Heading& heading) {
+    return heading.words.size() > 1 && (heading.words.back() == "state" || heading.words.back() == "status");
+}
+
+bool is_term_letter(const Heading& heading) {
+    return heading.name == "p" || heading.name == "i" || heading.name == "d";
+}
+
+bool is_controller_term(const Heading& heading, bool with_letters) {
+    static constexpr std::string_view kTerms[] = {"e",
+                                                  "error",
+                                                  "err",
+                                                  "fehler",
+                                                  "regelabweichung",
+                                                  "deviation",
+                                                  "erreur",
+                                                  "e(t)",
+                                                  "proportional",
+                                                  "integral",
+                                                  "derivative",
+                                                  "pterm",
+                                                  "iterm",
+                                                  "dterm",
+                                                  "integrator",
+                                                  "control error",
+                                                  "kp",
+                                                  "ki",
+                                                  "kd"};
+    if (is_one_of(heading.name, kTerms)) return true;
+    if (is_term_letter(heading)) return with_letters;
+    const auto& words = heading.words;
+    if (words.size() < 2) return false;
+    static constexpr std::string_view kParts[] = {"term", "part", "component", "action", "contribution", "anteil"};
+    static constexpr std::string_view kWhich[] = {"p", "i", "d", "proportional", "integral", "derivative"};
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        if (is_one_of(words[i], kWhich) && is_one_of(words[i + 1], kParts)) return true;
+        if ((words[i] == "pid" || words[i] == "control") && is_one_of(words[i + 1], kWhich)) return true;
+    }
+    return words.back() == "error" || words.back() == "err";
+}
+
+std::string stem(const Heading& heading) {
+    std::vector<std::string> parts = heading.words;
+    const auto tells = [](const std::string& word) {
+        return word_place(word, kInputRole) || word_place(word, kOutputRole) || place(word, kReferenceRole) ||
+               word == "cv" || word == "val";
+    };
+    while (parts.size() > 1 && tells(parts.back())) parts.pop_back();
+    if (parts.size() == heading.words.size()) return {};
+    std::string out;
+    for (const std::string& part : parts) out += part + " ";
+    return out;
+}
+
+std::string number_behind(const Heading& heading) {
+    if (heading.words.empty()) return {};
+    const std::string& last = heading.words.back();
+    const std::size_t at = last.find_last_not_of("0123456789");
+    return at == last.npos ? last : last.substr(at + 1);
+}
+
+bool is_beside_the_point(const Heading& heading) {
+    static constexpr std::string_view kBeside[] = {"quality", "status",  "mode",    "alarm",   "validity", "qual",
+                                                   "comment", "outside", "outdoor", "ambient", "event",    "auto",
+                                                   "manual",  "state",   "flag",    "spt"};
+    if (match(heading, kReferenceRole)) return true;
+    return std::any_of(heading.words.begin(), heading.words.end(),
+                       [](const std::string& word) { return is_one_of(word, kBeside); });
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,176 @@
+// The evaluation of a controller on a nonlinear plant: the linearisation's, with the plant's own responses in place of
+// the linear ones.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_request.h"
+#include "engine/evaluation/nonlinear_figures.h"
+#include "engine/evaluation/performance_figures.h"
+#include "engine/loop/loop.h"
+#include "engine/loop/stability.h"
+#include "engine/number_text.h"
+#include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/simulation/nonlinear/nonlinear_loop.h"
+#include "engine/simulation/nonlinear/nonlinear_response.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kMostSteps = 20000;
+constexpr double kUnstableHorizon = 10;  // of the plant's dead time and lags: what an unstable loop shows
+constexpr double kFarIntegral = 0.2;     // relative difference of an IAE
+constexpr double kFarOvershoot = 10;     // difference of an overshoot, percent of the step
+
+struct Runs {
+    NonlinearResponse setpoint, load;
+    bool complete() const { return !incomplete(setpoint) && !incomplete(load); }
+    static bool incomplete(const NonlinearResponse& run) { return run.escaped || !run.ended.empty(); }
+};
+
+std::optional<OutputLimits> actuator_of(const EvaluateOptions& o) {
+    return o.actuator ? std::optional(OutputLimits{o.actuator->min, o.actuator->max}) : std::nullopt;
+}
+
+Runs simulate(const NonlinearSystem& system, const Controller& controller, const EvaluateOptions& o,
+              std::optional<double> horizon) {
+    NonlinearOptions options;
+    options.horizon = horizon;
+    options.max_steps = kMostSteps;
+    options.actuator = actuator_of(o);
+    if (const auto* npid = std::get_if<Npid>(&controller)) options.delta_r = npid->delta_r;
+    const ParallelPid law = gains(controller);
+    return {simulate_nonlinear(system, law, {o.setpoint_step, 0}, options),
+            simulate_nonlinear(system, law, {0, o.load_step}, options)};
+}
+
+double own_time(const LinearPlant& plant) {
+    double time = plant.dead_time();
+    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
+    return time > 0 ? time : 1;
+}
+
+void drop_warnings(Evaluation& evaluation, std::initializer_list<const char*> codes) {
+    std::erase_if(evaluation.warnings,
+                  [&](const Warning& w) { return std::ranges::find(codes, w.code) != codes.end(); });
+}
+
+void warn_of_runs(Evaluation& evaluation, const Runs& runs) {
+    bool settles = true;
+    for (const auto& [run, step] : {std::pair(&runs.setpoint, "set-point"), std::pair(&runs.load, "load")}) {
+        if (run->escaped)
+            evaluation.warnings.push_back({"left-domain", std::string("After the ") + step + " step: " + run->ended});
+        if (run->limited)
+            evaluation.warnings.push_back(
+                {"actuator-limited", std::string("The input reaches its limit after the ") + step +
+                                         " step; Ms, Mt and the margins hold for the unlimited loop."});
+        settles = settles && (run->escaped || run->loop.settles);
+    }
+    if (!settles)
+        evaluation.warnings.push_back(
+            {"does-not-settle",
+             "The response does not settle within the time computed; figures that need it are empty."});
+}
+
+/// Where the linearisation does not tell what these steps do.
+void warn_of_distance(Evaluation& evaluation) {
+    const Performance &own = evaluation.performance, &linear = evaluation.linear->performance;
+    std::string differences;
+    const auto say = [&](const std::string& what, double a, double b, const char* unit) {
+        differences += (differences.empty() ? "" : ", ") + what + " " + text(a) + unit + " against " + text(b) + unit;
+    };
+    const auto compare = [&](const std::optional<double>& a, const std::optional<double>& b, const char* what) {
+        if (a && b && std::abs(*a - *b) > kFarIntegral * std::min(*a, *b)) say(what, *a, *b, "");
+    };
+    compare(own.setpoint.IAE, linear.setpoint.IAE, "set-point IAE");
+    const auto &a = own.setpoint.overshoot_percent, &b = linear.setpoint.overshoot_percent;
+    if (a && b && std::abs(*a - *b) > kFarOvershoot) say("overshoot", *a, *b, " %");
+    compare(own.load.IAE, linear.load.IAE, "load IAE");
+    if (differences.empty()) return;
+    evaluation.warnings.push_back(
+        {"far-from-linear",
+         "For steps of these sizes the plant is far from its linearisation, to which Ms and the "
+         "margins belong: " +
+             differences + "."});
+}
+
+void add_responses(Evaluation& evaluation, const Runs& runs, double horizon, int points) {
+    const auto trace = [&](const NonlinearResponse& run) {
+        const bool whole = !Runs::incomplete(run) || run.t_end >= horizon;
+        return trace_of(run.loop, whole ? horizon : run.t_end, points);
+    };
+    evaluation.responses =
+        Responses{trace(runs.setpoint), trace(runs.load), runs.setpoint.loop.settles && runs.load.loop.settles};
+}
+
+void add_performance(Evaluation& evaluation, const Runs& runs, const EvaluateOptions& o) {
+    const bool to_infinity = !o.horizon.has_value();
+    const auto reason = [](const NonlinearResponse& run) { return "The simulation ended early. " + run.ended; };
+    const auto cut = [&](const NonlinearResponse& run) {
+        return run.escaped || (!to_infinity && Runs::incomplete(run));
+    };
+    evaluation.performance.setpoint = cut(runs.setpoint)
+                                          ? no_performance(reason(runs.setpoint)).setpoint
+                                          : setpoint_figures(runs.setpoint.loop, o.setpoint_step, to_infinity);
+    evaluation.performance.load =
+        cut(runs.load) ? no_performance(reason(runs.load)).load : load_figures(runs.load.loop, to_infinity);
+}
+
+}  // namespace
+
+EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions options) {
+    const OutputLimits limits = input_limits(plant, actuator_of(options));
+    options.actuator.reset();
+    if (std::isfinite(limits.min) || std::isfinite(limits.max))
+        options.actuator = ActuatorLimits{limits.min, limits.max};
+    return options;
+}
+
+Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& controller,
+                              const EvaluateOptions& options) {
+    if (auto error = refuse_evaluation(controller, options)) return *error;
+    const auto plant = linearised_plant(system);
+    if (!plant) return plant.error();
+    const auto loop = Loop::make(*plant, gains(controller));
+    if (!loop) {
+        Error error = loop.error();
+        if (error.where.empty()) error.where = "controller";
+        return error;
+    }
+    const bool stable = count_unstable_poles(*loop).stable();
+    std::optional<double> horizon = options.horizon;
+    if (!horizon && !stable) horizon = kUnstableHorizon * own_time(*plant);
+    const Runs runs = simulate(system, resolved(controller, options), options, horizon);
+
+    EvaluateOptions of_linear = on_linearisation(system, options);
+    if (!horizon && runs.complete()) {
+        horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
+        of_linear.trace_horizon = horizon;
+    }
+    auto evaluation = evaluate(family_of(Plant(system.linearised())), controller, of_linear);
+    if (!evaluation) return evaluation;
+    evaluation->linear = LinearisedResponse{evaluation->performance, std::move(evaluation->responses)};
+    evaluation->responses.reset();
+    drop_warnings(*evaluation, {"actuator-limited", "does-not-settle", "limits-not-applied", "linear-part",
+                                "depends-on-step-size", "integral-stalls"});
+    if (stable) {
+        add_performance(*evaluation, runs, options);
+        // Limits are not applied to a linear plant under an Npid: what they do would count as the plant's nonlinearity.
+        const bool comparable = !evaluation->nonlinear || !(runs.setpoint.limited || runs.load.limited);
+        if (comparable) warn_of_distance(*evaluation);
+        if (evaluation->nonlinear) {
+            EvaluateOptions limits_apply = options;
+            limits_apply.actuator.reset();
+            warn_of_nonlinearity(*evaluation, runs.setpoint.loop, runs.load.loop, limits_apply);
+        }
+    }
+    warn_of_runs(*evaluation, runs);
+    if (options.points >= 2 && !runs.setpoint.loop.nodes.empty() && !runs.load.loop.nodes.empty()) {
+        if (!horizon) horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
+        add_responses(*evaluation, runs, *horizon, options.points);
+    }
+    return evaluation;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,93 @@
+#include "engine/evaluation/measured_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/evaluation/performance_figures.h"
+#include "engine/simulation/linear/indices.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kMostRefinements = 5;
+constexpr double kHalvedSteps = 1.0 / 16;  // of a tolerance, where the error is of order 4
+constexpr double kTail = 1e-6;             // of the integral of t |e|, left after the run's end
+constexpr std::size_t kMostNodes = 1000000;
+constexpr double kMoreNodes = 1.4;
+constexpr int kMostTightenings = 3;
+
+struct Indices {
+    std::optional<ErrorIntegrals> error;  // where they exist
+    double TV = 0;
+};
+
+Indices indices_of(const LinearResponse& response, const ResponseOptions& options, double target) {
+    Indices indices{std::nullopt, total_variation(response.nodes)};
+    if (why_no_integral(response, target, !options.horizon) == nullptr)
+        indices.error =
+            error_integrals(response.nodes, target, options.horizon ? std::nullopt : response.error_integral_final);
+    return indices;
+}
+
+double relative(double coarse, double fine) {
+    const double size = std::max(std::abs(coarse), std::abs(fine));
+    return size > 0 ? std::abs(fine - coarse) / size : 0;
+}
+
+IndexErrors moved(const Indices& coarse, const Indices& fine) {
+    IndexErrors errors;
+    errors.TV = relative(coarse.TV, fine.TV);
+    if (!coarse.error || !fine.error) return errors;
+    errors.IAE = relative(coarse.error->IAE, fine.error->IAE);
+    errors.ISE = relative(coarse.error->ISE, fine.error->ISE);
+    errors.ITAE = relative(coarse.error->ITAE, fine.error->ITAE);
+    return errors;
+}
+
+bool within_promise(const IndexErrors& errors) {
+    return errors.IAE.value_or(0) <= kPromisedIae && errors.ISE.value_or(0) <= kPromisedIse &&
+           errors.ITAE.value_or(0) <= kPromisedItae && errors.TV.value_or(0) <= kPromisedTv;
+}
+
+/// On the halved schedule; without one with tolerances that fall until there are more steps indeed: lengths that go by
+/// powers of two may meet a smaller one as they are.
+LinearResponse refined(const Simulate& simulate, ResponseOptions& options, const LinearResponse& response) {
+    if (response.schedule.level.empty() && response.schedule.to_horizon == 0) {
+        LinearResponse finer;
+        for (int i = 0; i < kMostTightenings; ++i) {
+            options.tolerance *= kHalvedSteps;
+            finer = simulate(options);
+            if (static_cast<double>(finer.nodes.size()) > kMoreNodes * static_cast<double>(response.nodes.size()))
+                break;
+        }
+        return finer;
+    }
+    const StepSchedule finer = halved(response.schedule);
+    ResponseOptions repeat = options;
+    repeat.repeat = &finer;
+    return simulate(repeat);
+}
+
+}  // namespace
+
+bool as_promised(const MeasuredResponse& measured) {
+    return !measured.response.settles || (measured.errors.TV && within_promise(measured.errors));
+}
+
+MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target) {
+    options.tail = kTail;
+    MeasuredResponse measured{simulate(options), {}};
+    if (!measured.response.settles) return measured;
+    Indices last = indices_of(measured.response, options, target);
+    for (int i = 0; i < kMostRefinements && measured.response.nodes.size() < kMostNodes; ++i) {
+        LinearResponse finer = refined(simulate, options, measured.response);
+        if (!finer.settles) break;
+        const Indices now = indices_of(finer, options, target);
+        measured = {std::move(finer), moved(last, now)};
+        if (within_promise(measured.errors)) break;
+        last = now;
+    }
+    return measured;
+}
+
+}  // namespace tunewright

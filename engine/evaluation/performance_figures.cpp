@@ -1,0 +1,133 @@
+#include "engine/evaluation/performance_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "engine/loop/noise.h"
+#include "engine/simulation/linear/indices.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kSettlingBand = 0.02;
+constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
+
+template <class Figures>
+void all_null(Figures& figures, std::initializer_list<const char*> names, const std::string& reason) {
+    for (const char* name : names) figures.why_null[name] = reason;
+}
+
+}  // namespace
+
+// Where the error comes to rest decides.
+const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity) {
+    if (!to_infinity) return nullptr;
+    if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
+    double scale = std::abs(target);
+    for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
+    if (std::abs(target - response.y_final) > kAtTarget * scale)
+        return "The error does not go to 0 (no integral action), so its integral is infinite; give a horizon.";
+    return nullptr;
+}
+
+Performance no_performance(const std::string& reason) {
+    Performance performance;
+    all_null(
+        performance.setpoint,
+        {"IAE", "ISE", "ITAE", "overshoot_percent", "rise_time", "rise_time_5_95", "settling_time", "TV", "first_move"},
+        reason);
+    all_null(performance.load, {"IAE", "ISE", "ITAE", "peak", "recovery_time", "TV"}, reason);
+    return performance;
+}
+
+SetpointPerformance setpoint_figures(const LinearResponse& response, double step, bool to_infinity) {
+    SetpointPerformance p;
+    const auto& nodes = response.nodes;
+    if (const char* reason = why_no_integral(response, step, to_infinity)) {
+        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
+    } else {
+        const auto e = error_integrals(nodes, step, to_infinity ? response.error_integral_final : std::nullopt);
+        p.IAE = e.IAE;
+        p.ISE = e.ISE;
+        p.ITAE = e.ITAE;
+    }
+    const Extremes extremes = extremes_of_y(nodes);
+    p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
+    const auto rise = [&](double from, double to, std::optional<double>& field, const char* name) {
+        const auto a = first_reached(nodes, from * step), b = first_reached(nodes, to * step);
+        if (a && b)
+            field = *b - *a;
+        else
+            p.why_null[name] = "The response does not reach that level.";
+    };
+    rise(0.1, 0.9, p.rise_time, "rise_time");
+    rise(0.05, 0.95, p.rise_time_5_95, "rise_time_5_95");
+    if (const auto settled = last_outside(nodes, step, kSettlingBand * std::abs(step)))
+        p.settling_time = *settled;
+    else
+        p.why_null["settling_time"] = "The response does not stay within 2 % of the set point.";
+    p.TV = total_variation(nodes);
+    p.first_move = nodes.front().u;
+    return p;
+}
+
+LoadPerformance load_figures(const LinearResponse& response, bool to_infinity) {
+    LoadPerformance p;
+    const auto& nodes = response.nodes;
+    if (const char* reason = why_no_integral(response, 0, to_infinity)) {
+        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
+    } else {
+        const auto e = error_integrals(nodes, 0, to_infinity ? response.error_integral_final : std::nullopt);
+        p.IAE = e.IAE;
+        p.ISE = e.ISE;
+        p.ITAE = e.ITAE;
+    }
+    const Extremes extremes = extremes_of_y(nodes);
+    p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
+    if (const auto recovered = last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)))
+        p.recovery_time = *recovered;
+    else
+        p.why_null["recovery_time"] = "The response does not come back within 2 % of its peak.";
+    p.TV = total_variation(nodes);
+    return p;
+}
+
+NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise) {
+    NoisePerformance figures;
+    figures.gain = noise_gain(loop, noise.sample_time > 0 ? noise.sample_time : default_noise_sample_time(loop));
+    if (figures.gain) {
+        figures.u_std = *figures.gain * noise.std;
+    } else {
+        for (const char* name : {"gain", "u_std"})
+            figures.why_null[name] =
+                "The derivative has no filter: held noise samples make it infinite. Give the controller a filter.";
+    }
+    return figures;
+}
+
+double covering_horizon(const LinearResponse& setpoint, const LinearResponse& load) {
+    double t = 0;
+    for (const LinearResponse* response : {&setpoint, &load}) {
+        double largest = 0;
+        for (const auto& node : response->nodes) largest = std::max(largest, std::abs(node.y - response->y_final));
+        t = std::max(
+            t, last_outside(response->nodes, response->y_final, 0.01 * largest).value_or(response->nodes.back().t));
+    }
+    if (t <= 0) t = setpoint.nodes.back().t;
+    const double wanted = 1.25 * t, unit = std::pow(10.0, std::floor(std::log10(wanted)) - 1);
+    return std::ceil(wanted / unit) * unit;
+}
+
+Trace trace_of(const LinearResponse& response, double horizon, int points) {
+    Trace trace;
+    const auto values = sampled(response.nodes, horizon, points);
+    for (int i = 0; i < points; ++i) {
+        trace.t.push_back(horizon * i / (points - 1));
+        trace.y.push_back(values[static_cast<std::size_t>(i)].first);
+        trace.u.push_back(values[static_cast<std::size_t>(i)].second);
+    }
+    return trace;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,38 @@
+// Records of closed loops: what may be learned of the plant where a controller moves u in answer to y.
+#pragma once
+
+#include <optional>
+
+#include "engine/expected.h"
+#include "engine/identification/closed_loop/set_point_part.h"
+#include "engine/identification/identify.h"
+#include "engine/progress.h"
+
+namespace tunewright {
+
+/// A record in which u answers y. Least squares of y on u would take the controller's answers to disturbances for the
+/// plant's cause, and end between the plant and -1/C (Ljung 1999, section 13.4).
+struct LoopRecord {
+    ClosedLoop told;
+    std::optional<SetPointPart> part;  ///< empty: nothing but feedback moves u
+};
+
+/// Feedback by feedback.h, or a set point whose moves u follows. Error: r not as long as the other columns.
+Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const Record& as_given);
+
+/// The structure is searched for with the recorded u and with the set point's part of u alone; both ends are refined by
+/// instrumental variables (instrument_fit.h), and the one stays whose residual the set point explains less. Errors:
+/// not_identifiable where nothing but feedback moves u, or too little to know the gain within a half of itself;
+/// cancelled.
+Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const LoopRecord& loop, ModelChoice model,
+                                           const RunControl& control);
+
+/// Where no feedback was found: warns (closed-loop) if u is restless, and filters of y explain more of u than the model
+/// explains of y, while the model is in doubt (its gain unknown) or u plainly moves as no test does. So it is in loops
+/// whose controller sees another noise than the record shows.
+void doubt_open_loop(const CleanRecord& record, IdentifiedModel& model);
+
+/// Fills data_quality.closed_loop and adds warning closed-loop.
+void tell_loop(const LoopRecord& loop, IdentifiedModel& model);
+
+}  // namespace tunewright

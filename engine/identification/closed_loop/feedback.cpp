@@ -1,0 +1,349 @@
+#include "engine/identification/closed_loop/feedback.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/record/record_kind.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kFewestMoves = 12;
+
+/// Least squares that a few outliers, the set point's moves, do not bend.
+struct Regression {
+    Eigen::VectorXd coefficient, residual;
+    std::vector<char> usual;  ///< rows that are no outliers
+    double scale = 0;         ///< of the residual's middle part
+};
+
+double quantile(std::vector<double> values, double part) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// At most a twentieth of the rows is left out: those beyond four deviations.
+Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
+    constexpr int kRounds = 6;
+    constexpr double kMiddle = 0.8, kOfMiddle = 1.2816, kFar = 4, kKept = 0.95;
+    const Eigen::Index n = z.size(), m = X.cols();
+    Eigen::VectorXd length(m);
+    for (Eigen::Index k = 0; k < m; ++k) length[k] = std::max(X.col(k).norm(), 1e-150);
+    const Eigen::MatrixXd Y = X * length.cwiseInverse().asDiagonal();
+    Regression out;
+    out.usual.assign(static_cast<std::size_t>(n), 1);
+    for (int round = 0; round < kRounds; ++round) {
+        Eigen::MatrixXd G = Eigen::MatrixXd::Zero(m, m);
+        Eigen::VectorXd b = Eigen::VectorXd::Zero(m);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (out.usual[static_cast<std::size_t>(i)] == 0) continue;
+            G.selfadjointView<Eigen::Lower>().rankUpdate(Y.row(i).transpose());
+            b += z[i] * Y.row(i).transpose();
+        }
+        G.diagonal().array() += 1e-12;
+        const Eigen::VectorXd scaled = G.selfadjointView<Eigen::Lower>().ldlt().solve(b);
+        out.residual = z - Y * scaled;
+        out.coefficient = scaled.cwiseQuotient(length);
+        const Eigen::VectorXd size = out.residual.cwiseAbs();
+        const std::vector<double> sizes(size.begin(), size.end());
+        out.scale = quantile(sizes, kMiddle) / kOfMiddle;
+        const double limit = std::max(kFar * out.scale, quantile(sizes, kKept));
+        for (std::size_t i = 0; i < sizes.size(); ++i) out.usual[i] = sizes[i] <= limit ? 1 : 0;
+    }
+    return out;
+}
+
+/// Root mean squares of two regressions of the same z over the rows usual to both.
+struct Errors {
+    double a = 0, b = 0;
+    double ratio() const { return b / std::max(a, 1e-150); }
+};
+
+Errors compare(const Regression& a, const Regression& b) {
+    Errors out;
+    int n = 0;
+    for (std::size_t i = 0; i < a.usual.size(); ++i) {
+        if (a.usual[i] == 0 || b.usual[i] == 0) continue;
+        const auto row = static_cast<Eigen::Index>(i);
+        out.a += a.residual[row] * a.residual[row];
+        out.b += b.residual[row] * b.residual[row];
+        ++n;
+    }
+    out.a = std::sqrt(out.a / std::max(1, n));
+    out.b = std::sqrt(out.b / std::max(1, n));
+    return out;
+}
+
+/// The rows looked at, and what happened from one to the next.
+struct Moves {
+    bool every_row = true;
+    std::vector<int> row;
+    std::vector<double> du, dy, dy_before, area, area_before, dt;
+
+    int size() const { return static_cast<int>(row.size()); }
+};
+
+Moves moves_of(const CleanRecord& r, const std::vector<double>& u, int moved) {
+    Moves m;
+    m.every_row = 2 * moved >= r.samples();
+    int from = 0;
+    double area = 0;
+    for (int i = 0; i < r.samples(); ++i) {
+        if (i > 0) area += (0.5 * (r.y[i] + r.y[i - 1]) - r.y[0]) * (r.t[i] - r.t[i - 1]);
+        if (i > 0 && !m.every_row && u[i] == u[i - 1]) continue;
+        const int last = std::max(0, i - 1), last_from = std::max(0, from - 1);
+        m.row.push_back(i);
+        m.du.push_back(u[i] - u[from]);
+        m.dy.push_back(r.y[i] - r.y[from]);
+        m.dy_before.push_back(r.y[last] - r.y[last_from]);
+        m.area.push_back(area);
+        m.area_before.push_back(i > 0 ? area - (0.5 * (r.y[i] + r.y[last]) - r.y[0]) * (r.t[i] - r.t[last]) : 0);
+        m.dt.push_back(r.t[i] - r.t[from]);
+        from = i, area = 0;
+    }
+    return m;
+}
+
+/// u's moves by u's own past, by y up to the same row, and by y of the rows before.
+struct Predictions {
+    Regression by_u, by_y, by_past_y;
+    int coefficients = 0, first = 0, y_column = 0;  ///< first: index of the first move predicted
+};
+
+double rate(const Moves& m, int j) { return m.dt[j] > 0 ? m.du[j] / m.dt[j] : 0; }
+
+/// Uneven rows: what goes on at its rate, goes on for the row's own time; and what bends goes on bending.
+double carried_on(const Moves& m, int j) { return rate(m, j - 1) * m.dt[j]; }
+double bent_on(const Moves& m, int j) {
+    const double apart = m.dt[j - 1] + m.dt[j - 2];
+    return apart > 0 ? (rate(m, j - 1) - rate(m, j - 2)) / apart * m.dt[j] * (m.dt[j] + m.dt[j - 1]) : 0;
+}
+
+/// Ramps and slewing valves: most moves go on at the rate of the move before.
+bool on_ramps(const Moves& m) {
+    constexpr double kSame = 1e-3, kMost = 0.6;
+    int same = 0, moved = 0;
+    for (int j = 2; j < m.size(); ++j) {
+        if (m.du[j] == 0) continue;
+        ++moved;
+        same += std::abs(rate(m, j) - rate(m, j - 1)) <= kSame * std::abs(rate(m, j)) ? 1 : 0;
+    }
+    return same > kMost * moved;
+}
+
+Predictions predict_every_row(const Moves& m) {
+    constexpr int kOwn = 12, kShort = 4, kFirst = kOwn + 2;
+    const int n = m.size() - kFirst;
+    Eigen::MatrixXd own(n, kOwn + 2), same(n, kOwn + 2), past(n, kOwn + 2);
+    Eigen::VectorXd z(n);
+    for (int i = 0; i < n; ++i) {
+        const int j = i + kFirst;
+        z[i] = m.du[j];
+        own(i, kOwn) = same(i, kOwn) = past(i, kOwn) = carried_on(m, j);
+        own(i, kOwn + 1) = same(i, kOwn + 1) = past(i, kOwn + 1) = bent_on(m, j);
+        for (int l = 0; l < kOwn; ++l) own(i, l) = m.du[j - 1 - l];
+        for (int l = 0; l < kShort; ++l) same(i, l) = past(i, l) = m.du[j - 1 - l];
+        for (int l = 0; l < kOwn - kShort; ++l) {
+            same(i, kShort + l) = m.dy[j - l];
+            past(i, kShort + l) = m.dy[j - 1 - l];
+        }
+    }
+    return {regress(own, z), regress(same, z), regress(past, z), kOwn, kFirst, kShort};
+}
+
+/// From one move of u to the next: the differences of y and its integral, as a PI law with rests between its moves.
+Predictions predict_moves(const Moves& m) {
+    constexpr int kFewMoves = 60;
+    const bool few = m.size() < kFewMoves;
+    const int lags = few ? 3 : 7, kept = few ? 1 : 3, columns = lags + 2, first = lags + 2, n = m.size() - first;
+    Eigen::MatrixXd own(n, columns), same(n, columns), past(n, columns);
+    Eigen::VectorXd z(n);
+    for (int i = 0; i < n; ++i) {
+        const int j = i + first;
+        z[i] = m.du[j];
+        for (int l = 0; l < lags; ++l) own(i, l) = m.du[j - 1 - l];
+        for (int l = 0; l < kept; ++l) same(i, l) = past(i, l) = m.du[j - 1 - l];
+        own(i, lags) = m.dt[j], own(i, lags + 1) = few ? 1 : m.dt[j - 1];
+        int k = kept;
+        same(i, k) = m.dy[j], past(i, k++) = m.dy_before[j];
+        same(i, k) = m.area[j], past(i, k++) = m.area_before[j];
+        same(i, k) = past(i, k) = m.dt[j], ++k;
+        if (few) {
+            same(i, k) = past(i, k) = 1;
+        } else {
+            same(i, k) = past(i, k) = m.dt[j - 1], ++k;
+            same(i, k) = past(i, k) = m.dy[j - 1], ++k;
+            same(i, k) = past(i, k) = m.area[j - 1];
+        }
+    }
+    return {regress(own, z), regress(same, z), regress(past, z), columns, first, kept};
+}
+
+/// Predictions of y from y's past alone, and from both pasts.
+struct NewsOfY {
+    Regression by_y, by_both;
+    int first = 0;
+};
+
+NewsOfY news_of_y(const CleanRecord& r, const std::vector<double>& u) {
+    constexpr int kOwn = 12, kShort = 4, kFirst = kOwn + 2;
+    const int n = r.samples() - kFirst;
+    Eigen::MatrixXd own(n, kOwn), both(n, kOwn);
+    Eigen::VectorXd z(n);
+    auto dy = [&](int i) { return r.y[i] - r.y[i - 1]; };
+    for (int i = 0; i < n; ++i) {
+        const int j = i + kFirst;
+        z[i] = dy(j);
+        for (int l = 0; l < kOwn; ++l) own(i, l) = dy(j - 1 - l);
+        for (int l = 0; l < kShort; ++l) both(i, l) = own(i, l);
+        for (int l = 0; l < kOwn - kShort; ++l) both(i, kShort + l) = u[j - 1 - l] - u[j - 2 - l];
+    }
+    return {regress(own, z), regress(both, z), kFirst};
+}
+
+/// How much of what u's past does not tell of u's moves is told by what both pasts do not tell of y: in an open-loop
+/// test with a clean y and a noisy reading of u, y tells of u, but no news.
+double told_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
+    constexpr int kLags = 6;
+    const auto n = static_cast<int>(p.by_u.residual.size()) - kLags;
+    Eigen::MatrixXd X(n, kLags + 1);
+    Eigen::VectorXd z(n);
+    const auto news = [&](int row) {
+        return row >= y.first && row < y.first + y.by_both.residual.size() ? y.by_both.residual[row - y.first] : 0.0;
+    };
+    for (int i = 0; i < n; ++i) {
+        z[i] = p.by_u.residual[i + kLags];
+        for (int l = 0; l <= kLags; ++l) X(i, l) = news(m.row[i + kLags + p.first] - l);
+    }
+    const Errors errors = compare(regress(Eigen::MatrixXd::Zero(n, 1), z), regress(X, z));
+    return errors.ratio();
+}
+
+/// A logger that writes u after its answer shows y and u of the same row as a controller would. The law of a plant is
+/// a lag with a gain; that of a controller has no lag of y, or, with integral action, no gain from u to y.
+bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
+    constexpr double kLag = 0.2, kGain = 0.7;
+    const int n = r.samples() - 2;
+    Eigen::MatrixXd X(n, 3);
+    Eigen::VectorXd z(n);
+    for (int i = 0; i < n; ++i) {
+        const int j = i + 2;
+        z[i] = r.y[j] - r.y[j - 1];
+        X.row(i) << r.y[j - 1] - r.y[j - 2], u[j] - u[j - 1], u[j - 1] - u[j - 2];
+    }
+    const Eigen::VectorXd c = regress(X, z).coefficient;
+    return c[0] > kLag && std::abs(c[1] + c[2]) > kGain * std::abs(c[1]);
+}
+
+bool on_few_levels(std::vector<double> u) {
+    constexpr double kSame = 1e-3;
+    std::sort(u.begin(), u.end());
+    const double same = kSame * (u.back() - u.front());
+    int levels = 1;
+    double last = u.front();
+    for (const double value : u) {
+        if (value - last > same) ++levels;
+        if (value - last > same) last = value;
+    }
+    return levels <= 3;
+}
+
+/// A pseudo-random sequence or a heater by pulse width, whatever jitter or grid u has.
+bool switches_between_two(const CleanRecord& r) { return two_levels(input_levels(r)).switch_time.size() >= 3; }
+
+/// Moves that the law of the controller leaves over, far beyond what it leaves elsewhere; the first of a few in a row.
+std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, const Predictions& p) {
+    constexpr double kFar = 10, kOfRange = 0.01;
+    constexpr int kApart = 8;
+    const double law = p.by_y.coefficient[p.y_column];
+    std::vector<OutsideMove> found;
+    if (law == 0) return found;
+    int last = -kApart;
+    for (Eigen::Index i = 0; i < p.by_y.residual.size(); ++i) {
+        const double left = p.by_y.residual[i];
+        if (std::abs(left) < std::max(kFar * p.by_y.scale, kOfRange)) continue;
+        const int j = static_cast<int>(i) + p.first;
+        if (j - last >= kApart) found.push_back({r.t[m.row[j]], -left / law});
+        last = j;
+    }
+    return found;
+}
+
+bool unevenly_spaced(const Moves& m) {
+    constexpr double kOff = 0.1;
+    if (!m.every_row) return false;
+    const std::vector<double> spacings(m.dt.begin() + 1, m.dt.end());
+    const double usual = median(spacings);
+    const auto off =
+        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - usual) > kOff * usual; });
+    return 5 * off > static_cast<std::ptrdiff_t>(spacings.size());
+}
+
+/// The record's moves, where they could be a controller's.
+std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<double>& u) {
+    if (r.changes() < kFewestMoves || r.samples() < 3 * kFewestMoves) return std::nullopt;
+    const RecordKind kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
+    if (kind == RecordKind::relay || on_few_levels(u) || switches_between_two(r)) return std::nullopt;
+    int moved = 0;
+    for (int i = 1; i < r.samples(); ++i) moved += u[i] != u[i - 1] ? 1 : 0;
+    Moves moves = moves_of(r, u, moved);
+    if (moves.size() < 2 * kFewestMoves || on_ramps(moves)) return std::nullopt;
+    return moves;
+}
+
+}  // namespace
+
+std::vector<double> input_at_samples(const CleanRecord& r) {
+    std::vector<double> u;
+    int change = 0;
+    double v = 0;
+    for (const double t : r.t) {
+        for (; change < r.changes() && r.v_time[change] <= t; ++change) v = r.v_level[change];
+        u.push_back(v);
+    }
+    return u;
+}
+
+double restlessness(const CleanRecord& r) {
+    constexpr double kOften = 0.1;
+    const std::vector<double> u = input_at_samples(r);
+    const std::optional<Moves> moves = possible_moves(r, u);
+    if (!moves || moves->size() < kOften * r.samples() || is_law_of_lag(r, u)) return 0;
+    const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
+    return compare(p.by_u, p.by_u).a / std::max(deviation(u), 1e-150);
+}
+
+std::optional<Feedback> find_feedback(const CleanRecord& r) {
+    constexpr double kNoNews = 1e-6, kExact = 0.03, kMoreThanChance = 1.6, kMoreUneven = 3, kNewsInY = 0.8,
+                     kByNews = 0.3, kQuiet = 3e-4, kLawIsPlain = 0.5;
+    const std::vector<double> u = input_at_samples(r);
+    const std::optional<Moves> possible = possible_moves(r, u);
+    if (!possible) return std::nullopt;
+    const Moves& moves = *possible;
+    const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
+    const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
+    if (same.a < kNoNews) return std::nullopt;
+    const bool at_once = same.ratio() <= past.ratio();
+    const double ratio = std::min(same.ratio(), past.ratio());
+    const double n = static_cast<double>(p.by_u.residual.size());
+    const double margin = unevenly_spaced(moves) ? kMoreUneven : kMoreThanChance;
+    if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
+    const bool exact = ratio < kExact;
+    if (!exact || !moves.every_row) {
+        const NewsOfY y = news_of_y(r, u);
+        const Errors of_y = compare(y.by_y, y.by_both);
+        if (of_y.b < kQuiet) return std::nullopt;
+        if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
+        const double told = told_by_news(moves, p, y);
+        if (!exact && 1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
+    }
+    if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
+    Feedback feedback{same.a, at_once ? same.b : past.b, at_once, {}};
+    if (same.ratio() < kLawIsPlain) feedback.outside = outside_moves(r, moves, p);
+    return feedback;
+}
+
+}  // namespace tunewright

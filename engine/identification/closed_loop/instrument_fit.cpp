@@ -1,0 +1,283 @@
+#include "engine/identification/closed_loop/instrument_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/fit/uncertainty.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
+VectorXd whitening(const VectorXd& e) {
+    constexpr int kMost = 8;
+    const Index n = e.size();
+    const int most = static_cast<int>(std::min<Index>(kMost, n / 10));
+    VectorXd covariance(most + 1);
+    for (int k = 0; k <= most; ++k) covariance[k] = e.head(n - k).dot(e.tail(n - k)) / static_cast<double>(n);
+    VectorXd best = VectorXd::Ones(1), a = VectorXd::Ones(1);
+    double variance = covariance[0];
+    if (!(variance > 0)) return best;
+    double least = static_cast<double>(n) * std::log(variance);
+    for (int k = 1; k <= most && variance > 1e-12 * covariance[0]; ++k) {
+        double sum = 0;
+        for (int i = 0; i < k; ++i) sum += a[i] * covariance[k - i];
+        const double reflection = -sum / variance;
+        VectorXd next = VectorXd::Zero(k + 1);
+        next.head(k) = a;
+        for (int i = 1; i <= k; ++i) next[i] += reflection * a[k - i];
+        a = next;
+        variance *= 1 - reflection * reflection;
+        if (!(variance > 0)) break;
+        const double criterion = static_cast<double>(n) * std::log(variance) + 2 * k;
+        if (criterion < least) least = criterion, best = a;
+    }
+    return best;
+}
+
+/// Rows from the filter's order on.
+MatrixXd filtered(const MatrixXd& X, const VectorXd& a) {
+    const Index order = a.size() - 1, n = X.rows() - order;
+    MatrixXd out = MatrixXd::Zero(n, X.cols());
+    for (Index k = 0; k <= order; ++k) out += a[k] * X.middleRows(order - k, n);
+    return out;
+}
+
+class Problem {
+public:
+    Problem(const CleanRecord& record, const SetPointPart& part)
+        : record_(record), instrument_(driven_by(part, record)), n_(record.samples()) {}
+
+    /// d model/d (searched, linear) with the recorded u, and with the set point's part; and y - model.
+    void evaluate(Fit fit) {
+        jacobian({&record_, {}}, fit);
+        J = columns(fit);
+        const auto searched = static_cast<Index>(fit.form.searched().size());
+        model = J.rightCols(J.cols() - searched) * Eigen::Map<const VectorXd>(fit.linear.data(), J.cols() - searched);
+        e = Eigen::Map<const VectorXd>(record_.y.data(), n_) - model;
+        jacobian({&instrument_, {}}, fit);
+        Z = columns(fit);
+    }
+
+    MatrixXd J, Z;
+    VectorXd e, model;
+
+private:
+    MatrixXd columns(const Fit& fit) const {
+        MatrixXd X(n_, static_cast<Index>(fit.J.size()));
+        for (std::size_t k = 0; k < fit.J.size(); ++k)
+            X.col(static_cast<Index>(k)) = Eigen::Map<const VectorXd>(fit.J[k].data(), n_);
+        return X;
+    }
+
+    const CleanRecord& record_;
+    CleanRecord instrument_;
+    Index n_;
+};
+
+/// The filtered problem, columns scaled to length one, parameters at their bounds left out.
+struct Equations {
+    MatrixXd J, Z;
+    VectorXd e, length;
+
+    Equations(const Problem& p, const VectorXd& a, const std::vector<Index>& free) {
+        const MatrixXd all_J = filtered(p.J, a), all_Z = filtered(p.Z, a);
+        e = filtered(p.e, a);
+        J.resize(e.size(), static_cast<Index>(free.size()));
+        Z.resize(e.size(), static_cast<Index>(free.size()));
+        length.resize(static_cast<Index>(free.size()));
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            const auto column = static_cast<Index>(k);
+            length[column] = std::max(all_Z.col(free[k]).norm(), 1e-12);
+            J.col(column) = all_J.col(free[k]) / length[column];
+            Z.col(column) = all_Z.col(free[k]) / length[column];
+        }
+    }
+    VectorXd step() const { return (Z.transpose() * J).fullPivLu().solve(Z.transpose() * e).cwiseQuotient(length); }
+    /// The part of e that lies in the instruments' span.
+    double merit() const {
+        const VectorXd b = Z.transpose() * e;
+        return b.dot((Z.transpose() * Z + 1e-9 * MatrixXd::Identity(Z.cols(), Z.cols())).ldlt().solve(b));
+    }
+};
+
+std::vector<Index> free_of(const Fit& fit, const ShapeBounds& bounds, const VectorXd* pushed) {
+    std::vector<Index> free;
+    const std::vector<int> places = fit.form.searched();
+    const auto count = static_cast<Index>(places.size() + fit.linear.size());
+    for (Index k = 0; k < count; ++k) {
+        if (k < static_cast<Index>(places.size())) {
+            const int place = places[static_cast<std::size_t>(k)];
+            const double value = fit.shape.p[place];
+            const double push = pushed != nullptr ? (*pushed)[k] : 0;
+            if ((value <= bounds.low[place] && push <= 0) || (value >= bounds.high[place] && push >= 0)) continue;
+        }
+        free.push_back(k);
+    }
+    return free;
+}
+
+Fit moved(Fit fit, const ShapeBounds& bounds, const std::vector<Index>& free, const VectorXd& step, double part) {
+    const std::vector<int> places = fit.form.searched();
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        const double by = part * step[static_cast<Index>(k)];
+        const auto which = static_cast<std::size_t>(free[k]);
+        if (which < places.size()) {
+            double& value = fit.shape.p[places[which]];
+            value = std::clamp(value + by, bounds.low[places[which]], bounds.high[places[which]]);
+        } else {
+            fit.linear[which - places.size()] += by;
+        }
+    }
+    return fit;
+}
+
+/// No logarithm moves by more than this in a step, no dead time by more than a tenth of the record.
+double allowed_part(const Fit& fit, const std::vector<Index>& free, const VectorXd& step) {
+    constexpr double kLogarithm = 0.7, kDeadTime = 0.1;
+    const std::vector<int> places = fit.form.searched();
+    double part = 1;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        const auto which = static_cast<std::size_t>(free[k]);
+        if (which >= places.size()) continue;
+        const double most = places[which] == 0 || places[which] == kLoadTime ? kDeadTime : kLogarithm;
+        const double size = std::abs(step[static_cast<Index>(k)]);
+        if (size > most) part = std::min(part, most / size);
+    }
+    return part;
+}
+
+/// The set point's filters against the filtered residual.
+double mismatch_of(const SetPointPart& part, const Equations& here, const VectorXd& a) {
+    const auto n = static_cast<Index>(part.filtered.front().size());
+    MatrixXd W(n, static_cast<Index>(part.filtered.size()));
+    for (std::size_t k = 0; k < part.filtered.size(); ++k)
+        W.col(static_cast<Index>(k)) = Eigen::Map<const VectorXd>(part.filtered[k].data(), n);
+    W = filtered(W, a);
+    W.rowwise() -= W.colwise().mean();
+    const VectorXd e = here.e.array() - here.e.mean();
+    const VectorXd explained = W * W.colPivHouseholderQr().solve(e);
+    const double total = e.squaredNorm();
+    if (!(total > 0)) return 0;
+    const double share = explained.squaredNorm() / total;
+    return share / std::max(1e-12, 1 - share) * effective_samples({e.data(), static_cast<std::size_t>(e.size())});
+}
+
+/// Variance of the gain, in units of its scaled column, by leaving out one stretch of the record after another
+/// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time.
+double jackknife(const Equations& here, Index gain) {
+    constexpr Index kStretches = 10;
+    const Index length = here.e.size() / kStretches;
+    const MatrixXd A = here.Z.transpose() * here.J;
+    const VectorXd b = here.Z.transpose() * here.e;
+    std::vector<double> moved;
+    for (Index k = 0; k < kStretches; ++k) {
+        const auto Z = here.Z.middleRows(k * length, length);
+        const VectorXd step = (A - Z.transpose() * here.J.middleRows(k * length, length))
+                                  .fullPivLu()
+                                  .solve(b - Z.transpose() * here.e.segment(k * length, length));
+        moved.push_back(step[gain]);
+    }
+    const double spread = deviation(moved);
+    return spread * spread * static_cast<double>((kStretches - 1) * (kStretches - 1)) / kStretches;
+}
+
+/// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
+/// worth.
+double gain_variance(const Equations& here, Index gain) {
+    const double m = static_cast<double>(here.J.cols());
+    if (gain >= here.J.cols()) return 0;
+    const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
+    const VectorXd row = here.Z * (here.Z.transpose() * here.J).fullPivLu().inverse().row(gain).transpose();
+    const double scale = here.length[gain];
+    return here.e.squaredNorm() / std::max(1.0, independent - m) * row.squaredNorm() / (scale * scale);
+}
+
+/// Rows: principal axes of the covariance, one standard deviation long.
+std::vector<std::vector<double>> deviations_of(const Equations& here, const std::vector<Index>& free, Index all,
+                                               double inflation) {
+    const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
+    const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
+    const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
+    const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();
+    const double variance = white * inflation;
+    const MatrixXd covariance = variance * inverse * (here.Z.transpose() * here.Z) * inverse.transpose();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
+    std::vector<std::vector<double>> rows;
+    for (Index k = 0; k < covariance.cols(); ++k) {
+        const VectorXd axis =
+            (std::sqrt(std::max(0.0, eigen.eigenvalues()[k])) * eigen.eigenvectors().col(k)).cwiseQuotient(here.length);
+        std::vector<double> row(static_cast<std::size_t>(all), 0.0);
+        for (std::size_t i = 0; i < free.size(); ++i)
+            row[static_cast<std::size_t>(free[i])] = axis[static_cast<Index>(i)];
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
+                                               std::stop_token stop) {
+    constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
+    constexpr double kSmall = 1e-6, kUsualMismatch = 8, kOfUnfiltered = 0.5;
+    Problem problem(record, part);
+    const ShapeBounds bounds = shape_bounds(record, start.form.structure);
+    Fit fit = start;
+    problem.evaluate(fit);
+    VectorXd a = whitening(problem.e);
+    std::vector<Index> free = free_of(fit, bounds, nullptr);
+    for (int iteration = 0; iteration < kIterations && !stop.stop_requested(); ++iteration) {
+        if (iteration <= kFilterSettles) a = whitening(problem.e);
+        // A parameter at its bound is freed where the equations pull it inside.
+        std::vector<Index> every(static_cast<std::size_t>(problem.J.cols()));
+        for (std::size_t k = 0; k < every.size(); ++k) every[k] = static_cast<Index>(k);
+        const VectorXd pushed = Equations(problem, a, every).step();
+        if (!pushed.allFinite()) return std::nullopt;
+        free = free_of(fit, bounds, &pushed);
+        const Equations here(problem, a, free);
+        const VectorXd step = here.step();
+        if (!step.allFinite()) return std::nullopt;
+        double share = allowed_part(fit, free, step);
+        const double merit = here.merit();
+        bool better = false;
+        for (int half = 0; half < kHalvings && !better; ++half, share /= 2) {
+            const Fit next = moved(fit, bounds, free, step, share);
+            problem.evaluate(next);
+            better = Equations(problem, a, free).merit() < merit;
+            if (better) fit = next;
+        }
+        if (!better) problem.evaluate(fit);
+        const double length = step.cwiseProduct(here.length).norm() * share;
+        if (!better || (iteration > kFilterSettles && length < kSmall)) break;
+    }
+    const Equations here(problem, a, free);
+    InstrumentFit out;
+    out.mismatch = mismatch_of(part, here, a);
+    out.fit = fit;
+    out.fit.model.assign(problem.model.begin(), problem.model.end());
+    out.fit.residual.assign(problem.e.begin(), problem.e.end());
+    out.fit.sse = problem.e.squaredNorm();
+    const auto gain = fit.form.searched().size();
+    const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
+    // A filter of a few rows does not make white what a load leaves for the rest of the record.
+    const Equations unfiltered(problem, VectorXd::Ones(1), free);
+    const double scale = here.length[place], white = std::max(gain_variance(here, place), 1e-300);
+    const double slow =
+        std::max(kOfUnfiltered * gain_variance(unfiltered, place), jackknife(here, place) / (scale * scale)) / white;
+    out.fit.deviations =
+        deviations_of(here, free, problem.J.cols(), std::max({1.0, out.mismatch / kUsualMismatch, slow}));
+    double squares = 0;
+    for (const auto& row : out.fit.deviations) squares += row[gain] * row[gain];
+    out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), 1e-300);
+    if (!std::isfinite(out.fit.sse) || !std::isfinite(out.gain_error)) return std::nullopt;
+    return out;
+}
+
+}  // namespace tunewright

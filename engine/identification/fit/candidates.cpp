@@ -1,0 +1,290 @@
+#include "engine/identification/fit/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "engine/identification/fit/starting_values.h"
+#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/data_quality.h"
+#include "engine/identification/wording.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kValleysRefined = 2;  // of the scan; twice as many with a zero, whose sign parts them
+constexpr int kStartsRefined = 2;   // from simpler fits
+constexpr int kThinSamples = 160;
+constexpr Effort kCoarse{15, 1e-4};
+constexpr Effort kComparison{60, 1e-7};
+/// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
+constexpr Effort kOneStep{4, 1e-2};
+constexpr Effort kFinal{60, 1e-11};
+
+Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
+              std::stop_token stop) {
+    Fit best;
+    best.form = form;
+    bool first = true;
+    for (const Shape& start : starts) {
+        Fit fit = fit_shape(data, form, start, effort, stop);
+        if (first || (fit.determined && (!best.determined || fit.sse < best.sse))) best = std::move(fit);
+        first = false;
+    }
+    return best;
+}
+
+std::vector<Shape> most_promising(const FitContext& context, const ModelForm& form, const std::vector<Shape>& starts) {
+    const std::vector<double> sums = sums_of_squares(context.few(), form, starts, context.stop);
+    std::vector<int> order(starts.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sums[a] < sums[b]; });
+    std::vector<Shape> best;
+    for (int i : order) {
+        if (static_cast<int>(best.size()) < kStartsRefined) best.push_back(starts[i]);
+    }
+    return best;
+}
+
+bool same_form(const ModelForm& a, const ModelForm& b) {
+    return a.other_level == b.other_level && a.load == b.load && (a.slope == b.slope || is_integrating(a.structure));
+}
+
+Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
+    std::vector<Shape> nested, extended;
+    for (const Fit& fit : simpler) {
+        const std::vector<Shape> shapes = extend_shape(fit.shape, form.structure);
+        if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
+        extended.insert(extended.end(), shapes.begin(), shapes.end());
+    }
+    // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
+    std::vector<Shape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
+    if (!extended.empty()) {
+        const std::vector<Shape> best = most_promising(context, form, extended);
+        starts.insert(starts.end(), best.begin(), best.end());
+    }
+    Fit fit = best_from(context.few(), form, starts, kCoarse, context.stop);
+    fit = fit_shape(context.some(), form, fit.shape, kComparison, context.stop);
+    const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
+        return same_form(s.form, form) && !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
+    });
+    if (worse && !nested.empty()) {
+        Fit again = best_from(context.some(), form, nested, kComparison, context.stop);
+        if (again.sse < fit.sse) fit = std::move(again);
+    }
+    return fit;
+}
+
+/// Differences of the criterion (Kass and Raftery 1995, section 3.2).
+constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
+
+/// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
+/// again.
+bool shows_rest(const CleanRecord& r) {
+    const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });
+    return r.changes() > 1 || before >= 4;
+}
+
+/// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
+/// lag.
+bool plausible_rest(const CleanRecord& r, const Fit& fit) {
+    const double rest = level_of_rest(fit);
+    if (r.changes() == 1) return std::abs(rest) <= (is_integrating(fit.form.structure) ? 0.5 : 2.0);
+    const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
+    const double span = std::max(0.0, *high) - std::min(0.0, *low);
+    return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
+}
+
+/// A relay at work from the first row on: no part of the record is at rest.
+bool starts_in_relay(const FitContext& context) {
+    const CleanRecord& r = context.record;
+    return context.relay && context.start == Start::unseen &&
+           std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
+}
+
+/// The starts other than rest that the record leaves open for this structure.
+std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
+    if (context.start == Start::at_rest) return {};
+    std::vector<ModelForm> starts;
+    ModelForm form = from_rest.form;
+    if (is_integrating(form.structure) && !form.slope && shows_rest(context.record)) {
+        form.slope = true;
+        starts.push_back(form);
+        form = from_rest.form;
+    }
+    form.other_level = true;
+    if (context.start == Start::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
+    return starts;
+}
+
+/// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
+/// digits.
+constexpr double kVarianceFloor = 1e-14;
+
+}  // namespace
+
+FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
+    FitContext context;
+    context.grid = quantisation_step(record.y);
+    context.noise = std::max(noise_std(record.y), context.grid / std::sqrt(12.0));
+    context.thin = thin_out(record, kThinSamples);
+    context.medium = every_few(record, kMediumSamples);
+    context.record = std::move(record);
+    context.start = start_of(context.record, relay, context.noise);
+    context.relay = relay;
+    context.stop = stop;
+    return context;
+}
+
+bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
+    const double n = static_cast<double>(fit.residual.size());
+    return fit.sse > 2 * n * context.noise * context.noise && correlation_time(fit.residual) > 3;
+}
+
+Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
+                  const std::vector<Fit>& simpler) {
+    const CleanRecord& record = context.record;
+    const ModelForm form{structure, false, disturbances.slope, disturbances.load};
+    // A start that the simplest self-regulating structure needed, its extensions need too.
+    const auto fopdt =
+        std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
+    const bool known_start = fopdt != simpler.end() && fopdt->form.other_level && !is_integrating(structure);
+    if (known_start || (starts_in_relay(context) && !is_integrating(structure))) {
+        ModelForm left = form;
+        left.other_level = true;
+        Fit fit = fit_form(context, left, simpler);
+        if (fit.determined && plausible_rest(record, fit)) return fit;
+    }
+    Fit best = fit_form(context, form, simpler);
+    if (known_start) return best;
+    // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
+    const double lead = disturbances.slope ? kStrong : context.start == Start::moving ? 0 : kPositive;
+    for (const ModelForm& start : other_starts(context, best)) {
+        Fit fit = fit_form(context, start, simpler);
+        if (!fit.determined || !plausible_rest(record, fit)) continue;
+        const double n = effective_samples(fit.residual);
+        if (information_criterion(fit, n) + lead < information_criterion(best, n)) best = std::move(fit);
+    }
+    return best;
+}
+
+void polish(const FitContext& context, Fit& fit) {
+    Fit again = fit_shape(context.all(), fit.form, fit.shape, kFinal, context.stop);
+    if (again.determined && again.sse <= fit.sse) fit = std::move(again);
+}
+
+void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
+    if (context.record.samples() == context.medium.samples()) return;
+    double best = std::numeric_limits<double>::max();
+    for (Fit& fit : fits) {
+        const bool determined = fit.determined;
+        fit = project(context.all(), fit.form, fit.shape);
+        fit.determined = fit.determined && determined;
+        if (fit.determined) best = std::min(best, fit.sse);
+    }
+    // What the errors of the parameters from fewer samples can cost, several times over.
+    const double n = context.record.samples();
+    const double noise = best / n + kVarianceFloor;
+    const double reach = 100 * noise * n / context.medium.samples();
+    for (Fit& fit : fits) {
+        if (fit.determined && fit.sse < best * 1.02 + reach)
+            fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
+    }
+}
+
+double level_of_rest(const Fit& fit) {
+    if (fit.form.other_level) return -fit.linear[fit.form.level_index()] / fit.linear[0];
+    if (is_integrating(fit.form.structure) && fit.form.slope)
+        return -fit.linear[fit.form.slope_index()] / fit.linear[0];
+    return 0;
+}
+
+double information_criterion(const Fit& fit, double independent_samples, double least_variance) {
+    const double variance =
+        std::max(fit.sse / static_cast<double>(fit.residual.size()), least_variance) + kVarianceFloor;
+    return independent_samples * std::log(variance) + fit.form.parameters() * std::log(independent_samples);
+}
+
+double fit_percent(const CleanRecord& record, const Fit& fit) {
+    const double mean = std::accumulate(record.y.begin(), record.y.end(), 0.0) / record.samples();
+    double total = 0, left = 0;
+    for (int i = 0; i < record.samples(); ++i) {
+        total += (record.y[i] - mean) * (record.y[i] - mean);
+        left += fit.residual[i] * fit.residual[i];
+    }
+    return 100 * (1 - std::sqrt(left / total));
+}
+
+bool looks_integrating(const Fit& fit) {
+    const Structure structure = fit.form.structure;
+    if (structure == Structure::fopdt) return fit.shape.T() > 10;
+    if (structure == Structure::unstable) return fit.shape.T() > 2;
+    if (structure == Structure::third && fit.shape.T3() > 10) return true;
+    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > 10;
+}
+
+/// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
+/// leave: 95 % of an F distribution is about 4.
+double by_noise(int more, double independent, int parameters) {
+    constexpr double kF = 4;
+    return std::sqrt(1 + kF * more / std::max(1.0, independent - parameters));
+}
+
+/// Whether `simple` explains the record as well as `best` does, but for noise.
+bool as_good(const Fit& simple, const Fit& best, double lead, double points, double left, double independent) {
+    const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
+                         (best.form.other_level && !simple.form.other_level);
+    const int more = best.form.parameters() - simple.form.parameters();
+    constexpr double kPoint = 1, kMostByNoise = 3;
+    const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
+    return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMostByNoise, taken_up);
+}
+
+std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,
+                       const std::vector<double>& percents, int chosen, double independent_samples) {
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    int rival = -1;
+    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
+        if (i != chosen && fits[at(i)].determined && (rival < 0 || criteria[at(i)] < criteria[at(rival)])) rival = i;
+    }
+    const std::string name = name_of(fits[at(chosen)].form.structure);
+    if (rival < 0) return name + ": the only structure that this record determines.";
+    const std::string other = name_of(fits[at(rival)].form.structure);
+    const std::string figures = "fit " + number_text(percents[at(chosen)]) + " % against " +
+                                number_text(percents[at(rival)]) + " % of " + other;
+    const double lead = criteria[at(rival)] - criteria[at(chosen)];
+    if (lead < 0) {
+        return name + ": the simpler structure; what " + other + " gains is within what noise explains (" + figures +
+               "; information criterion within " + number_text(-lead, 3) + ").";
+    }
+    return name + ": the best balance of fit and number of parameters (" + figures +
+           "; information criterion lower by " + number_text(lead, 3) + " with " + number_text(independent_samples, 3) +
+           " independent samples).";
+}
+
+Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
+              double independent_samples) {
+    int best = -1, slowest = -1;  // among all, those without end included
+    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
+        if (!fits[i].determined) continue;
+        if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;
+        if (!looks_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
+    }
+    // What looks like an integrator is left to the integrators' structures, unless none of them explains the record.
+    if (best < 0 || criteria[slowest] + kFarBetter < criteria[best]) best = slowest;
+    if (best < 0) return {-1, ""};
+    int chosen = best;
+    for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
+        if (!fits[i].determined || looks_integrating(fits[i])) continue;
+        const bool simpler =
+            fits[i].form.parameters() < fits[chosen].form.parameters() ||
+            (fits[i].form.parameters() == fits[chosen].form.parameters() && criteria[i] < criteria[chosen]);
+        if (simpler && as_good(fits[i], fits[best], criteria[i] - criteria[best], percents[best] - percents[i],
+                               100 - percents[best], independent_samples))
+            chosen = i;
+    }
+    return {chosen, why_chosen(fits, criteria, percents, chosen, independent_samples)};
+}
+
+}  // namespace tunewright

@@ -1,0 +1,82 @@
+// The structures fitted to one record, and the choice among them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/identification/fit/output_error.h"
+#include "engine/identification/identify.h"
+#include "engine/identification/record/record_start.h"
+
+namespace tunewright {
+
+/// What the fits of one record share. `thin` has a few hundred samples for scans, `medium` at most kMediumSamples for
+/// the structures' comparison.
+struct FitContext {
+    CleanRecord record, medium, thin;
+    double noise = 0;    ///< standard deviation of what changes from sample to sample, rounding included
+    double grid = 0;     ///< step that y is rounded to, 0 if none
+    bool relay = false;  ///< a relay test
+    Start start = Start::at_rest;
+    std::vector<Anchor> anchors;  ///< that every model is held to
+    std::stop_token stop;
+
+    FitData all() const { return {&record, anchors}; }
+    FitData some() const { return {&medium, anchors}; }
+    FitData few() const { return {&thin, anchors}; }
+};
+
+inline constexpr int kMediumSamples = 600;
+
+FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop);
+
+/// What else than u moved y, and is looked for in every structure.
+struct Disturbances {
+    bool slope = false, load = false;
+};
+
+/// Fits one structure to the medium record: scan and refinement of the best starts on the thin one, final fit there.
+/// `simpler` are fits of the structures that it contains; it never ends worse than they do. A start other than rest is
+/// fitted where the record does not show rest: kept where y moves before u does if it lowers the criterion, where
+/// nothing is seen before u moves if it lowers it by 6, and beside a drift by 10.
+Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
+                  const std::vector<Fit>& simpler);
+
+/// The same fits on the whole record; those that cannot be chosen any more keep their parameters.
+void finish_fits(const FitContext& context, std::vector<Fit>& fits);
+
+/// The chosen one to its last digit.
+void polish(const FitContext& context, Fit& fit);
+
+/// Whether a fit leaves more than noise behind, and in a pattern.
+bool leaves_a_pattern(const FitContext& context, const Fit& fit);
+
+/// n ln(sse/n) + p ln n (Schwarz 1978) with n the number of independent samples that the residuals are worth, in place
+/// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant. Nor is what
+/// lies below `least_variance`, where that is known of the noise.
+double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
+
+struct Choice {
+    int index = -1;  ///< into the fits; -1: none is determined
+    std::string reason;
+};
+
+/// A lag of ten record lengths and more (two, where it is unstable) cannot be told from an integrator, nor its gain
+/// from any other.
+bool looks_integrating(const Fit& fit);
+
+/// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 5 of it (within 10
+/// of one with a zero, an unseen start or an unstable pole) and its fit, too, lies within what noise explains: a
+/// hundredth of y's deviation, and up to three more for what so few more parameters take up of noise as strong as the
+/// best fit's residual (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.
+Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
+              double independent_samples);
+
+/// The level of v at which y was at rest before the record; 0 where the form has no other.
+double level_of_rest(const Fit& fit);
+
+/// 100 (1 - ||residual||/||y - mean(y)||).
+double fit_percent(const CleanRecord& record, const Fit& fit);
+
+}  // namespace tunewright

@@ -1,0 +1,152 @@
+#include "engine/identification/fit/diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/wording.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+double root_mean_square(const std::vector<double>& x) {
+    double sum = 0;
+    for (double value : x) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+bool self_regulating(const Fit& fit) {
+    return !is_integrating(fit.form.structure) && fit.form.structure != Structure::unstable;
+}
+
+/// What is still to come after the last sample, relative to the largest distance from rest so far. 1 for structures
+/// that do not settle.
+double remaining_movement(const CleanRecord& r, const Fit& fit) {
+    if (!self_regulating(fit)) return 1;
+    double offset = fit.linear[fit.form.offset_index()];
+    if (fit.form.other_level) offset += fit.linear[fit.form.level_index()];
+    if (fit.form.load) offset += fit.linear[fit.form.load_index()];
+    if (fit.form.slope) offset += fit.linear[fit.form.slope_index()] * r.t.back();
+    double moved = 0;
+    for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
+    const double final_value = fit.linear[0] * r.v_level.back() + offset;
+    return std::abs(final_value - fit.model.back()) / std::max(moved, 1e-300);
+}
+
+void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {
+    if (!self_regulating(fit) || remaining <= 0.05 || r.changes() > 2) return;
+    warnings.push_back(
+        {"unsettled-record",
+         "The record ends while y still moves: by the model " + number_text(100 * remaining / (1 + remaining), 3) +
+             " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
+}
+
+void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+    const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
+    const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
+    if (rms > 0.007 && rms > 1.5 * noise && correlation_time(fit.residual) > 3) {
+        warnings.push_back(
+            {"structured-residuals", "The model misses y by " + number_text(rms * unit, 3) +
+                                         " (r.m.s.), more than noise or rounding (" + number_text(noise * unit, 3) +
+                                         ") explain, and the misses are not random. A disturbance, a drift, a "
+                                         "nonlinearity or a richer structure is in the record: compare y and "
+                                         "model in the plot, try another model or repeat the test."});
+    }
+    double worst = 0;
+    for (double e : fit.residual) worst = std::max(worst, std::abs(e));
+    if (worst > 8 * rms) {
+        warnings.push_back({"outliers", "At least one sample lies " + number_text(worst * unit, 3) +
+                                            " from the model where " + number_text(rms * unit, 3) +
+                                            " is typical; remove false readings from the record."});
+    }
+}
+
+void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
+                    std::vector<Warning>& warnings) {
+    double lag_sum = values.at("L");
+    for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? std::abs(values.at(lag)) : 0;
+    for (const auto& [name, error] : errors) {
+        const bool is_time = name == "L" || name == "T2" || name == "b" || name == "T";
+        const double yardstick =
+            is_time ? std::max(std::abs(values.at(name)), 0.5 * lag_sum) : std::abs(values.at(name));
+        if (error <= 0.2 * yardstick) continue;
+        const bool unknown_gain = name == "K" && error > 0.5 * yardstick;
+        warnings.push_back({"uncertain-parameters",
+                            name + " = " + number_text(values.at(name)) + " has a standard error of " +
+                                number_text(error, 2) +
+                                ": the record hardly determines it. A larger or longer test, or a simpler model, gives "
+                                "a usable figure.",
+                            unknown_gain ? WarningLevel::bad : WarningLevel::warning});
+    }
+}
+
+/// A straight line through the samples before the first change of u.
+void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
+    const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
+    if (n < 5 || r.t[n - 1] <= r.t[0]) return;
+    const auto rest = static_cast<std::size_t>(n);
+    const Line line = straight_line(std::span(r.t).first(rest), std::span(r.y).first(rest));
+    const double slope = line.slope, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
+    if (moved < 0.03 || std::abs(slope) < 5 * line.slope_std) return;
+    warnings.push_back(
+        {"not-at-rest",
+         "y already moves by " + number_text(moved * r.scale.y_scale, 3) + " before u changes, " +
+             number_text(100 * moved, 2) +
+             " % of its range: the test did not start at rest, or y drifts. Start the test from a steady state."});
+}
+
+void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+    const int rows = quality.samples + quality.samples_dropped;
+    if (quality.samples_dropped > 0.05 * rows) {
+        warnings.push_back({"rows-dropped", std::to_string(quality.samples_dropped) + " of " + std::to_string(rows) +
+                                                " rows could not be used."});
+    }
+    if (quality.quantisation * 10 > r.scale.y_scale) {
+        warnings.push_back(
+            {"coarse-quantisation", "y covers only " + number_text(r.scale.y_scale / quality.quantisation, 3) +
+                                        " steps of its grid (" + number_text(quality.quantisation, 3) +
+                                        "). A larger step of u or a finer sensor range gives a better model."});
+    }
+    if (fit.form.structure == Structure::fopdt && fit.shape.T() >= 50) {
+        warnings.push_back({"looks-integrating",
+                            "The time constant is at least 50 times the record's length: the record looks like that of "
+                            "an integrating process. Use model ipdt."});
+    }
+    if (fit.form.structure == Structure::ipdt) return;
+    const double slowest = (is_integrating(fit.form.structure) ? fit.shape.T() : fit.shape.a1()) * r.scale.t_scale;
+    if (!is_integrating(fit.form.structure) && slowest < quality.sample_time) {
+        warnings.push_back({"undersampled-response", "The time constant (" + number_text(slowest, 3) +
+                                                         ") is below the spacing of the samples (" +
+                                                         number_text(quality.sample_time, 3) +
+                                                         "), which cannot show it. Record faster."});
+    }
+}
+
+}  // namespace
+
+bool responds(const CleanRecord& r, const Fit& fit) {
+    const double mean = std::accumulate(r.y.begin(), r.y.end(), 0.0) / r.samples();
+    double constant = 0;
+    for (double y : r.y) constant += (y - mean) * (y - mean);
+    const double floor = 1e-14 * r.samples(), ratio = (constant + floor) / (fit.sse + floor);
+    const double n = effective_samples(fit.residual);
+    return ratio > 10 || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + 30;
+}
+
+Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
+                   const std::map<std::string, double>& standard_errors, const DataQuality& quality) {
+    Diagnosis diagnosis;
+    const double remaining = remaining_movement(record, fit);
+    diagnosis.settled = remaining < 0.05;
+    warn_unsettled(record, fit, remaining, diagnosis.warnings);
+    if (!fit.form.other_level && !fit.form.slope) warn_not_at_rest(record, diagnosis.warnings);
+    warn_residuals(record, fit, quality, diagnosis.warnings);
+    warn_uncertain(values, standard_errors, diagnosis.warnings);
+    warn_sampling(record, fit, quality, diagnosis.warnings);
+    return diagnosis;
+}
+
+}  // namespace tunewright

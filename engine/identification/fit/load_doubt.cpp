@@ -1,0 +1,114 @@
+#include "engine/identification/fit/load_doubt.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tunewright {
+namespace {
+
+constexpr int kSteps = 16;
+
+/// What steps of the load do to y, spread evenly over the record; together they make a walk that ends a standard
+/// deviation of 1 from where it began.
+Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
+    Shape plant = fit.shape;
+    plant.p[0] = 0;
+    const bool zero = fit.form.gains() == 2;
+    const double spacing = (t[t.size() - 1] - t[0]) / kSteps;
+    Eigen::MatrixXd G(t.size(), kSteps);
+    UnitResponse response;
+    for (int k = 0; k < kSteps; ++k) {
+        const double time[] = {std::max(0.0, t[0] + (k + 0.5) * spacing)}, level[] = {std::sqrt(1.0 / kSteps)};
+        unit_response({t.data(), static_cast<std::size_t>(t.size())}, {time, level}, plant, zero ? 1 : 0, response);
+        G.col(k) = fit.linear[0] * Eigen::Map<const Eigen::VectorXd>(response.x.data(), t.size());
+        if (zero) G.col(k) += fit.linear[1] * Eigen::Map<const Eigen::VectorXd>(response.x1.data(), t.size());
+    }
+    return G;
+}
+
+/// x_k - a x_(k-1) in place of x_k: white where x is such an autoregression, of the same variance in the first row.
+Eigen::MatrixXd whitened(const Eigen::MatrixXd& X, double a) {
+    Eigen::MatrixXd W = X;
+    W.bottomRows(X.rows() - 1) -= a * X.topRows(X.rows() - 1);
+    W.row(0) *= std::sqrt(1 - a * a);
+    return W;
+}
+
+/// White noise of variance `noise` behind the autoregression, and a load of variance q = `load`.
+struct Strengths {
+    double a = 0, noise = 0, load = 0;
+    double unlikeliness = INFINITY;  ///< minus twice the logarithm of the restricted likelihood
+};
+
+/// `z` are independent, of variance noise (1 + ratio s_i); so are `others`, with the sum of squares `rest`, of variance
+/// noise: the likeliest.
+Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double rest, double others) {
+    constexpr int kPoints = 24;
+    const double n = others + static_cast<double>(z.size());
+    Strengths best;
+    for (int k = 0; k < kPoints; ++k) {
+        // From what changes one direction's variance by a tenth to what is a thousand times the noise in it.
+        const double ratio = k == 0 ? 0 : 0.1 * std::pow(1e7, (k - 1.0) / (kPoints - 2.0)) / s.maxCoeff();
+        const Eigen::ArrayXd variance = 1 + ratio * s.array();
+        const double noise = (rest + (z.array().square() / variance).sum()) / n;
+        const double value = n * std::log(noise) + variance.log().sum();
+        if (value < best.unlikeliness) best = {0, noise, ratio * noise, value};
+    }
+    return best;
+}
+
+Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) {
+    const Eigen::MatrixXd J = whitened(rows.J, a);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J);
+    const Eigen::Index n = J.rows(), m = J.cols();
+    Eigen::MatrixXd both(n, kSteps + 1);
+    both << whitened(G, a), whitened(rows.residual, a);
+    both = qr.householderQ().adjoint() * both;
+    const Eigen::MatrixXd seen = both.bottomLeftCorner(n - m, kSteps);
+    const Eigen::VectorXd e = both.col(kSteps).tail(n - m);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * seen);
+    // Ascending: the last `used` are not rounding.
+    const double enough = 1e-10 * eigen.eigenvalues()[kSteps - 1];
+    const auto used = (eigen.eigenvalues().array() > std::max(enough, 0.0)).count();
+    if (used == 0) return {};
+    const Eigen::VectorXd s = eigen.eigenvalues().tail(used);
+    const Eigen::VectorXd z =
+        (eigen.eigenvectors().rightCols(used).transpose() * (seen.transpose() * e)).array() / s.array().sqrt();
+    const double rest = std::max(e.squaredNorm() - z.squaredNorm(), 1e-12 * e.squaredNorm());
+    Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
+    best.a = a;
+    best.unlikeliness -=
+        std::log(1 - a * a) - 2 * qr.matrixQR().diagonal().head(m).array().abs().max(1e-150).log().sum();
+    return best;
+}
+
+/// J'RJ for the strengths found; `pulls` is J'G.
+Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, const Strengths& found) {
+    // The noise's covariance is noise/(1 - a^2) a^|i - j|.
+    Eigen::MatrixXd coloured = J;
+    for (Eigen::Index k = 1; k < J.rows(); ++k) coloured.row(k) += found.a * coloured.row(k - 1);
+    const Eigen::MatrixXd forward = J.transpose() * coloured;
+    const Eigen::MatrixXd noise = forward + forward.transpose() - J.transpose() * J;
+    return found.noise / (1 - found.a * found.a) * noise + found.load * pulls * pulls.transpose();
+}
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows& rows) {
+    constexpr double kAsLikely = 2;  // of minus twice the logarithm of the likelihood
+    const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
+    if (n < m + kSteps + 8 || !(rows.residual.squaredNorm() > 0)) return {};
+    const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);
+    std::vector<Strengths> found;
+    for (const double a : {0.0, 0.3, 0.55, 0.75, 0.88, 0.95}) found.push_back(likeliest(rows, G, a));
+    const double least = std::ranges::min(found, {}, &Strengths::unlikeliness).unlikeliness;
+    const Eigen::MatrixXd pulls = rows.J.transpose() * G;
+    std::vector<Eigen::MatrixXd> all;
+    for (const Strengths& one : found) {
+        if (std::isfinite(one.unlikeliness) && one.unlikeliness <= least + kAsLikely)
+            all.push_back(weighed(rows.J, pulls, one));
+    }
+    return all;
+}
+
+}  // namespace tunewright

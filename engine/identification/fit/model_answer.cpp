@@ -1,0 +1,301 @@
+#include "engine/identification/fit/model_answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "engine/identification/fit/diagnosis.h"
+#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/data_quality.h"
+#include "engine/identification/wording.h"
+#include "engine/plant/linear/linear_plant.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kTracePoints = 2000;
+
+/// The samples that a plot shows: all, or evenly chosen ones.
+std::vector<int> shown(int n) {
+    const int points = std::min(n, kTracePoints);
+    std::vector<int> rows;
+    for (int k = 0; k < points; ++k)
+        rows.push_back(points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1)));
+    return rows;
+}
+
+FitTrace trace_of(const CleanRecord& r, const std::vector<double>& y_model) {
+    FitTrace trace;
+    int change = 0;
+    double v = 0;
+    for (const int i : shown(r.samples())) {
+        trace.t.push_back(r.scale.t_origin + r.scale.t_scale * r.t[i]);
+        for (; change < r.changes() && r.v_time[change] <= r.t[i]; ++change) v = r.v_level[change];
+        trace.u.push_back(r.scale.u_rest + r.scale.u_scale * v);
+        trace.y.push_back(r.scale.y_origin + r.scale.y_scale * r.y[i]);
+        trace.y_model.push_back(r.scale.y_origin + r.scale.y_scale * y_model[i]);
+    }
+    return trace;
+}
+
+void add_record_warnings(const CleanRecord& record, IdentifiedModel& model) {
+    for (Warning& warning : record_warnings(record, model.data_quality)) model.warnings.push_back(std::move(warning));
+}
+
+void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
+    if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
+    const double level = level_of_rest(fit) * record.scale.u_scale + record.scale.u_rest;
+    quality.notes.push_back("The record does not start at rest: y rests at u = " + number_text(level) +
+                            ", as estimated from the record (the first u is " + number_text(record.scale.u_rest) +
+                            "). Give u0 if it is known.");
+}
+
+/// Relative to the record's length: from there on a lag may be an integrator, or a drift.
+constexpr double kSlow = 0.5;
+
+/// Beside a quick part a slow one of many record lengths and a drift look the same.
+void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
+    if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kSlow) return;
+    warnings.push_back(
+        {"slow-part", "A part of the response has a lag of " +
+                          number_text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
+                          ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
+                          "open. Record longer, or ask for model fopdt or sopdt."});
+}
+
+/// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
+/// integrator's.
+void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnings) {
+    constexpr double kStrong = 10, kPoint = 1;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    const bool integrating = is_integrating(search.chosen().form.structure);
+    if (search.chosen().form.structure == Structure::unstable) return;
+    const double scale = search.context.record.scale.t_scale;
+    if (!integrating && search.chosen().shape.slowest_lag() < kSlow) return;
+    for (std::size_t i = 0; i < search.fits.size(); ++i) {
+        const Fit& fit = search.fits[i];
+        if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
+        if (is_integrating(fit.form.structure) == integrating) continue;
+        if (search.criteria[i] - search.criteria[chosen] > kStrong &&
+            search.percents[chosen] - search.percents[i] > kPoint)
+            continue;
+        const Fit& slow = integrating ? fit : search.chosen();
+        warnings.push_back({"slow-or-integrating",
+                            "A response with a time constant of " + number_text(slow.shape.slowest_lag() * scale, 3) +
+                                " explains this record as well as an integrator does: it ends too early to tell, and "
+                                "the static gain is open. Record longer, or choose the model by what is known of the "
+                                "process."});
+        return;
+    }
+}
+
+void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
+    if (fit.form.slope && !is_integrating(fit.form.structure)) {
+        const double slope = fit.linear[fit.form.slope_index()] * r.scale.y_scale / r.scale.t_scale;
+        warnings.push_back({"drift", "y drifts by " + number_text(slope, 3) +
+                                         " per unit of time beside its response to u (" +
+                                         number_text(slope * r.scale.t_scale, 3) +
+                                         " over the record). The model was fitted together with this drift."});
+    }
+    if (fit.form.load) {
+        const double size = fit.linear[fit.form.load_index()] / fit.linear[0] * r.scale.u_scale;
+        warnings.push_back(
+            {"load-disturbance",
+             "A lasting load as large as " + number_text(size, 3) + " of u reached the plant at about t = " +
+                 number_text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
+                 ", by the fit. The model was fitted together with this load; repeat the test without it if you can."});
+    }
+}
+
+/// A structure that Akaike's criterion does not tell from the chosen one.
+struct OpenChoice {
+    std::size_t index = 0;  ///< into the fits
+    double weight = 0;      ///< its likelihood by that criterion, the chosen one's is 1
+};
+
+/// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
+/// less than 4 above it (Burnham and Anderson 2002, section 2.6), with a gain that the record determines.
+std::vector<OpenChoice> open_choices(const Search& search, const std::vector<FittedPlant>& plants) {
+    constexpr double kOpen = 4;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    const double log_n = std::log(search.independent);
+    const auto akaike = [&](std::size_t i) {
+        return search.criteria[i] + (2 - log_n) * search.fits[i].form.parameters();
+    };
+    std::vector<OpenChoice> open;
+    if (search.chosen().form.structure == Structure::unstable) return open;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+        const Fit& fit = search.fits[i];
+        if (i == chosen || !fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
+            is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
+            continue;
+        const bool known = plants[i].standard_errors.at("K") <= std::abs(plants[i].values.at("K"));
+        const double above = akaike(i) - akaike(chosen);
+        if (known && above <= kOpen) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kOpen))});
+    }
+    return open;
+}
+
+/// The variance of K with the choice of structure left open, at least the chosen one's own: the mean of own variance
+/// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3).
+double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedPlant>& plants,
+                            const std::vector<OpenChoice>& open) {
+    const double its_own = std::pow(chosen.standard_errors.at("K"), 2);
+    double sum = its_own, weights = 1;
+    for (const auto& [index, weight] : open) {
+        const FittedPlant& other = plants[index];
+        const double own = other.standard_errors.at("K"), apart = other.values.at("K") - chosen.values.at("K");
+        sum += weight * (own * own + apart * apart);
+        weights += weight;
+    }
+    return std::max(its_own, sum / weights);
+}
+
+void widen_gain(FittedPlant& plant, double variance) {
+    ParameterCovariance& covariance = plant.covariance;
+    const auto at = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
+    covariance.matrix[at][at] = variance;
+    plant.standard_errors["K"] = std::sqrt(variance);
+}
+
+}  // namespace
+
+IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
+    const CleanRecord& record = search.context.record;
+    const FitData data = search.context.all();
+    IdentifiedModel model;
+    model.data_quality = describe_record(recorded);
+    // Means over blocks lie on no grid.
+    const double grid =
+        recorded.samples() == record.samples() ? model.data_quality.quantisation / record.scale.y_scale : 0;
+    std::vector<FittedPlant> plants;
+    for (Fit& fit : search.fits) {
+        if (fit.determined) jacobian(data, fit);
+        plants.push_back(fit.determined
+                             ? fitted_plant(record, fit, grid, model.data_quality.noise_std / record.scale.y_scale)
+                             : FittedPlant{});
+        fit.J.clear();
+    }
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    const std::vector<OpenChoice> open = open_choices(search, plants);
+    for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
+    if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
+    std::vector<int> order(search.fits.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
+    for (const int i : order) {
+        Fit& fit = search.fits[i];
+        if (!fit.determined) continue;
+        FittedPlant& fitted = plants[static_cast<std::size_t>(i)];
+        FitTrace trace = trace_of(record, fit.model);
+        model.candidates.push_back(
+            {fitted.plant, search.percents[i], search.criteria[i], fitted.standard_errors, trace.y_model});
+        if (i != search.choice.index) continue;
+        Diagnosis diagnosis = diagnose(record, fit, fitted.values, fitted.standard_errors, model.data_quality);
+        model.plant = fitted.plant;
+        model.fit_percent = search.percents[i];
+        model.standard_errors = std::move(fitted.standard_errors);
+        model.covariance = std::move(fitted.covariance);
+        model.choice_reason = search.choice.reason;
+        model.fit = std::move(trace);
+        model.data_quality.settled = diagnosis.settled;
+        model.warnings = std::move(diagnosis.warnings);
+        warn_disturbances(record, fit, model.warnings);
+        warn_slow_or_integrating(search, model.warnings);
+        warn_slow_part(record, fit, model.warnings);
+        add_record_warnings(recorded, model);
+        note_start(record, fit, model.data_quality);
+    }
+    if (search.part < 1) {
+        model.data_quality.notes.push_back("The model rests on the first " + number_text(100 * search.part, 2) +
+                                           " % of the record: over all of it an unstable plant's free run loses its "
+                                           "digits.");
+    }
+    if (at_shortest_lag(search.chosen())) {
+        model.warnings.push_back(
+            {"record-too-long",
+             "The unstable model's time constant is at the least that a record of this length can "
+             "show (a twentieth of it), so it is only a bound. Give the first few oscillations alone "
+             "(`from`, `to`)."});
+    }
+    if (record.moves_placed > 0) {
+        model.data_quality.notes.push_back(
+            std::to_string(record.moves_placed) +
+            " change(s) of u happened while rows are missing: each is placed where it explains y best.");
+    }
+    if (record.moved_between_rows) {
+        model.data_quality.notes.push_back(
+            "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "
+            "spaced, and y follows earlier than the rows of u say.");
+    }
+    return model;
+}
+
+IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, double K, double v_rest) {
+    static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
+    UnitResponse response, level;
+    unit_response(record.t, {record.v_time, record.v_level}, shape, 0, response);
+    unit_response(record.t, {kAtOnce, kUnit}, shape, 0, level);
+    const auto n = static_cast<std::size_t>(record.samples());
+    std::vector<double> y_model(n);
+    for (std::size_t i = 0; i < n; ++i) y_model[i] = K * (response.x[i] - v_rest * level.x[i]);
+    double offset = 0;
+    for (std::size_t i = 0; i < n; ++i) offset += (record.y[i] - y_model[i]) / static_cast<double>(n);
+    for (double& y : y_model) y += offset;
+
+    Fit fit;
+    fit.form.structure = shape.structure;
+    fit.shape = shape;
+    fit.linear = {K, offset};
+    fit.determined = true;
+    for (std::size_t i = 0; i < n; ++i) fit.residual.push_back(record.y[i] - y_model[i]);
+    IdentifiedModel model;
+    model.plant = plant_in_units(record.scale, fit);
+    model.fit_percent = fit_percent(record, fit);
+    model.fit = trace_of(record, y_model);
+    model.data_quality = describe_record(record);
+    add_record_warnings(record, model);
+    model.candidates.push_back({model.plant, model.fit_percent, 0, {}, model.fit.y_model});
+    return model;
+}
+
+void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& shift, IdentifiedModel& model) {
+    constexpr double kTwoPi = 2 * std::numbers::pi;
+    const double unit = r.scale.y_scale / r.scale.u_scale;
+    auto lag = [](std::complex<double> G) { return std::arg(G) > 0 ? std::arg(G) - kTwoPi : std::arg(G); };
+    const Harmonic& first = cycle.harmonics.front();
+    LimitCycle answer;
+    answer.Pu = cycle.period * r.scale.t_scale;
+    answer.Au = std::abs(first.G) * unit;
+    answer.phi_u = lag(first.G);
+    answer.periods = cycle.periods;
+    answer.shift = ShiftedPoint{shift.sigma, std::abs(shift.value) * unit, lag(shift.value)};
+    answer.describing_function = UltimatePoint{
+        (cycle.reversed ? -1 : 1) * 4 * cycle.v_half / (std::numbers::pi * cycle.y_half) / unit, answer.Pu};
+    model.limit_cycle = answer;
+    for (const Harmonic& h : cycle.harmonics) {
+        const bool known = std::abs(h.U) > 0.03 * std::abs(first.U) && h.G_std < 0.2 * std::abs(h.G);
+        if (h.order > 1 && !known) continue;
+        model.frequency_points.push_back(
+            {h.order * cycle.omega() / r.scale.t_scale, h.G.real() * unit, h.G.imag() * unit, h.G_std * unit});
+    }
+    model.data_quality.notes.push_back(
+        "The relay's oscillation repeats " + std::to_string(cycle.periods) + " times (" +
+        std::to_string(cycle.recorded_periods) + " whole periods are recorded), its period " + number_text(answer.Pu) +
+        (cycle.periods > 1 ? " +- " + number_text(cycle.period_scatter * r.scale.t_scale, 2) : "") + ".");
+}
+
+void add_excited_band(const CleanRecord& record, IdentifiedModel& model) {
+    // No sensor is taken to resolve less than a thousandth of what y did.
+    const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
+    const double noise = std::max({model.data_quality.noise_std, rounding, 1e-3 * record.scale.y_scale});
+    model.excited_band = excited_band(
+        {model.fit.t, model.fit.u, record.scale.u_rest, model.data_quality.sample_time, noise}, model.plant);
+}
+
+void add_ultimate_point(IdentifiedModel& model) {
+    if (const auto plant = LinearPlant::make(model.plant)) model.ultimate_point = ultimate_point(*plant);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,340 @@
+#include "engine/identification/fit/model_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/gap_moves.h"
+
+namespace tunewright {
+namespace {
+
+/// The structures to fit, simpler ones first, those to fit where these leave a pattern, and those that answer the
+/// request: the others only give starting values.
+struct Plan {
+    std::vector<Structure> fitted, answers, richer = {};
+};
+
+Plan plan_for(ModelChoice model, const CleanRecord& record) {
+    using enum Structure;
+    // An unstable plant is recorded under feedback, so u moves often; after one step any curve may look like its
+    // beginning.
+    const bool maybe_unstable = record.changes() > 2;
+    Plan plan;
+    switch (model) {
+        case ModelChoice::fopdt:
+            plan.fitted = {fopdt};
+            if (maybe_unstable) plan.fitted.push_back(unstable);
+            plan.answers = plan.fitted;
+            return plan;
+        case ModelChoice::sopdt: return {{fopdt, sopdt}, {sopdt}};
+        case ModelChoice::sopdt_zero: return {{fopdt, sopdt, sopdt_zero}, {sopdt_zero}};
+        case ModelChoice::ipdt: return {{ipdt}, {ipdt}};
+        case ModelChoice::ipdt_lag: return {{ipdt, ipdt_lag}, {ipdt_lag}};
+        case ModelChoice::automatic: break;
+    }
+    plan.fitted = {ipdt, fopdt, ipdt_lag, sopdt, sopdt_zero};
+    if (maybe_unstable) plan.fitted.push_back(unstable);
+    plan.richer = {third, ipdt_second};
+    plan.answers = plan.fitted;
+    plan.answers.insert(plan.answers.end(), plan.richer.begin(), plan.richer.end());
+    return plan;
+}
+
+void report(const RunControl& control, double fraction, std::string message) {
+    if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
+}
+
+/// The best-fitting candidate's residual is the nearest to noise: it says how many independent samples there are.
+double independent_samples(const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    return best == nullptr ? 4 : effective_samples(best->residual);
+}
+
+Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
+    std::erase_if(fits, [&](const Fit& fit) {
+        return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
+    });
+    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances};
+    finish_fits(search.context, search.fits);
+    search.independent = independent_samples(search.fits);
+    // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
+    constexpr double kMostNoise = 0.03;
+    const double noise = std::min(search.context.noise, kMostNoise), least = 0.8 * noise * noise;
+    for (const Fit& fit : search.fits) {
+        search.criteria.push_back(information_criterion(fit, search.independent, least));
+        search.percents.push_back(fit_percent(search.context.record, fit));
+    }
+    search.choice = choose(search.fits, search.criteria, search.percents, search.independent);
+    if (search.choice.index < 0) return search;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    polish(search.context, search.fits[chosen]);
+    search.criteria[chosen] = information_criterion(search.fits[chosen], search.independent, least);
+    search.percents[chosen] = fit_percent(search.context.record, search.fits[chosen]);
+    return search;
+}
+
+/// Whether the best fit leaves what another lag could explain: more than noise, or no white noise.
+bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    if (best == nullptr) return false;
+    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;
+    const double n = static_cast<double>(best->residual.size());
+    return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
+           correlation_time(best->residual) > kNotWhite;
+}
+
+Search fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+    const Plan plan = plan_for(model, context.record);
+    std::vector<Fit> fits;
+    for (std::size_t i = 0; i < plan.fitted.size() && !control.stop.stop_requested(); ++i) {
+        report(control, static_cast<double>(i) / static_cast<double>(plan.fitted.size()),
+               std::string("fitting ") + name_of(plan.fitted[i]));
+        fits.push_back(fit_structure(context, plan.fitted[i], disturbances, fits));
+    }
+    if (!plan.richer.empty() && wants_richer(context, fits)) {
+        report(control, 0.9, "fitting higher orders");
+        for (const Structure structure : plan.richer) {
+            if (!control.stop.stop_requested()) fits.push_back(fit_structure(context, structure, disturbances, fits));
+        }
+    }
+    return ranked(std::move(context), std::move(fits), plan, disturbances);
+}
+
+/// The chosen structure again with disturbances, and the one that it extends.
+Search fit_some(const Search& search, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+    const Structure chosen = search.chosen().form.structure;
+    const Plan answers = plan_for(model, search.context.record);
+    std::vector<Fit> fits;
+    for (const Structure structure :
+         {Structure::ipdt, Structure::fopdt, Structure::ipdt_lag, Structure::sopdt, chosen}) {
+        const bool extended =
+            is_integrating(structure) == is_integrating(chosen) && shape_size(structure) < shape_size(chosen);
+        if ((structure == chosen || extended) && !control.stop.stop_requested() &&
+            std::none_of(fits.begin(), fits.end(), [&](const Fit& f) { return f.form.structure == structure; }))
+            fits.push_back(fit_structure(search.context, structure, disturbances, fits));
+    }
+    return ranked(search.context, std::move(fits), answers, disturbances);
+}
+
+/// The record with each change of u midway between the row that shows it and the row before: what a logger that writes
+/// now and then has seen late.
+CleanRecord changed_between_rows(CleanRecord record) {
+    for (double& time : record.v_time) {
+        const auto row = std::lower_bound(record.t.begin(), record.t.end(), time);
+        if (row != record.t.begin()) time = 0.5 * (time + *std::prev(row));
+    }
+    record.moved_between_rows = true;
+    return record;
+}
+
+bool irregular(const CleanRecord& record) {
+    const double usual = usual_spacing(record);
+    std::size_t off = 0;
+    for (std::size_t i = 1; i < record.t.size(); ++i)
+        off += std::abs(record.t[i] - record.t[i - 1] - usual) > 0.1 * usual ? 1 : 0;
+    return 5 * off > record.t.size() - 1;
+}
+
+bool usable(const Search& search) { return search.choice.index >= 0; }
+
+void try_between_rows(Search& search, ModelChoice model, const RunControl& control) {
+    if (!irregular(search.context.record)) return;
+    const CleanRecord moved = changed_between_rows(search.context.record);
+    const Fit& now = search.chosen();
+    const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
+    // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
+    constexpr double kMuchWorse = 1.5;
+    if (!fit.determined || fit.sse > kMuchWorse * now.sse) return;
+    Search other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
+    if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
+    search = std::move(other);
+}
+
+/// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
+/// that leaves a third of the sum of squares or less.
+void try_gap_moves(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMuchLess = 3;
+    constexpr int kMost = 200;
+    // Misses of a few rows here and there are no pattern, and look like noise.
+    constexpr double kWorthLooking = 95;  // per cent
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
+    const std::vector<int> moves = gap_moves(search.context.record);
+    if (moves.empty() || static_cast<int>(moves.size()) > kMost) return;
+    Search other = search;
+    for (int round = 0; round < 2; ++round) {
+        CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
+        Search next = fit_all(fit_context(std::move(placed), search.context.relay, control.stop), model, {}, control);
+        if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
+        other = std::move(next);
+    }
+    if (kMuchLess * other.chosen().sse > search.chosen().sse) return;
+    search = std::move(other);
+}
+
+/// A late load can be told from the response only where u moves again; a drift also by what y does before u moves.
+bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
+
+bool shows_drift(const CleanRecord& r) {
+    constexpr int kEnoughBefore = 15;
+    const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
+    return r.changes() > 1 || before >= kEnoughBefore;
+}
+
+/// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
+/// in its place, and the choice made again.
+bool another_lag_does(Search& search, ModelChoice model, double by_drift, double independent) {
+    constexpr double kAsGood = 2;
+    const Plan plan = plan_for(model, search.context.record);
+    const auto fitted = [&](Structure structure) {
+        return std::ranges::any_of(search.fits, [&](const Fit& f) { return f.form.structure == structure; });
+    };
+    if (plan.richer.empty() || fitted(Structure::third) || !fitted(Structure::sopdt)) return false;
+    Fit richer = fit_structure(search.context, Structure::third, search.disturbances, search.fits);
+    if (!richer.determined || information_criterion(richer, independent) > by_drift + kAsGood) return false;
+    std::vector<Fit> fits = std::move(search.fits);
+    fits.push_back(std::move(richer));
+    search = ranked(search.context, std::move(fits), plan, search.disturbances);
+    return true;
+}
+
+/// A slow part beside a quick one that is slower than the record may stand in for a drift: then a drift is tried in its
+/// place, and kept where it explains the record as well.
+void try_drift_for_slow_part(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kSlow = 0.5, kAsGood = 2;
+    const Fit& now = search.chosen();
+    if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < kSlow || now.form.slope) return;
+    if (!shows_drift(search.context.record)) return;
+    Search other = fit_all(search.context, model, {true, false}, control);
+    if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
+    const double n = other.independent;
+    if (information_criterion(other.chosen(), n) > information_criterion(now, n) + kAsGood) return;
+    search = std::move(other);
+}
+
+/// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
+/// show it.
+void try_drift(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kPositive = 6, kStrong = 10;
+    const Fit& now = search.chosen();
+    if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
+    ModelForm form = now.form;
+    form.slope = true;
+    const Fit fit = fit_shape(search.context.some(), form, now.shape, {30, 1e-6}, control.stop);
+    const Fit plain = project(search.context.some(), now.form, now.shape);
+    if (!fit.determined) return;
+    // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
+    const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
+    const double lead = information_criterion(plain, n) - information_criterion(fit, n);
+    if (lead < (time < 2 ? kPositive : kStrong)) return;
+    if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
+    if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
+    Search other = fit_all(search.context, model, {true, false}, control);
+    if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
+    search = std::move(other);
+}
+
+void try_disturbances(Search& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMuchLess = 3, kFarLess = 30, kStrong = 10, kWorthLooking = 0.005;
+    const CleanRecord& record = search.context.record;
+    if (misfit(search.context, search.chosen()) < kWorthLooking) return;
+    const Search* best = &search;
+    std::vector<Search> others;
+    others.reserve(3);
+    for (const Disturbances& d : {Disturbances{true, false}, Disturbances{false, true}, Disturbances{true, true}}) {
+        if (control.stop.stop_requested()) return;
+        if ((d.slope && !shows_drift(record)) || (d.load && !shows_load(record))) continue;
+        // Both together only where neither alone explains the record.
+        if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
+        others.push_back(fit_some(search, model, d, control));
+        const Search& other = others.back();
+        if (!usable(other)) continue;
+        // A disturbance that leaves a pattern too stands in for a structure that is none of these.
+        const double less = best->chosen().sse / other.chosen().sse;
+        if (less < (leaves_a_pattern(other.context, other.chosen()) ? kFarLess : kMuchLess)) continue;
+        const double n = other.independent;
+        if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n))
+            best = &other;
+    }
+    if (best == &search) return;
+    search = fit_all(search.context, model, best->disturbances, control);
+}
+
+/// Of an unstable model, over so many time constants that its free run is all but arbitrary.
+bool runs_too_long(const Fit& fit) { return fit.form.structure == Structure::unstable && fit.shape.T() < 0.12; }
+
+/// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
+void try_beginning(Search& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
+    if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
+    for (const double part : {0.35, 0.12, 0.04}) {
+        if (control.stop.stop_requested()) return;
+        const CleanRecord beginning = first_part(record, part);
+        if (beginning.changes() < 3 || beginning.samples() < 40) return;
+        Search other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
+        if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
+        if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;
+        search = std::move(other);
+        search.part = part;
+        return;
+    }
+}
+
+}  // namespace
+
+bool at_shortest_lag(const Fit& fit) {
+    constexpr double kNear = 0.2;
+    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kShortestUnstable + kNear;
+}
+
+double misfit(const FitContext& context, const Fit& fit) {
+    const std::vector<double>& y = context.record.y;
+    const double n = static_cast<double>(y.size());
+    const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
+    double total = 0, left = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        total += (y[i] - mean) * (y[i] - mean);
+        left += fit.residual[i] * fit.residual[i];
+    }
+    // The noise is known to some ten per cent.
+    const double noise = 1.1 * context.noise;
+    return std::sqrt(std::max(0.0, left - n * noise * noise) / total);
+}
+
+Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
+    Search search = fit_all(fit_context(record, relay, control.stop), model, {}, control);
+    auto unexplained = [&] {
+        return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
+    };
+    if (relay && usable(search) && (unexplained() || runs_too_long(search.chosen())))
+        try_beginning(search, record, model, control);
+    if (search.part < 1) return search;
+    if (unexplained()) try_between_rows(search, model, control);
+    if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
+    if (unexplained()) try_disturbances(search, model, control);
+    if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
+        try_drift_for_slow_part(search, model, control);
+        if (!search.disturbances.slope) try_drift(search, model, control);
+    }
+    return search;
+}
+
+void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, const RunControl& control) {
+    const Plan plan = plan_for(model, search.context.record);
+    FitContext context = search.context;
+    context.anchors = std::move(anchors);
+    std::vector<Fit> fits;
+    for (const Fit& fit : search.fits) {
+        fits.push_back(fit.determined ? fit_shape(context.some(), fit.form, fit.shape, {}, control.stop) : fit);
+    }
+    search = ranked(std::move(context), std::move(fits), plan, search.disturbances);
+}
+
+}  // namespace tunewright

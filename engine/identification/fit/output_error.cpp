@@ -1,0 +1,385 @@
+#include "engine/identification/fit/output_error.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tunewright {
+namespace {
+
+/// y0 is an average of many readings in the user's eyes: it counts as ten samples.
+constexpr double kRestWeight = 3.1622776601683795;
+/// A column whose part outside the others' span is relatively below this is no independent one.
+constexpr double kDependent = 1e-9;
+constexpr double kStep = 1e-4;
+
+int anchor_rows(std::span<const Anchor> anchors) {
+    int rows = 0;
+    for (const Anchor& anchor : anchors) rows += anchor.omega > 0 ? 2 : 1;
+    return rows;
+}
+
+/// Everything known at one shape: the regressors' orthonormal basis and the projected residual.
+struct Projection {
+    Eigen::MatrixXd basis;
+    Eigen::VectorXd residual, linear;
+    bool determined = true;
+    double sse = std::numeric_limits<double>::max();
+};
+
+class OutputError {
+public:
+    OutputError(const FitData& data, const ModelForm& form)
+        : record_(*data.record),
+          anchors_(data.anchors),
+          form_(form),
+          n_(record_.samples()),
+          first_anchor_(n_ + (record_.y_rest ? 1 : 0)),
+          rows_(first_anchor_ + anchor_rows(anchors_)),
+          y_(rows_),
+          columns_(rows_, form.linear_size()) {
+        for (int i = 0; i < n_; ++i) y_[i] = record_.y[i];
+        if (record_.y_rest) y_[n_] = kRestWeight * *record_.y_rest;
+        int row = first_anchor_;
+        for (const Anchor& anchor : anchors_) {
+            y_[row++] = anchor.weight * anchor.value.real();
+            if (anchor.omega > 0) y_[row++] = anchor.weight * anchor.value.imag();
+        }
+    }
+
+    /// n_rows x linear_size, kept until the next call.
+    const Eigen::MatrixXd& regressors(const Shape& shape) {
+        const bool zero = form_.gains() == 2;
+        respond(shape, zero ? 1 : 0);
+        columns_.setZero();
+        fill(0, now_, zero);
+        columns_.col(form_.offset_index()).head(n_).setOnes();
+        if (form_.other_level) fill(form_.level_index(), level_, zero);
+        if (form_.slope) columns_.col(form_.slope_index()).head(n_) = column(record_.t);
+        if (form_.load) fill(form_.load_index(), load_, zero);
+        if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
+        int row = first_anchor_;
+        for (const Anchor& anchor : anchors_) {
+            const std::complex<double> s(0, anchor.omega), g = anchor.weight * unit_transfer(shape, s);
+            for (int k = 0; k < form_.gains(); ++k) {
+                const std::complex<double> value = k == 0 ? g : s * g;
+                columns_(row, k) = value.real();
+                if (anchor.omega > 0) columns_(row + 1, k) = value.imag();
+            }
+            row += anchor.omega > 0 ? 2 : 1;
+        }
+        return columns_;
+    }
+
+    void project(const Shape& shape, Projection& result) {
+        orthogonalise(regressors(shape), result);
+        result.sse = result.residual.squaredNorm();
+    }
+
+    /// By normal equations: fast, good to the square root of the precision.
+    double rough_sum(const Shape& shape) {
+        const Eigen::MatrixXd& A = regressors(shape);
+        const int m = static_cast<int>(A.cols());
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> G(m, m);
+        Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> b(m);
+        for (int k = 0; k < m; ++k) {
+            b[k] = A.col(k).dot(y_);
+            for (int i = 0; i <= k; ++i) G(i, k) = G(k, i) = A.col(i).dot(A.col(k));
+            G(k, k) *= 1 + 1e-12;
+        }
+        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> x = G.ldlt().solve(b);
+        const double sum = y_.squaredNorm() - b.dot(x);
+        return std::isfinite(sum) ? std::max(sum, 0.0) : std::numeric_limits<double>::max();
+    }
+
+    /// d model/d searched, n_rows x searched, kept until the next call.
+    Eigen::MatrixXd& sensitivities(const Shape& shape, const Eigen::VectorXd& linear) {
+        const std::vector<int> places = form_.searched();
+        D_.setZero(rows_, static_cast<Eigen::Index>(places.size()));
+        const bool zero = form_.gains() == 2;
+        respond(shape, zero ? 2 : 1);
+        add_slopes(0, 0, now_, -1, linear);
+        if (form_.other_level) add_slopes(0, form_.level_index(), level_, -1, linear);
+        if (form_.load) add_slopes(static_cast<int>(places.size()) - 1, form_.load_index(), load_, -1, linear);
+        add_anchor_slopes(shape, linear);
+        for (std::size_t k = 1; k < places.size(); ++k) {
+            if (places[k] == kLoadTime) continue;
+            for (const double sign : {1.0, -1.0}) {
+                Shape moved = shape;
+                moved.p[places[k]] += sign * kStep;
+                add_model(static_cast<int>(k), moved, linear, sign / (2 * kStep));
+            }
+        }
+        return D_;
+    }
+
+    Fit finish(const Shape& shape, const Projection& p) const {
+        Fit fit;
+        fit.form = form_;
+        fit.shape = shape;
+        fit.linear.assign(p.linear.begin(), p.linear.end());
+        fit.residual.assign(p.residual.begin(), p.residual.begin() + n_);
+        fit.model.resize(n_);
+        for (int i = 0; i < n_; ++i) fit.model[i] = record_.y[i] - fit.residual[i];
+        fit.sse = p.sse;
+        fit.determined = p.determined;
+        return fit;
+    }
+
+private:
+    static Eigen::Map<const Eigen::VectorXd> column(const std::vector<double>& values) {
+        return {values.data(), static_cast<Eigen::Index>(values.size())};
+    }
+
+    void respond(const Shape& shape, int derivatives) {
+        static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
+        unit_response(record_.t, {record_.v_time, record_.v_level}, shape, derivatives, now_);
+        if (form_.other_level) unit_response(record_.t, {kAtOnce, kUnit}, shape, derivatives, level_);
+        if (!form_.load) return;
+        Shape undelayed = shape;
+        undelayed.p[0] = 0;
+        const double when[] = {shape.load_time()};
+        unit_response(record_.t, {when, kUnit}, undelayed, derivatives, load_);
+    }
+
+    void fill(int k, const UnitResponse& response, bool zero) {
+        columns_.col(k).head(n_) = column(response.x);
+        if (zero) columns_.col(k + 1).head(n_) = column(response.x1);
+    }
+
+    /// Adds `sign` times the time derivative of what the coefficients from `index` on contribute.
+    void add_slopes(int place, int index, const UnitResponse& response, double sign, const Eigen::VectorXd& linear) {
+        auto target = D_.col(place).head(n_);
+        target += sign * linear[index] * column(response.x1);
+        if (form_.gains() == 2) target += sign * linear[index + 1] * column(response.x2);
+    }
+
+    std::complex<double> anchored(const Anchor& anchor, const Shape& shape, const Eigen::VectorXd& linear) const {
+        const std::complex<double> s(0, anchor.omega);
+        const std::complex<double> gain = form_.gains() == 2 ? linear[0] + linear[1] * s : linear[0];
+        return anchor.weight * gain * unit_transfer(shape, s);
+    }
+
+    void add_at_anchor(int row, int place, const Anchor& anchor, std::complex<double> value) {
+        D_(row, place) += value.real();
+        if (anchor.omega > 0) D_(row + 1, place) += value.imag();
+    }
+
+    void add_anchor_slopes(const Shape& shape, const Eigen::VectorXd& linear) {
+        int row = first_anchor_;
+        for (const Anchor& anchor : anchors_) {
+            add_at_anchor(row, 0, anchor, -std::complex<double>(0, anchor.omega) * anchored(anchor, shape, linear));
+            row += anchor.omega > 0 ? 2 : 1;
+        }
+    }
+
+    /// Adds `weight` times the model at `shape` to column `place`.
+    void add_model(int place, const Shape& shape, const Eigen::VectorXd& linear, double weight) {
+        const bool zero = form_.gains() == 2;
+        respond(shape, zero ? 1 : 0);
+        auto add = [&](int index, const UnitResponse& response) {
+            auto target = D_.col(place).head(n_);
+            target += weight * linear[index] * column(response.x);
+            if (zero) target += weight * linear[index + 1] * column(response.x1);
+        };
+        add(0, now_);
+        if (form_.other_level) add(form_.level_index(), level_);
+        if (form_.load) add(form_.load_index(), load_);
+        int row = first_anchor_;
+        for (const Anchor& anchor : anchors_) {
+            add_at_anchor(row, place, anchor, weight * anchored(anchor, shape, linear));
+            row += anchor.omega > 0 ? 2 : 1;
+        }
+    }
+
+    /// Gram-Schmidt with one repetition; the gain's column comes last, so that its independence of the others is what
+    /// is judged.
+    void orthogonalise(const Eigen::MatrixXd& columns, Projection& result) const {
+        const int m = static_cast<int>(columns.cols());
+        result.basis.resize(rows_, m);
+        result.linear = Eigen::VectorXd::Zero(m);
+        result.determined = true;
+        Eigen::MatrixXd R = Eigen::MatrixXd::Zero(m, m);
+        Eigen::VectorXd coordinates = Eigen::VectorXd::Zero(m);
+        result.residual = y_;
+        for (int k = 0; k < m; ++k) {
+            auto q = result.basis.col(k);
+            q = columns.col(m - 1 - k);
+            const double length = q.norm();
+            for (int pass = 0; pass < 2; ++pass) {
+                for (int i = 0; i < k; ++i) {
+                    const double part = result.basis.col(i).dot(q);
+                    R(i, k) += part;
+                    q -= part * result.basis.col(i);
+                }
+            }
+            const double rest = q.norm();
+            if (!(rest > kDependent * length) || rest < 1e-150) {
+                if (k == m - 1) result.determined = false;
+                R(k, k) = 1;
+                q.setZero();
+                continue;
+            }
+            R(k, k) = rest;
+            q /= rest;
+            coordinates[k] = q.dot(result.residual);
+            result.residual -= coordinates[k] * q;
+        }
+        const Eigen::VectorXd solution = R.triangularView<Eigen::Upper>().solve(coordinates);
+        for (int k = 0; k < m; ++k) result.linear[m - 1 - k] = solution[k];
+    }
+
+    const CleanRecord& record_;
+    std::span<const Anchor> anchors_;
+    ModelForm form_;
+    int n_, first_anchor_, rows_;
+    Eigen::VectorXd y_;
+    Eigen::MatrixXd columns_, D_;
+    UnitResponse now_, level_, load_;
+};
+
+Shape clamped(Shape shape, const ShapeBounds& bounds) {
+    for (std::size_t k = 0; k < shape.p.size(); ++k) shape.p[k] = std::clamp(shape.p[k], bounds.low[k], bounds.high[k]);
+    return shape;
+}
+
+/// Parameters that a step would push through their bound take no part in it.
+std::vector<int> free_parameters(const Shape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
+                                 const Eigen::VectorXd& descent) {
+    std::vector<int> free;
+    for (int k = 0; k < descent.size(); ++k) {
+        const double value = shape.p[places[k]];
+        const bool blocked =
+            (value <= bounds.low[places[k]] && descent[k] < 0) || (value >= bounds.high[places[k]] && descent[k] > 0);
+        if (!blocked) free.push_back(k);
+    }
+    return free;
+}
+
+Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd& descent, const std::vector<int>& free,
+                            double lambda) {
+    const int m = static_cast<int>(free.size());
+    Eigen::MatrixXd A(m, m);
+    Eigen::VectorXd b(m);
+    const double floor = 1e-12 * normal.diagonal().maxCoeff();
+    for (int i = 0; i < m; ++i) {
+        for (int j = 0; j < m; ++j) A(i, j) = normal(free[i], free[j]);
+        A(i, i) += lambda * std::max(A(i, i), floor);
+        b[i] = descent[free[i]];
+    }
+    const Eigen::VectorXd reduced = A.ldlt().solve(b);
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(descent.size());
+    for (int i = 0; i < m; ++i) step[free[i]] = reduced[i];
+    return step;
+}
+
+/// A full step in a logarithm beyond this leaves the region where the linearisation means anything.
+Shape moved_by(const Shape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
+               const ShapeBounds& bounds) {
+    constexpr double kLongest = 1.5;
+    double longest = 0;
+    for (int k = 1; k < step.size(); ++k) longest = std::max(longest, std::abs(step[k]));
+    const double shrink = longest > kLongest ? kLongest / longest : 1;
+    Shape next = shape;
+    for (int k = 0; k < step.size(); ++k) next.p[places[k]] += shrink * step[k];
+    return clamped(next, bounds);
+}
+
+double distance(const Shape& a, const Shape& b) {
+    double largest = 0;
+    for (std::size_t k = 0; k < a.p.size(); ++k) largest = std::max(largest, std::abs(a.p[k] - b.p[k]));
+    return largest;
+}
+
+}  // namespace
+
+std::vector<int> ModelForm::searched() const {
+    std::vector<int> places = shape_places(structure);
+    if (load) places.push_back(kLoadTime);
+    return places;
+}
+
+ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
+    const double spacing = 1.0 / std::max(1, record.samples() - 1);
+    ShapeBounds bounds;
+    const double shortest = std::log(std::min(0.02 * spacing, 1e-3));
+    bounds.low = {0, shortest, std::log(1e-4), 0, shortest};
+    bounds.high = {std::max(0.0, record.response_time()), std::log(100.0), std::log(2500.0), 1 - 3 * spacing,
+                   std::log(100.0)};
+    if (structure == Structure::ipdt_second) bounds.high[1] = std::log(10.0);
+    if (structure == Structure::ipdt_lag) bounds.high[1] = std::log(10.0);
+    if (structure == Structure::unstable) bounds.low[1] = kShortestUnstable, bounds.high[1] = std::log(10.0);
+    return bounds;
+}
+
+Fit project(const FitData& data, const ModelForm& form, const Shape& shape) {
+    OutputError problem(data, form);
+    Projection here;
+    problem.project(shape, here);
+    return problem.finish(shape, here);
+}
+
+std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<Shape>& shapes,
+                                    std::stop_token stop) {
+    OutputError problem(data, form);
+    std::vector<double> sums(shapes.size(), std::numeric_limits<double>::max());
+    for (std::size_t i = 0; i < shapes.size() && !stop.stop_requested(); ++i) sums[i] = problem.rough_sum(shapes[i]);
+    return sums;
+}
+
+Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, const Effort& effort,
+              std::stop_token stop) {
+    constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
+    OutputError problem(data, form);
+    const std::vector<int> places = form.searched();
+    const ShapeBounds bounds = shape_bounds(*data.record, form.structure);
+    Shape shape = clamped(start, bounds);
+    Projection here, there;
+    problem.project(shape, here);
+    double lambda = 1e-3;
+    int iteration = 0;
+    for (; iteration < effort.most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
+         ++iteration) {
+        Eigen::MatrixXd& D = problem.sensitivities(shape, here.linear);
+        D -= here.basis * (here.basis.transpose() * D);
+        const Eigen::VectorXd descent = D.transpose() * here.residual;
+        const Eigen::MatrixXd normal = D.transpose() * D;
+        const std::vector<int> free = free_parameters(shape, places, bounds, descent);
+        if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
+        bool converged = false, better = false;
+        while (!better && !converged && lambda < kLargestDamping) {
+            const Shape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
+            const double moved = distance(next, shape);
+            problem.project(next, there);
+            converged = !(moved > kSmallestStep);
+            better = there.sse < here.sse;
+            if (better) {
+                converged |= here.sse - there.sse < effort.tolerance * here.sse;
+                shape = next;
+                std::swap(here, there);
+                lambda = std::max(1e-9, lambda / 8);
+            } else {
+                lambda *= 6;
+            }
+        }
+        if (converged) break;
+    }
+    Fit fit = problem.finish(shape, here);
+    fit.iterations = iteration;
+    return fit;
+}
+
+void jacobian(const FitData& data, Fit& fit) {
+    OutputError problem(data, fit.form);
+    const Eigen::MatrixXd columns = problem.regressors(fit.shape);
+    const Eigen::VectorXd linear =
+        Eigen::Map<const Eigen::VectorXd>(fit.linear.data(), static_cast<Eigen::Index>(fit.linear.size()));
+    const Eigen::MatrixXd& D = problem.sensitivities(fit.shape, linear);
+    fit.J.clear();
+    for (const Eigen::MatrixXd* part : {&D, &columns}) {
+        for (int k = 0; k < part->cols(); ++k) fit.J.emplace_back(part->col(k).begin(), part->col(k).end());
+    }
+}
+
+}  // namespace tunewright

@@ -1,0 +1,96 @@
+// Output-error least squares: the free run of a model against the measurement.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "engine/identification/fit/response.h"
+
+namespace tunewright {
+
+/// What the model of a structure is made of beside its shape. The linear coefficients are, in this order: the gain,
+/// gain times b (sopdt_zero), the offset, and those of what else moved y, where it is looked for: the size of the
+/// unseen first step (times the gain, and times gain b), the slope, the load (as the unseen step).
+struct ModelForm {
+    Structure structure = Structure::fopdt;
+    bool other_level = false;  ///< at rest at an unknown level, which u left for its first value at the first sample
+    bool slope = false;        ///< y drifts; integrating structures: the level of rest is unknown
+    bool load = false;         ///< a lasting step of unknown size is added to u from Shape::load_time on, without L
+
+    int gains() const { return structure == Structure::sopdt_zero ? 2 : 1; }
+    int offset_index() const { return gains(); }
+    int level_index() const { return gains() + 1; }
+    int slope_index() const { return level_index() + (other_level ? gains() : 0); }
+    int load_index() const { return slope_index() + (slope ? 1 : 0); }
+    int linear_size() const { return load_index() + (load ? gains() : 0); }
+    /// Places in Shape::p that are searched for.
+    std::vector<int> searched() const;
+    int parameters() const { return shape_size(structure) + (load ? 1 : 0) + linear_size(); }
+};
+
+/// Bounds of the search, dimensionless, from the record's sampling and length.
+struct ShapeBounds {
+    std::array<double, 5> low{}, high{};
+};
+/// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
+inline constexpr double kShortestUnstable = -2.995732273553991;
+ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
+
+/// A value of the frequency response that the model is held to: a row of the least-squares problem with this weight
+/// (the inverse of its standard deviation relative to that of y's samples).
+struct Anchor {
+    double omega = 0;  ///< dimensionless; 0: the static gain
+    std::complex<double> value;
+    double weight = 0;
+};
+
+/// A model fitted to a clean record; dimensionless.
+struct Fit {
+    ModelForm form;
+    Shape shape;
+    std::vector<double> linear;    ///< linear_size() coefficients
+    std::vector<double> model;     ///< n_samples: the free run
+    std::vector<double> residual;  ///< n_samples: y - model
+    double sse = 0;                ///< sum of squares, that of y_rest's row and the anchors' included
+    /// Columns d model/d searched, then d model/d linear; rows as in the least-squares problem: n_samples, one for
+    /// y_rest if there is one, then the anchors'. Empty until `jacobian`.
+    std::vector<std::vector<double>> J;
+    bool determined = false;  ///< the gain's column is independent of the others
+    int iterations = 0;
+    /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
+    /// estimator than least squares knows it. Empty: J tells it.
+    std::vector<std::vector<double>> deviations;
+};
+
+/// The data of a least-squares problem. The referred record and anchors must outlive it.
+struct FitData {
+    const CleanRecord* record = nullptr;
+    std::span<const Anchor> anchors = {};
+};
+
+/// The linear coefficients for a fixed shape by orthogonal projection (variable projection: Golub and Pereyra 1973),
+/// and the fit's residual.
+Fit project(const FitData& data, const ModelForm& form, const Shape& shape);
+
+/// The sum of squares alone, of many shapes, to about 1e-10 of y's own: for ranking starts. By normal equations.
+std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<Shape>& shapes,
+                                    std::stop_token stop);
+
+/// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
+/// projected Jacobian), from `start`. Sensitivities to L and the load's time are exact, those to the logarithms are
+/// central differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more
+/// than 1e-9 or lowers the sum of squares by less than `tolerance` of itself, after `most_iterations`, or when asked
+/// to.
+struct Effort {
+    int most_iterations = 60;
+    double tolerance = 1e-11;
+};
+Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, const Effort& effort,
+              std::stop_token stop);
+
+/// Fills `fit.J`.
+void jacobian(const FitData& data, Fit& fit);
+
+}  // namespace tunewright

@@ -1,0 +1,111 @@
+#include "engine/identification/fit/reading_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+constexpr std::size_t kLongestRun = 3;
+constexpr double kOfRange = 0.05;
+
+/// The size of a usual value of the series: its median magnitude, as a standard deviation.
+double usual_size(const std::vector<double>& values) {
+    std::vector<double> sizes;
+    for (const double value : values) sizes.push_back(std::abs(value));
+    return sizes.empty() ? 0 : median(std::move(sizes)) / 0.6745;
+}
+
+std::vector<bool> lone_misses(const Fit& fit) {
+    constexpr double kTimesUsual = 10, kNeighbours = 0.4;
+    const std::vector<double>& e = fit.residual;
+    const double least = std::max(kOfRange, kTimesUsual * usual_size(e));
+    std::vector<bool> lone(e.size(), false);
+    for (std::size_t i = 0; i < e.size(); ++i) {
+        if (std::abs(e[i]) < least) continue;
+        std::size_t end = i + 1;
+        while (end < e.size() && std::abs(e[end]) >= least) ++end;
+        const double limit = kNeighbours * std::abs(e[i]);
+        const bool alone = (i == 0 || std::abs(e[i - 1]) < limit) && (end == e.size() || std::abs(e[end]) < limit);
+        if (alone && end - i <= 2)
+            std::fill(lone.begin() + static_cast<std::ptrdiff_t>(i), lone.begin() + static_cast<std::ptrdiff_t>(end),
+                      true);
+        i = end - 1;
+    }
+    return lone;
+}
+
+/// Marks runs that y jumps to and back from, by far more than it moves from sample to sample otherwise.
+void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
+    constexpr double kOfRangeAtOnce = 0.25, kTimesUsual = 10;
+    std::vector<double> moves;
+    for (std::size_t i = 1; i < y.size(); ++i) moves.push_back(y[i] - y[i - 1]);
+    const double least = std::max(kOfRangeAtOnce, kTimesUsual * usual_size(moves));
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        if (std::abs(moves[i]) < least) continue;
+        for (std::size_t k = i + 1; k < moves.size() && k <= i + kLongestRun; ++k) {
+            if (moves[k] * moves[i] >= 0 || std::abs(moves[k]) < least) continue;
+            std::fill(marked.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                      marked.begin() + static_cast<std::ptrdiff_t>(k) + 1, true);
+            break;
+        }
+    }
+}
+
+/// How far the model lies from the samples that it was not fitted to, at least; their places are in the whole record.
+double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const Search& found) {
+    const Fit there = project(found.context.all(), found.chosen().form, found.chosen().shape);
+    UnitResponse response, level;
+    static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
+    std::vector<double> times;
+    for (const std::size_t i : left_out) times.push_back(whole.t[i]);
+    const ModelForm& form = there.form;
+    const int derivatives = form.gains() - 1;
+    unit_response(times, {whole.v_time, whole.v_level}, there.shape, derivatives, response);
+    unit_response(times, {kAtOnce, kUnit}, there.shape, derivatives, level);
+    double least = 1e300;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        double y = there.linear[static_cast<std::size_t>(form.offset_index())];
+        const auto add = [&](int index, const UnitResponse& x) {
+            y += there.linear[static_cast<std::size_t>(index)] * x.x[k];
+            if (form.gains() == 2) y += there.linear[static_cast<std::size_t>(index) + 1] * x.x1[k];
+        };
+        add(0, response);
+        if (form.other_level) add(form.level_index(), level);
+        if (form.slope) y += there.linear[static_cast<std::size_t>(form.slope_index())] * times[k];
+        least = std::min(least, std::abs(whole.y[left_out[k]] - y));
+    }
+    return least;
+}
+
+}  // namespace
+
+std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& fit) {
+    std::vector<bool> marked = lone_misses(fit);
+    mark_jumps(record.y, marked);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < marked.size(); ++i) {
+        if (marked[i]) found.push_back(i);
+    }
+    const std::size_t most = std::max<std::size_t>(4, marked.size() / 100);
+    return found.size() <= most ? found : std::vector<std::size_t>{};
+}
+
+Search without_false_readings(Search search, CleanRecord& record, ModelChoice model, const RunControl& control) {
+    constexpr double kTimesOthers = 8;
+    if (search.context.record.samples() != record.samples() || search.part < 1) return search;
+    const std::vector<std::size_t> doubtful = doubtful_samples(record, search.chosen());
+    if (doubtful.empty()) return search;
+    CleanRecord rest = without_samples(record, doubtful);
+    Search again = search_models(rest, model, search.context.relay, control);
+    if (again.choice.index < 0 || control.stop.stop_requested()) return search;
+    const Fit& fit = again.chosen();
+    const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
+    if (least_miss(record, doubtful, again) < std::max(kOfRange, kTimesOthers * rms)) return search;
+    record = std::move(rest);
+    return again;
+}
+
+}  // namespace tunewright

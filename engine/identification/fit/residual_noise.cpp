@@ -1,0 +1,165 @@
+#include "engine/identification/fit/residual_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tunewright {
+namespace {
+
+constexpr std::size_t kBlocks = 80;
+
+/// Of all orders from 0 on.
+std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
+    const std::size_t n = e.size();
+    std::vector<double> forward(e.begin(), e.end()), backward(e.begin(), e.end());
+    double variance = 0;
+    for (const double value : e) variance += value * value / static_cast<double>(n);
+    std::vector<Autoregression> orders = {{{}, std::sqrt(variance)}};
+    for (std::size_t k = 1; k <= highest && k + 4 < n; ++k) {
+        double cross = 0, squares = 0;
+        for (std::size_t i = k; i < n; ++i) {
+            cross += forward[i] * backward[i - 1];
+            squares += forward[i] * forward[i] + backward[i - 1] * backward[i - 1];
+        }
+        if (!(squares > 0)) break;
+        const double reflection = 2 * cross / squares;
+        const std::vector<double>& before = orders.back().a;
+        std::vector<double> a(before);
+        for (std::size_t i = 0; i < before.size(); ++i) a[i] = before[i] - reflection * before[before.size() - 1 - i];
+        a.push_back(reflection);
+        for (std::size_t i = n; i-- > k;) {
+            const double f = forward[i], b = backward[i - 1];
+            forward[i] = f - reflection * b;
+            backward[i] = b - reflection * f;
+        }
+        variance *= 1 - reflection * reflection;
+        orders.push_back({std::move(a), std::sqrt(variance)});
+    }
+    return orders;
+}
+
+/// Of the order with the least Akaike criterion.
+Autoregression autoregression(std::span<const double> e, std::size_t highest) {
+    const double n = static_cast<double>(e.size());
+    const std::vector<Autoregression> orders = burg(e, highest);
+    const auto criterion = [&](const Autoregression& model) {
+        return 2 * n * std::log(std::max(model.innovation, 1e-150)) + 2 * static_cast<double>(model.a.size());
+    };
+    return *std::ranges::min_element(orders, {}, criterion);
+}
+
+/// Puts back what the fit has taken of slow noise: the coefficient of a first order rises, the innovations stay.
+void correct(std::vector<double>& a, double n, int parameters) {
+    if (a.empty() || a[0] <= 0) return;
+    const double most = 1 - 3 / n, m = parameters;
+    a[0] = std::max(a[0], std::min(most, a[0] + (m + (m + 2) * a[0]) / n));
+}
+
+/// Means over blocks of rows; the last block may be shorter.
+Eigen::MatrixXd block_means(const Eigen::MatrixXd& X, Eigen::Index block) {
+    const Eigen::Index count = (X.rows() + block - 1) / block;
+    Eigen::MatrixXd means(count, X.cols());
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Eigen::Index rows = std::min(block, X.rows() - i * block);
+        means.row(i) = X.middleRows(i * block, rows).colwise().mean();
+    }
+    return means;
+}
+
+/// What the rows of X have beyond the means over their blocks.
+Eigen::MatrixXd inside_blocks(const Eigen::MatrixXd& X, const Eigen::MatrixXd& means, Eigen::Index block) {
+    Eigen::MatrixXd rest = X;
+    for (Eigen::Index c = 0; c < X.cols(); ++c) {
+        for (Eigen::Index i = 0; i < X.rows(); ++i) rest(i, c) -= means(i / block, c);
+    }
+    return rest;
+}
+
+std::vector<double> values(const Eigen::MatrixXd& column) { return {column.data(), column.data() + column.size()}; }
+
+}  // namespace
+
+Autoregression::Gains Autoregression::gains(std::size_t n) const {
+    Gains result;
+    if (a.empty()) return result;
+    std::vector<double> h = {1};
+    for (std::size_t k = 1; k < 20 * n; ++k) {
+        double value = 0;
+        for (std::size_t i = 0; i < a.size() && i < k; ++i) value += a[i] * h[k - 1 - i];
+        h.push_back(value);
+        result.variance += value * value;
+        if (k > 8 && std::abs(value) < 1e-6 && std::abs(h[k - 1]) < 1e-6) break;
+    }
+    const double rest = 1 - std::accumulate(a.begin(), a.end(), 0.0);
+    result.time = std::max(1.0, 1 / (rest * rest * result.variance));
+    return result;
+}
+
+Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
+    const double variance = innovation * innovation;
+    const auto order = static_cast<Eigen::Index>(a.size()), n = X.rows();
+    if (order == 0) return variance * (X.transpose() * X);
+    // R = innovation^2 H H' with H the impulse response: H' is the same filter backward in time, and what it goes on to
+    // give before the first row makes the noise stationary there.
+    Eigen::MatrixXd Z = X;
+    for (Eigen::Index c = 0; c < Z.cols(); ++c) {
+        double* z = Z.col(c).data();
+        for (Eigen::Index i = n; i-- > 0;) {
+            for (Eigen::Index k = 1; k <= order && i + k < n; ++k)
+                z[i] += a[static_cast<std::size_t>(k - 1)] * z[i + k];
+        }
+    }
+    Eigen::MatrixXd product = Z.transpose() * Z, next = Z.topRows(std::min(order, n));
+    const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), next.rows());
+    const double enough = 1e-12 * product.diagonal().maxCoeff();
+    Eigen::RowVectorXd row(X.cols());
+    for (Eigen::Index i = 0; i < 20 * n && next.row(0).squaredNorm() > enough; ++i) {
+        row.noalias() = filter * next;
+        for (Eigen::Index k = next.rows() - 1; k > 0; --k) next.row(k) = next.row(k - 1).eval();
+        next.row(0) = row;
+        product.noalias() += row.transpose() * row;
+    }
+    return variance * product;
+}
+
+ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, double least) {
+    const std::size_t n = residual.size();
+    block_ = static_cast<Eigen::Index>(std::max<std::size_t>(1, n / kBlocks));
+    const Eigen::MatrixXd e = Eigen::Map<const Eigen::VectorXd>(residual.data(), static_cast<Eigen::Index>(n));
+    const Eigen::MatrixXd means = block_means(e, block_);
+    slow_ = autoregression(values(means), 1);
+    correct(slow_.a, static_cast<double>(means.rows()), parameters);
+    if (block_ > 1) fast_ = autoregression(values(inside_blocks(e, means, block_)), 3);
+    const double block = static_cast<double>(block_), count = static_cast<double>(n);
+    // Each parameter takes a degree of freedom from the whole; slow regressors take it from the means.
+    slow_.innovation *=
+        std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
+    const auto gains = slow_.gains(static_cast<std::size_t>(means.rows()));
+    slow_.innovation = std::max(slow_.innovation, std::sqrt(least / block / gains.variance));
+    long_run_ = block * slow_.innovation * slow_.innovation * gains.variance * gains.time;
+    const double marginal = std::max(e.squaredNorm() / count, least);
+    freedom_ = std::max(1.0, count / std::max(1.0, long_run_ / marginal) - parameters);
+}
+
+Eigen::MatrixXd ResidualNoise::weighed(const Eigen::MatrixXd& X) const {
+    const Eigen::MatrixXd means = block_means(X, block_);
+    const double block = static_cast<double>(block_);
+    Eigen::MatrixXd product = block * block * slow_.weighed(means);
+    if (block_ == 1) return product;
+    if (!fast_.a.empty()) return product + fast_.weighed(inside_blocks(X, means, block_));
+    // White inside: what the rows have beyond their means needs no rows of its own.
+    Eigen::MatrixXd of_means = block * (means.transpose() * means);
+    const double last = static_cast<double>(X.rows()) - block * static_cast<double>(means.rows() - 1);
+    of_means += (last - block) * means.bottomRows(1).transpose() * means.bottomRows(1);
+    return product + fast_.innovation * fast_.innovation * (X.transpose() * X - of_means);
+}
+
+double student_factor(double freedom) {
+    constexpr double z = 1.959964;
+    const double v = std::max(freedom, 2.0);
+    const double t = z + (z * z * z + z) / (4 * v) + (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * v * v);
+    return t / z;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,305 @@
+#include "engine/identification/fit/response.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tunewright {
+namespace {
+
+/// Evenly spaced times differ by their rounding; steps this close share their exponentials. Over a million samples that
+/// amounts to 1e-9 of the record's length.
+constexpr double kSameStep = 1e-15;
+
+bool same_step(double a, double b) { return std::abs(a - b) <= kSameStep; }
+
+/// The transition over two step lengths: the usual one, and what a change of the input between samples leaves.
+template <class Transition>
+class TwoSteps {
+public:
+    template <class Make>
+    const Transition& over(double dt, const Make& make) {
+        if (same_step(dt, usual_dt_)) return usual_;
+        if (same_step(dt, other_dt_)) {
+            std::swap(usual_dt_, other_dt_);
+            std::swap(usual_, other_);
+            return usual_;
+        }
+        other_dt_ = dt;
+        other_ = make(dt);
+        return other_;
+    }
+
+private:
+    double usual_dt_ = -1, other_dt_ = -1;
+    Transition usual_{}, other_{};
+};
+
+/// T x' + x = v.
+struct Lag {
+    double T, x = 0;
+    TwoSteps<double> decay = {};
+
+    void advance(double dt, double v) {
+        x = v + (x - v) * decay.over(dt, [&](double step) { return std::exp(-step / T); });
+    }
+    double value() const { return x; }
+    double slope(double v) const { return (v - x) / T; }
+    double curvature(double v) const { return -slope(v) / T; }
+};
+
+/// x' = v.
+struct Integrator {
+    double x = 0;
+
+    void advance(double dt, double v) { x += v * dt; }
+    double value() const { return x; }
+    double slope(double v) const { return v; }
+    double curvature(double) const { return 0; }
+};
+
+/// x' = l, T l' + l = v.
+struct LaggedIntegrator {
+    double T, x = 0, l = 0;
+    TwoSteps<double> changes = {};
+
+    void advance(double dt, double v) {
+        const double change = changes.over(dt, [&](double step) { return std::expm1(-step / T); });
+        x += v * dt - (l - v) * T * change;
+        l += (l - v) * change;
+    }
+    double value() const { return x; }
+    double slope(double) const { return l; }
+    double curvature(double v) const { return (v - l) / T; }
+};
+
+/// a2 x'' + a1 x' + x = v. The transition matrix over dt in closed form, through the roots -sigma +- w (real) or -sigma
+/// +- i w.
+class SecondOrder {
+public:
+    SecondOrder(double a1, double a2) : a1_(a1), a2_(a2), sigma_(a1 / (2 * a2)) {
+        const double square = sigma_ * sigma_ - 1 / a2;
+        // Nearly equal roots are taken as equal: the relative error of the response is below 1e-12.
+        const double w2 = std::abs(square) < 1e-13 * sigma_ * sigma_ ? 0 : square;
+        w_ = std::sqrt(std::abs(w2));
+        kind_ = w2 == 0 ? Kind::equal : w2 > 0 ? Kind::real : Kind::complex;
+        fast_ = sigma_ + w_;
+        slow_ = 1 / (a2 * fast_);
+    }
+
+    void advance(double dt, double v) {
+        const Turn& turn = turns_.over(dt, [&](double step) { return turn_over(step); });
+        const double e = x_ - v, e1 = x1_;
+        x_ = v + turn.xx * e + turn.sine * e1;
+        x1_ = turn.dx * e + turn.dd * e1;
+    }
+    double value() const { return x_; }
+    double slope(double) const { return x1_; }
+    double curvature(double v) const { return (v - x_ - a1_ * x1_) / a2_; }
+
+private:
+    enum class Kind { real, equal, complex };
+
+    /// The transition matrix [xx, sine; dx, dd] of (x - v, x').
+    struct Turn {
+        double xx = 1, sine = 0, dx = 0, dd = 1;
+    };
+
+    /// From e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or their trigonometric twins.
+    Turn turn_over(double dt) const {
+        double cosine = 0, sine = 0;
+        if (kind_ == Kind::real) {
+            const double apart = 2 * w_ * dt, slow = std::exp(-slow_ * dt);
+            const double ratio = apart > 0.3 ? std::exp(-apart) - 1 : std::expm1(-apart);
+            cosine = slow * (1 + 0.5 * ratio);
+            sine = -slow * ratio / (2 * w_);
+        } else if (kind_ == Kind::equal) {
+            cosine = std::exp(-sigma_ * dt);
+            sine = cosine * dt;
+        } else {
+            const double decay = std::exp(-sigma_ * dt);
+            cosine = decay * std::cos(w_ * dt);
+            sine = decay * std::sin(w_ * dt) / w_;
+        }
+        return {cosine + sigma_ * sine, sine, -sine / a2_, cosine - sigma_ * sine};
+    }
+
+    double a1_, a2_, sigma_, w_ = 0, fast_ = 0, slow_ = 0;
+    Kind kind_ = Kind::real;
+    TwoSteps<Turn> turns_;
+    double x_ = 0, x1_ = 0;
+};
+
+/// x' = l, a2 l'' + a1 l' + l = v, so that x is the integral of v less a1 l + a2 l'.
+class IntegratedSecondOrder {
+public:
+    IntegratedSecondOrder(double a1, double a2) : a1_(a1), a2_(a2), l_(a1, a2) {}
+
+    void advance(double dt, double v) {
+        l_.advance(dt, v);
+        area_ += v * dt;
+    }
+    double value() const { return area_ - a1_ * l_.value() - a2_ * l_.slope(0); }
+    double slope(double) const { return l_.value(); }
+    double curvature(double) const { return l_.slope(0); }
+
+private:
+    double a1_, a2_;
+    SecondOrder l_;
+    double area_ = 0;
+};
+
+/// T3 x' + x = l, a2 l'' + a1 l' + l = v. The state is (l, l' sqrt(a2), x) less its rest under v.
+class ThirdOrder {
+public:
+    ThirdOrder(double T3, double a1, double a2) : T3_(T3) {
+        const double w = 1 / std::sqrt(a2);
+        A_ << 0, w, 0, -w, -a1 / a2, 0, 1 / T3, 0, -1 / T3;
+    }
+
+    void advance(double dt, double v) {
+        const Eigen::Matrix3d& turn = turns_.over(dt, [&](double step) { return exponential(A_ * step); });
+        const Eigen::Vector3d rest(v, 0, v);
+        state_ = rest + turn * (state_ - rest);
+    }
+    double value() const { return state_[2]; }
+    double slope(double) const { return (state_[0] - state_[2]) / T3_; }
+    double curvature(double) const { return (A_(0, 1) * state_[1] - slope(0)) / T3_; }
+
+private:
+    /// By Taylor's series of a part so short that its norm is below 1/2, squared back; the terms end below 1e-17.
+    static Eigen::Matrix3d exponential(Eigen::Matrix3d M) {
+        const double norm = M.cwiseAbs().rowwise().sum().maxCoeff();
+        int halvings = 0;
+        std::frexp(norm, &halvings);
+        halvings = std::max(0, halvings + 1);
+        M *= std::ldexp(1.0, -halvings);
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Identity();
+        for (int k = 14; k > 0; --k) sum = Eigen::Matrix3d::Identity() + M * sum / k;
+        for (; halvings > 0; --halvings) sum = (sum * sum).eval();
+        return sum;
+    }
+
+    double T3_;
+    Eigen::Matrix3d A_;
+    TwoSteps<Eigen::Matrix3d> turns_;
+    Eigen::Vector3d state_ = Eigen::Vector3d::Zero();
+};
+
+template <int kDerivatives, class System>
+void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
+    double now = 0, v = 0;
+    std::size_t j = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double t = times[i];
+        for (; j < input.time.size() && input.time[j] + L <= t; ++j) {
+            const double event = input.time[j] + L;
+            if (event > now) system.advance(event - now, v);
+            now = event;
+            v = input.level[j];
+        }
+        if (t > now) system.advance(t - now, v);
+        now = t;
+        out.x[i] = system.value();
+        if constexpr (kDerivatives > 0) out.x1[i] = system.slope(v);
+        if constexpr (kDerivatives > 1) out.x2[i] = system.curvature(v);
+    }
+}
+
+template <int kDerivatives>
+void run(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& out) {
+    switch (shape.structure) {
+        case Structure::fopdt: return run<kDerivatives>(t, input, shape.L(), Lag{shape.T()}, out);
+        case Structure::unstable: return run<kDerivatives>(t, input, shape.L(), Lag{-shape.T()}, out);
+        case Structure::ipdt: return run<kDerivatives>(t, input, shape.L(), Integrator{}, out);
+        case Structure::ipdt_lag: return run<kDerivatives>(t, input, shape.L(), LaggedIntegrator{shape.T()}, out);
+        case Structure::sopdt:
+        case Structure::sopdt_zero:
+            return run<kDerivatives>(t, input, shape.L(), SecondOrder(shape.a1(), shape.a2()), out);
+        case Structure::third:
+            return run<kDerivatives>(t, input, shape.L(), ThirdOrder(shape.T3(), shape.a1(), shape.a2()), out);
+        case Structure::ipdt_second:
+            return run<kDerivatives>(t, input, shape.L(), IntegratedSecondOrder(shape.a1(), shape.a2()), out);
+    }
+}
+
+}  // namespace
+
+double Shape::T() const { return std::exp(p[1]); }
+double Shape::a1() const { return std::exp(p[1]); }
+double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
+
+double Shape::T3() const { return std::exp(p[kThirdLag]); }
+
+double Shape::slowest_lag() const {
+    if (!has_quadratic(structure)) return T();
+    const double ratio = a2() / (a1() * a1());
+    const double of_two = ratio < 0.25 ? 0.5 * a1() * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(a2());
+    return structure == Structure::third ? std::max(of_two, T3()) : of_two;
+}
+
+std::vector<int> shape_places(Structure structure) {
+    switch (structure) {
+        case Structure::ipdt: return {0};
+        case Structure::fopdt:
+        case Structure::unstable:
+        case Structure::ipdt_lag: return {0, 1};
+        case Structure::sopdt:
+        case Structure::sopdt_zero:
+        case Structure::ipdt_second: return {0, 1, 2};
+        case Structure::third: return {0, 1, 2, kThirdLag};
+    }
+    return {};
+}
+
+int shape_size(Structure structure) { return static_cast<int>(shape_places(structure).size()); }
+
+bool is_integrating(Structure structure) {
+    return structure == Structure::ipdt || structure == Structure::ipdt_lag || structure == Structure::ipdt_second;
+}
+
+bool has_quadratic(Structure structure) {
+    return structure == Structure::sopdt || structure == Structure::sopdt_zero || structure == Structure::third ||
+           structure == Structure::ipdt_second;
+}
+
+const char* name_of(Structure structure) {
+    switch (structure) {
+        case Structure::fopdt: return "fopdt";
+        case Structure::unstable: return "unstable fopdt";
+        case Structure::sopdt: return "sopdt";
+        case Structure::sopdt_zero: return "sopdt_zero";
+        case Structure::ipdt: return "ipdt";
+        case Structure::ipdt_lag: return "ipdt_lag";
+        case Structure::third: return "third order";
+        case Structure::ipdt_second: return "ipdt with two lags";
+    }
+    return "";
+}
+
+std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
+    const std::complex<double> delay = std::exp(-shape.L() * s);
+    switch (shape.structure) {
+        case Structure::fopdt: return delay / (1.0 + shape.T() * s);
+        case Structure::unstable: return delay / (1.0 - shape.T() * s);
+        case Structure::ipdt: return delay / s;
+        case Structure::ipdt_lag: return delay / (s * (1.0 + shape.T() * s));
+        case Structure::sopdt:
+        case Structure::sopdt_zero: return delay / (1.0 + s * (shape.a1() + s * shape.a2()));
+        case Structure::third: return delay / ((1.0 + s * shape.T3()) * (1.0 + s * (shape.a1() + s * shape.a2())));
+        case Structure::ipdt_second: return delay / (s * (1.0 + s * (shape.a1() + s * shape.a2())));
+    }
+    return 0;
+}
+
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+                   UnitResponse& response) {
+    std::vector<double>* columns[] = {&response.x, &response.x1, &response.x2};
+    for (int k = 0; k <= derivatives; ++k) columns[k]->resize(t.size());
+    if (derivatives == 0) return run<0>(t, input, shape, response);
+    if (derivatives == 1) return run<1>(t, input, shape, response);
+    return run<2>(t, input, shape, response);
+}
+
+}  // namespace tunewright

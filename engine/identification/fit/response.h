@@ -1,0 +1,71 @@
+// The free response of a model of unit gain to a piecewise constant input, exact at any sample times.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "engine/identification/record/clean_record.h"
+
+namespace tunewright {
+
+enum class Structure {
+    fopdt,        ///< e^(-Ls)/(T s + 1)
+    unstable,     ///< e^(-Ls)/(1 - T s): an fopdt with a negative time constant
+    sopdt,        ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
+    sopdt_zero,   ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
+    ipdt,         ///< e^(-Ls)/s
+    ipdt_lag,     ///< e^(-Ls)/(s (T s + 1))
+    third,        ///< e^(-Ls)/((T3 s + 1)(a2 s^2 + a1 s + 1))
+    ipdt_second,  ///< e^(-Ls)/(s (a2 s^2 + a1 s + 1))
+};
+
+/// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
+/// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
+/// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3.
+struct Shape {
+    Structure structure = Structure::fopdt;
+    std::array<double, 5> p{};
+
+    double L() const { return p[0]; }
+    double load_time() const { return p[3]; }
+    double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
+    double a1() const;  ///< sopdt, sopdt_zero, third, ipdt_second
+    double a2() const;
+    double T3() const;           ///< third
+    double slowest_lag() const;  ///< of a self-regulating structure, an oscillation's T for it
+};
+
+/// Places in Shape::p that belong to a structure, the dead time's first.
+std::vector<int> shape_places(Structure structure);
+/// 1 to 4: how many they are.
+int shape_size(Structure structure);
+bool is_integrating(Structure structure);
+/// Whether the denominator has a quadratic factor: a1 and a2 count.
+bool has_quadratic(Structure structure);
+/// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
+const char* name_of(Structure structure);
+
+inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in Shape::p
+
+/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
+struct UnitResponse {
+    std::vector<double> x, x1, x2;
+};
+
+/// e^(-Ls) over the structure's denominator: the transfer function of `unit_response`.
+std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s);
+
+/// A piecewise constant input: 0 at first, level[j] from time[j] on; times ascend strictly from 0.
+struct Input {
+    std::span<const double> time, level;
+};
+
+/// Rest before t = 0. Each interval between samples and delayed changes of v is one step with the exact
+/// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes. Only
+/// derivatives up to `derivatives` (0 to 2) are filled.
+void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+                   UnitResponse& response);
+
+}  // namespace tunewright

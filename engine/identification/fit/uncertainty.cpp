@@ -1,0 +1,351 @@
+#include "engine/identification/fit/uncertainty.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/fit/load_doubt.h"
+#include "engine/identification/fit/residual_noise.h"
+
+namespace tunewright {
+namespace {
+
+using Parameters = std::map<std::string, double>;
+
+/// The plant's parameters by symbol, in the record's units. `lags`: name the second order by T1, T2.
+Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shape& shape,
+                         std::span<const double> linear, bool lags) {
+    const double K = linear[0] * s.y_scale / s.u_scale;
+    Parameters p;
+    p["L"] = shape.L() * s.t_scale;
+    p["K"] = is_integrating(form.structure) ? K / s.t_scale : K;
+    switch (form.structure) {
+        case Structure::ipdt: break;
+        case Structure::unstable: p["T"] = -shape.T() * s.t_scale; break;
+        case Structure::fopdt:
+        case Structure::ipdt_lag: p["T"] = shape.T() * s.t_scale; break;
+        case Structure::sopdt:
+            if (lags) {
+                const double root = std::sqrt(std::max(0.0, 1 - 4 * std::exp(shape.p[2])));
+                p["T1"] = 0.5 * shape.a1() * (1 + root) * s.t_scale;
+                // The product of the lags keeps the digits of a small one.
+                p["T2"] = shape.a2() / (0.5 * shape.a1() * (1 + root)) * s.t_scale;
+            } else {
+                p["T"] = std::sqrt(shape.a2()) * s.t_scale;
+                p["zeta"] = 0.5 * std::exp(-0.5 * shape.p[2]);
+            }
+            break;
+        case Structure::sopdt_zero: p["b"] = linear[1] / linear[0] * s.t_scale; [[fallthrough]];
+        case Structure::ipdt_second:
+            p["a1"] = shape.a1() * s.t_scale;
+            p["a2"] = shape.a2() * s.t_scale * s.t_scale;
+            break;
+        case Structure::third:
+            p["a1"] = (shape.a1() + shape.T3()) * s.t_scale;
+            p["a2"] = (shape.a2() + shape.a1() * shape.T3()) * s.t_scale * s.t_scale;
+            p["a3"] = shape.a2() * shape.T3() * s.t_scale * s.t_scale * s.t_scale;
+            break;
+    }
+    return p;
+}
+
+bool has_two_lags(const Shape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
+
+Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
+    auto at = [&](const char* name) { return p.at(name); };
+    switch (form.structure) {
+        case Structure::fopdt:
+        case Structure::unstable: return Fopdt{at("K"), at("T"), at("L")};
+        case Structure::sopdt:
+            if (lags) return Sopdt{at("K"), at("T1"), at("T2"), at("L")};
+            return OscillatorySopdt{at("K"), at("T"), at("zeta"), at("L")};
+        case Structure::sopdt_zero:
+            return TransferFunction{{at("K") * at("b"), at("K")}, {at("a2"), at("a1"), 1}, at("L")};
+        case Structure::third: return TransferFunction{{at("K")}, {at("a3"), at("a2"), at("a1"), 1}, at("L")};
+        case Structure::ipdt_second: return TransferFunction{{at("K")}, {at("a2"), at("a1"), 1, 0}, at("L")};
+        case Structure::ipdt: return Ipdt{at("K"), at("L"), 0};
+        case Structure::ipdt_lag: return Ipdt{at("K"), at("L"), at("T")};
+    }
+    return Fopdt{};
+}
+
+/// Stretches of samples that the model puts into one step of y's grid: [first, last).
+std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
+    constexpr int kFewest = 8;
+    std::vector<std::pair<int, int>> runs;
+    const int n = static_cast<int>(fit.model.size());
+    int first = 0;
+    for (int i = 1; i <= n; ++i) {
+        if (i < n && std::abs(fit.model[i] - fit.model[first]) < 0.5 * grid) continue;
+        if (i - first >= kFewest) runs.emplace_back(first, i);
+        first = i;
+    }
+    return runs;
+}
+
+/// Rounding to a grid is the same error over a whole plateau, unless noise dithers it: q/sqrt 12 for no noise, falling
+/// as the grid's first harmonic does, e^(-2 pi^2 sigma^2/q^2) for noise sigma (Widrow and Kollar 2008, chapter 19).
+double common_rounding(double grid, double noise) {
+    constexpr double kPi = 3.141592653589793;
+    const double ratio = noise / grid;
+    return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
+}
+
+/// What drifts of the next two powers of time would change, were they fitted: small ones hide in gain and time
+/// constants without leaving a pattern. Each is shrunk by what chance alone would show (James and Stein 1961), so that
+/// it counts only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
+std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
+                                          const Eigen::MatrixXd& inverse, double variance) {
+    if (is_integrating(fit.form.structure)) return {};
+    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
+    std::vector<Eigen::VectorXd> changes;
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd q = fit.form.slope ? Eigen::VectorXd(time.array().square()) : Eigen::VectorXd(time);
+    for (int column = 0; column < 2; ++column) {
+        if (column > 0) q.array() *= time.array();
+        const Eigen::VectorXd moved = inverse * (J.topRows(n).transpose() * q);
+        Eigen::VectorXd alone = q - J.topRows(n) * moved;
+        if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
+        const double size = alone.squaredNorm();
+        if (!(size > 1e-9 * q.squaredNorm())) break;
+        const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
+        before = alone;
+        if (z2 > 2) changes.emplace_back(-slope * (1 - 2 / z2) * moved);
+    }
+    return changes;
+}
+
+/// Sums over `block` entries over the root of their number, of the first n entries; the rest as it is.
+std::vector<double> block_sums(const std::vector<double>& values, std::size_t n, std::size_t block) {
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < n; i += block) {
+        const std::size_t end = std::min(n, i + block);
+        double sum = 0;
+        for (std::size_t k = i; k < end; ++k) sum += values[k];
+        sums.push_back(sum / std::sqrt(static_cast<double>(end - i)));
+    }
+    sums.insert(sums.end(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
+    return sums;
+}
+
+/// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
+/// few lags is the plant.
+constexpr double kLinearity = 0.0005;
+
+/// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
+/// number, say as much of parameters and noise. `t` follows.
+Fit condensed(const Fit& fit, std::vector<double>& t) {
+    constexpr std::size_t kEnough = 2000;
+    const std::size_t n = fit.residual.size(), block = n / kEnough;
+    if (block < 2) return fit;
+    Fit less;
+    less.form = fit.form;
+    less.residual = block_sums(fit.residual, n, block);
+    for (const std::vector<double>& column : fit.J) less.J.push_back(block_sums(column, n, block));
+    t = block_sums(t, t.size(), block);
+    return less;
+}
+
+/// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
+FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
+    constexpr std::size_t kFew = 64;
+    const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew),
+                      count = (n + block - 1) / block;
+    const auto rows = static_cast<Eigen::Index>(count);
+    const auto sums = [&](std::span<const double> values) {
+        const std::vector<double> means =
+            block_sums({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n)}, n, block);
+        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(means.data(), rows));
+    };
+    FittedRows few{sums(times), sums(std::vector<double>(n, 1)), sums(fit.residual),
+                   Eigen::MatrixXd(rows, length.size())};
+    few.time.array() /= few.weight.array();
+    for (Eigen::Index k = 0; k < length.size(); ++k)
+        few.J.col(k) = sums(fit.J[static_cast<std::size_t>(k)]) / length[k];
+    return few;
+}
+
+/// The least-squares problem at a fit, each column of J of length 1.
+struct ScaledProblem {
+    Eigen::MatrixXd J;        ///< samples, rows beside them, then one for each shape parameter
+    Eigen::VectorXd length;   ///< of the columns before
+    Eigen::MatrixXd inverse;  ///< of J'J
+    Eigen::Index samples = 0;
+    int shape = 0;  ///< parameters before the linear ones
+
+    auto of_samples() const { return J.topRows(samples); }
+    Eigen::MatrixXd beside_samples() const { return J.bottomRows(J.rows() - samples); }
+};
+
+/// `variance`: the noise's over a long run.
+ScaledProblem scaled_problem(const Fit& fit, double variance) {
+    const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
+    ScaledProblem p;
+    p.shape = static_cast<int>(fit.form.searched().size());
+    p.samples = static_cast<Eigen::Index>(fit.residual.size());
+    p.J = Eigen::MatrixXd::Zero(data + p.shape, m);
+    p.length.resize(m);
+    for (int k = 0; k < m; ++k) {
+        p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
+        // What no sample shows is still no longer than the record, and no lag is thousands of times another.
+        if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
+        p.length[k] = std::max(p.J.col(k).norm(), 1e-12);
+        p.J.col(k) /= p.length[k];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.J.transpose() * p.J);
+    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+                eigen.eigenvectors().transpose();
+    return p;
+}
+
+/// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
+/// section 4.2). What the residual shows may be slow noise or, unless `rounded`, a load that walks: the explanation
+/// that leaves the gain more open counts.
+Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
+                                std::span<const double> times, bool rounded) {
+    const Eigen::MatrixXd others = p.beside_samples();
+    const Eigen::MatrixXd prior = left.long_run_variance() * others.transpose() * others;
+    Eigen::MatrixXd covariance = p.inverse * (left.weighed(p.of_samples()) + prior) * p.inverse;
+    if (rounded) return covariance;
+    for (const Eigen::MatrixXd& spread : weighed_with_load(whole, few_rows(whole, times, p.length))) {
+        const Eigen::MatrixXd with_load = p.inverse * (spread + prior) * p.inverse;
+        if (with_load(p.shape, p.shape) > covariance(p.shape, p.shape)) covariance = with_load;
+    }
+    return covariance;
+}
+
+/// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
+/// covariance, and one per plateau of a rounded y, or what drifts too small to be found would do.
+Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise) {
+    const double common = grid > 0 ? common_rounding(grid, noise) : 0;
+    const bool on_plateaus = common > 0.02 * grid;
+    std::vector<double> t(times.begin(), times.end());
+    const Fit fit = on_plateaus ? whole : condensed(whole, t);
+    const int m = fit.form.parameters();
+    const ResidualNoise left(fit.residual, m, grid * grid / 12);
+    const ScaledProblem p = scaled_problem(fit, left.long_run_variance());
+    const Eigen::MatrixXd covariance = open_covariance(p, left, whole, times, on_plateaus);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
+    // Rounding that is the same over a plateau is no noise of which few samples are known.
+    const double widened = on_plateaus ? 1 : student_factor(left.freedom());
+    std::vector<Eigen::VectorXd> all;
+    for (int k = 0; k < m; ++k)
+        all.emplace_back(widened * std::sqrt(std::max(axes.eigenvalues()[k], 0.0)) * axes.eigenvectors().col(k));
+    // Nor is it a drift, though it looks like one.
+    if (on_plateaus) {
+        for (const auto& [first, last] : plateaus(fit, grid))
+            all.emplace_back(common * (p.inverse * p.J.middleRows(first, last - first).colwise().sum().transpose()));
+    } else {
+        for (Eigen::VectorXd& change : drift_doubts(fit, t, p.J, p.inverse, left.long_run_variance()))
+            all.push_back(std::move(change));
+    }
+    Eigen::MatrixXd deviations(static_cast<Eigen::Index>(all.size()), m);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        deviations.row(static_cast<Eigen::Index>(k)) = (all[k].array() / p.length.array()).transpose();
+    return deviations;
+}
+
+Eigen::MatrixXd given_deviations(const Fit& fit) {
+    const int m = fit.form.parameters();
+    Eigen::MatrixXd deviations(static_cast<Eigen::Index>(fit.deviations.size()), m);
+    for (std::size_t k = 0; k < fit.deviations.size(); ++k)
+        deviations.row(static_cast<Eigen::Index>(k)) =
+            Eigen::Map<const Eigen::RowVectorXd>(fit.deviations[k].data(), m);
+    return deviations;
+}
+
+/// By Geyer's sum, for up to a few thousand samples.
+double summed_correlation_time(std::span<const double> series) {
+    const int n = static_cast<int>(series.size());
+    const int longest = std::min(n / 2, 2000);
+    auto covariance = [&](int lag) {
+        double sum = 0;
+        for (int i = lag; i < n; ++i) sum += series[i] * series[i - lag];
+        return sum;
+    };
+    const double variance = covariance(0);
+    if (!(variance > 0)) return 1;
+    double time = -1;
+    for (int k = 0; k + 1 <= longest; k += 2) {
+        const double pair = (k == 0 ? variance : covariance(k)) + covariance(k + 1);
+        if (pair <= 0) break;
+        time += 2 * pair / variance;
+    }
+    return std::max(1.0, time);
+}
+
+}  // namespace
+
+double correlation_time(std::span<const double> series) {
+    constexpr std::size_t kMostSummed = 3000;
+    if (series.size() <= kMostSummed) return summed_correlation_time(series);
+    // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
+    const std::size_t batch = (series.size() + kMostSummed - 1) / kMostSummed;
+    std::vector<double> means;
+    double squares = 0;
+    for (std::size_t i = 0; i + batch <= series.size(); i += batch) {
+        double sum = 0;
+        for (std::size_t k = i; k < i + batch; ++k) {
+            sum += series[k];
+            squares += series[k] * series[k];
+        }
+        means.push_back(sum / static_cast<double>(batch));
+    }
+    double between = 0;
+    for (const double mean : means) between += mean * mean;
+    if (!(squares > 0)) return 1;
+    const double size = static_cast<double>(batch);
+    return std::max(1.0, size * size * between / squares * summed_correlation_time(means));
+}
+
+double effective_samples(std::span<const double> residual) {
+    return std::max(4.0, static_cast<double>(residual.size()) / correlation_time(residual));
+}
+
+Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
+    const bool lags = has_two_lags(fit.shape);
+    return plant_of(fit.form, parameters_of(scale, fit.form, fit.shape, fit.linear, lags), lags);
+}
+
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise) {
+    const bool lags = has_two_lags(fit.shape);
+    const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
+    FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
+    ParameterCovariance& covariance = result.covariance;
+    for (const auto& [name, value] : best) covariance.names.push_back(name);
+    covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
+    const Eigen::MatrixXd deviations =
+        fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise) : given_deviations(fit);
+    const std::vector<int> places = fit.form.searched();
+    const int size = static_cast<int>(places.size());
+    for (int axis = 0; axis < deviations.rows(); ++axis) {
+        // A long axis is walked in part and scaled up: the logarithms would overflow.
+        const double reach = deviations.row(axis).head(size).cwiseAbs().maxCoeff();
+        const double part = reach > 1 ? 1 / reach : 1;
+        Parameters side[2];
+        for (int k = 0; k < 2; ++k) {
+            const double sign = k == 0 ? part : -part;
+            Shape shape = fit.shape;
+            std::vector<double> linear = fit.linear;
+            for (int i = 0; i < size; ++i) shape.p[places[i]] += sign * deviations(axis, i);
+            for (std::size_t i = 0; i < linear.size(); ++i)
+                linear[i] += sign * deviations(axis, size + static_cast<int>(i));
+            if (linear[0] == 0) linear = fit.linear;
+            side[k] = parameters_of(record.scale, fit.form, shape, linear, lags);
+        }
+        std::vector<double> half;
+        for (const auto& [name, value] : side[0])
+            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -1e150, 1e150));
+        for (std::size_t i = 0; i < half.size(); ++i) {
+            for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
+        }
+    }
+    const auto gain = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
+    covariance.matrix[gain][gain] += std::pow(kLinearity * best.at("K"), 2);
+    for (std::size_t i = 0; i < best.size(); ++i)
+        result.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
+    return result;
+}
+
+}  // namespace tunewright

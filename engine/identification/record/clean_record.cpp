@@ -1,0 +1,243 @@
+#include "engine/identification/record/clean_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "engine/identification/record/record_rows.h"
+#include "engine/identification/wording.h"
+
+namespace tunewright {
+namespace {
+
+Error not_identifiable(std::string where, std::string message) {
+    return {ErrorKind::not_identifiable, std::move(where), std::move(message)};
+}
+
+std::optional<Error> check_columns(const Record& r) {
+    if (r.u.size() != r.t.size() || r.y.size() != r.t.size()) {
+        return Error{ErrorKind::invalid_argument, "record",
+                     "t, u and y have " + std::to_string(r.t.size()) + ", " + std::to_string(r.u.size()) + " and " +
+                         std::to_string(r.y.size()) + " values; give columns of equal length."};
+    }
+    if (r.u0 && !std::isfinite(*r.u0))
+        return Error{ErrorKind::invalid_argument, "record/u0", "u0 must be a finite number."};
+    if (r.y0 && !std::isfinite(*r.y0))
+        return Error{ErrorKind::invalid_argument, "record/y0", "y0 must be a finite number."};
+    return std::nullopt;
+}
+
+std::optional<Error> check_rows(const Record& r, const Rows& rows, const Cleaning& done) {
+    const int n = static_cast<int>(rows.t.size());
+    if (done.backward > 0.1 * static_cast<double>(r.t.size())) {
+        return Error{ErrorKind::invalid_argument, "record/t",
+                     "Times run backward in " + std::to_string(done.backward) + " of " + std::to_string(r.t.size()) +
+                         " rows (first at " + row_text(done, done.first_backward) +
+                         "); sort the record by time or give one test alone."};
+    }
+    if (n < kFewestSamples) {
+        return not_identifiable(
+            "record", "The record has " + std::to_string(n) + " usable samples" +
+                          (r.t.size() > static_cast<std::size_t>(n)
+                               ? " in " + std::to_string(r.t.size()) + " rows (the others have no y, no u or no time)"
+                               : std::string()) +
+                          "; at least " + std::to_string(kFewestSamples) +
+                          " are needed, and 50 or more over the response are better.");
+    }
+    if (rows.t.back() <= rows.t.front())
+        return not_identifiable("record/t", "All samples have the same time; record the test with its time stamps.");
+    const auto [y_low, y_high] = std::minmax_element(rows.y.begin(), rows.y.end());
+    if (rows.change_time.empty()) {
+        return not_identifiable(
+            "record/u",
+            "u never moves (it is " + number_text(rows.u_rest) + " in all " + std::to_string(n) +
+                " samples), so nothing can be learned about its effect. Record a test in which u changes, or give "
+                "u0 if u was changed just before the first sample.");
+    }
+    if (*y_low == *y_high) {
+        return not_identifiable(
+            "record/y",
+            "y never moves (it is " + number_text(*y_low) + " in all " + std::to_string(n) +
+                " samples). Make a larger step, record for longer, or check that this is the right sensor.");
+    }
+    return std::nullopt;
+}
+
+void scale_rows(const Rows& rows, CleanRecord& clean) {
+    RecordScale& s = clean.scale;
+    const auto [y_low, y_high] = std::minmax_element(rows.y.begin(), rows.y.end());
+    const double origin = std::min(rows.t.front(), rows.change_time.front());
+    s.t_origin = origin;
+    s.t_scale = rows.t.back() - origin;
+    s.y_origin = *y_low;
+    s.y_scale = *y_high - *y_low;
+    s.u_rest = rows.u_rest;
+    s.u_scale = 0;
+    for (double u : rows.change_level) s.u_scale = std::max(s.u_scale, std::abs(u - s.u_rest));
+    clean.row = rows.number;
+    for (std::size_t i = 0; i < rows.t.size(); ++i) {
+        clean.t.push_back((rows.t[i] - s.t_origin) / s.t_scale);
+        clean.y.push_back((rows.y[i] - s.y_origin) / s.y_scale);
+    }
+    for (std::size_t j = 0; j < rows.change_time.size(); ++j) {
+        clean.v_time.push_back((rows.change_time[j] - s.t_origin) / s.t_scale);
+        clean.v_level.push_back((rows.change_level[j] - s.u_rest) / s.u_scale);
+    }
+}
+
+/// The mean of v over `blocks` blocks of equal length.
+void average_input(const CleanRecord& from, int blocks, CleanRecord& to) {
+    to.v_time.clear();
+    to.v_level.clear();
+    std::size_t j = 0;
+    double v = 0;
+    for (int b = 0; b < blocks; ++b) {
+        double now = static_cast<double>(b) / blocks;
+        const double start = now, end = static_cast<double>(b + 1) / blocks;
+        double area = 0;
+        for (; j < from.v_time.size() && from.v_time[j] < end; ++j) {
+            area += v * (from.v_time[j] - now);
+            now = from.v_time[j];
+            v = from.v_level[j];
+        }
+        area += v * (end - now);
+        to.v_time.push_back(start);
+        to.v_level.push_back(area / (end - start));
+    }
+}
+
+/// The sample indices nearest in time after the few largest changes of v, spaced geometrically.
+void add_transients(const CleanRecord& r, int each, std::vector<int>& chosen) {
+    constexpr int kMostChanges = 4;
+    std::vector<int> order(r.v_time.size());
+    std::iota(order.begin(), order.end(), 0);
+    auto size = [&](int j) { return std::abs(r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0)); };
+    const int kept = std::min<int>(kMostChanges, static_cast<int>(order.size()));
+    std::partial_sort(order.begin(), order.begin() + kept, order.end(),
+                      [&](int a, int b) { return size(a) > size(b) || (size(a) == size(b) && a < b); });
+    for (int k = 0; k < kept; ++k) {
+        const int first = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time[order[k]]) - r.t.begin());
+        const int left = r.samples() - first;
+        if (left < 2) continue;
+        for (int i = 0; i < each; ++i) chosen.push_back(first + static_cast<int>(std::pow(left, (i + 0.5) / each)) - 1);
+    }
+}
+
+}  // namespace
+
+std::string row_text(const Cleaning& cleaning, int row) {
+    return (cleaning.from_file ? "line " : "row ") + std::to_string(row);
+}
+
+Expected<CleanRecord> clean_record(const Record& record) {
+    if (auto error = check_columns(record)) return *error;
+    CleanRecord clean;
+    Rows rows = collect_rows(record, clean.cleaning);
+    drop_false_readings(rows, clean.cleaning);
+    drop_late_moves(rows, clean.cleaning);
+    if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
+    const Cleaning& done = clean.cleaning;
+    clean.u_only = done.missing_y + static_cast<int>(done.spikes.size());
+    clean.dropped = clean.u_only + done.without_time + done.backward + done.early_stamps;
+    scale_rows(rows, clean);
+    const RecordScale& s = clean.scale;
+    if (!std::isfinite(s.t_scale) || !std::isfinite(s.y_scale) || !std::isfinite(s.u_scale) || s.t_scale <= 0 ||
+        s.y_scale <= 0 || s.u_scale <= 0) {
+        return Error{ErrorKind::invalid_argument, "record",
+                     "The record's numbers span more than double precision holds; give it in other units."};
+    }
+    clean.kind = record.kind;
+    clean.u0_given = record.u0.has_value();
+    if (record.y0) clean.y_rest = (*record.y0 - s.y_origin) / s.y_scale;
+    return clean;
+}
+
+CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& indices) {
+    std::size_t next = 0, kept = 0;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (next < indices.size() && indices[next] == i) {
+            record.cleaning.spikes.push_back(record.row[i]);
+            record.cleaning.spike_times.push_back(record.scale.t_origin + record.scale.t_scale * record.t[i]);
+            ++next;
+            continue;
+        }
+        record.t[kept] = record.t[i];
+        record.y[kept] = record.y[i];
+        record.row[kept] = record.row[i];
+        ++kept;
+    }
+    record.t.resize(kept);
+    record.y.resize(kept);
+    record.row.resize(kept);
+    record.u_only += static_cast<int>(next);
+    record.dropped += static_cast<int>(next);
+    return record;
+}
+
+CleanRecord thin_out(const CleanRecord& record, int most) {
+    constexpr int kMostBlocks = 400;
+    CleanRecord thin = record;
+    if (record.changes() > kMostBlocks) average_input(record, kMostBlocks, thin);
+    const int n = record.samples();
+    if (n <= most) return thin;
+    // Where u keeps moving, all of the record is transient.
+    if (record.changes() > 4) return every_few(thin, most);
+    std::vector<int> chosen = {0, n - 1};
+    for (int i = 0; i < most / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (most / 2)));
+    add_transients(record, most / 2 / std::clamp(record.changes(), 1, 4), chosen);
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    thin.t.clear();
+    thin.y.clear();
+    for (int i : chosen) {
+        thin.t.push_back(record.t[i]);
+        thin.y.push_back(record.y[i]);
+    }
+    return thin;
+}
+
+CleanRecord every_few(const CleanRecord& record, int most) {
+    const int n = record.samples(), stride = (n + most - 1) / most;
+    if (stride <= 1) return record;
+    CleanRecord few = record;
+    few.t.clear();
+    few.y.clear();
+    // One stride throughout: evenly spaced samples stay evenly spaced.
+    for (int i = (n - 1) % stride; i < n; i += stride) {
+        few.t.push_back(record.t[static_cast<std::size_t>(i)]);
+        few.y.push_back(record.y[static_cast<std::size_t>(i)]);
+    }
+    return few;
+}
+
+CleanRecord first_part(const CleanRecord& record, double fraction) {
+    CleanRecord part = record;
+    part.scale.t_scale *= fraction;
+    const auto kept = [&](const std::vector<double>& times) {
+        return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), fraction) - times.begin());
+    };
+    part.t.resize(kept(record.t));
+    part.y.resize(part.t.size());
+    part.v_time.resize(kept(record.v_time));
+    part.v_level.resize(part.v_time.size());
+    for (double& t : part.t) t /= fraction;
+    for (double& t : part.v_time) t /= fraction;
+    return part;
+}
+
+CleanRecord block_means(const CleanRecord& record, int most) {
+    const int n = record.samples(), block = (n + most - 1) / most;
+    if (block <= 1) return record;
+    CleanRecord means = record;
+    means.t.clear();
+    means.y.clear();
+    for (int i = 0; i < n; i += block) {
+        const int end = std::min(n, i + block);
+        means.t.push_back(std::accumulate(record.t.begin() + i, record.t.begin() + end, 0.0) / (end - i));
+        means.y.push_back(std::accumulate(record.y.begin() + i, record.y.begin() + end, 0.0) / (end - i));
+    }
+    return means;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,292 @@
+#include "engine/identification/record/data_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "engine/identification/record/record_kind.h"
+#include "engine/identification/wording.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+void describe_sampling(const CleanRecord& r, DataQuality& quality) {
+    std::vector<double> spacings;
+    for (std::size_t i = 1; i < r.t.size(); ++i) {
+        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
+    }
+    const double typical = median(spacings);
+    const auto odd = std::count_if(spacings.begin(), spacings.end(),
+                                   [&](double d) { return std::abs(d - typical) > 0.1 * typical; });
+    quality.sample_time = typical * r.scale.t_scale;
+    quality.irregular = static_cast<double>(odd) > 0.01 * static_cast<double>(spacings.size());
+    if (quality.irregular) quality.notes.push_back("The samples are not evenly spaced; each is used at its own time.");
+
+    // Loggers that write on change have long spacings all the time: only what is rare is a gap.
+    constexpr double kTimesUsual = 5, kUsual = 0.95;
+    const auto usual =
+        spacings.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(spacings.size() - 1));
+    std::nth_element(spacings.begin(), usual, spacings.end());
+    const double limit = kTimesUsual * std::max(typical, *usual);
+    MissingPart gaps;
+    for (std::size_t i = 1; i < r.t.size(); ++i) {
+        const double d = r.t[i] - r.t[i - 1];
+        if (d <= limit) continue;
+        ++gaps.count;
+        if (d * r.scale.t_scale <= gaps.longest) continue;
+        gaps.longest = d * r.scale.t_scale;
+        gaps.at = r.scale.t_origin + r.scale.t_scale * r.t[i - 1];
+    }
+    if (gaps.count == 0) return;
+    quality.gaps = gaps;
+    quality.notes.push_back(std::to_string(gaps.count) + (gaps.count == 1 ? " gap" : " gaps") +
+                            " without a usable sample, the longest of " + number_text(gaps.longest) +
+                            " from t = " + number_text(gaps.at) + "; nothing is interpolated, and u is held over it.");
+}
+
+void describe_times(const Cleaning& done, DataQuality& quality) {
+    quality.repeated_times = done.repeated;
+    quality.backward_times = done.backward + done.early_stamps;
+    auto& notes = quality.notes;
+    if (done.reversed) notes.push_back("The rows run from the newest to the oldest; they were turned round.");
+    if (done.spread) {
+        notes.push_back(
+            "The clock is coarser than the sampling: rows of one time were spread evenly until the next "
+            "time.");
+    } else if (done.repeated > 0) {
+        notes.push_back(std::to_string(done.repeated) + " row(s) have the time of the row above (first " +
+                        row_text(done, done.first_repeated) + "): every y was used, and the last u.");
+    }
+    if (done.backward > 0)
+        notes.push_back(std::to_string(done.backward) +
+                        " row(s) with a time before the rows above were left out (first " +
+                        row_text(done, done.first_backward) + ").");
+    if (done.early_stamps > 0)
+        notes.push_back(std::to_string(done.early_stamps) +
+                        " row(s) with a time far ahead of the rows below were left out (first " +
+                        row_text(done, done.first_early) + ").");
+    if (done.without_time > 0)
+        notes.push_back(std::to_string(done.without_time) +
+                        " row(s) without a time, or before the first u, were left out.");
+    if (done.late_moves > 0)
+        notes.push_back(std::to_string(done.late_moves) +
+                        " change(s) of u with the last sample were left out: nothing follows them.");
+    if (done.limited_u > 0)
+        notes.push_back("u was cut to its limits in " + std::to_string(done.limited_u) +
+                        " row(s): that is what reaches the plant.");
+    if (done.missing_u > 0)
+        notes.push_back("u is missing in " + std::to_string(done.missing_u) +
+                        " row(s); it was held from the row above.");
+}
+
+/// "line 102 (t = 2.02), line 103 (t = 2.04), ...".
+std::string places_of_spikes(const Cleaning& done) {
+    constexpr std::size_t kInSentence = 5;
+    std::string places;
+    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) +
+                  " (t = " + number_text(done.spike_times[k], 10) + ")";
+    return places + (done.spikes.size() > kInSentence ? ", ..." : "");
+}
+
+void describe_missing(const CleanRecord& r, DataQuality& quality) {
+    const Cleaning& done = r.cleaning;
+    if (done.missing_y > 0) {
+        quality.missing = MissingPart{done.missing_y, done.hole_to - done.hole_from, done.hole_from};
+        quality.notes.push_back("y is missing in " + std::to_string(done.missing_y) +
+                                " row(s), the longest time without it is " + number_text(quality.missing->longest) +
+                                " from t = " + number_text(done.hole_from) +
+                                "; u of these rows was used, and y was not interpolated.");
+    }
+    if (done.spikes.empty()) return;
+    constexpr std::size_t kShown = 20, kInSentence = 5;
+    std::string rows;
+    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+        rows += (k > 0 ? ", " : "") + std::to_string(done.spikes[k]);
+    FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
+    outliers.rows.resize(std::min(kShown, outliers.rows.size()));
+    quality.outliers = std::move(outliers);
+    quality.notes.push_back(
+        std::to_string(done.spikes.size()) + " reading(s) of y are plainly false and were left out (" +
+        (done.from_file ? "line " : "row ") + rows + (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
+}
+
+bool on_a_level(const TwoLevels& u, double v) {
+    const double same = 0.1 * (u.high - u.low);
+    return std::abs(v - u.low) < same || std::abs(v - u.high) < same;
+}
+
+/// A straight line through the samples before the first change of u.
+void describe_pretest(const CleanRecord& r, DataQuality& quality) {
+    quality.u0 = r.scale.u_rest;
+    const auto n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
+    // A relay that works from the first sample on leaves no part at rest.
+    const bool at_work = quality.kind == RecordKind::relay && on_a_level(two_levels(input_levels(r)), 0);
+    const std::span t(r.t.data(), static_cast<std::size_t>(n)), y(r.y.data(), static_cast<std::size_t>(n));
+    const Line line = straight_line(t, y);
+    const double y_mean = n == 0 || at_work ? r.y.front() : line.y_mean;
+    quality.y0 = r.scale.y_origin + r.scale.y_scale * r.y_rest.value_or(y_mean);
+    if (n < 2 || t.back() <= t.front() || at_work) return;
+    const double duration = t.back() - t.front();
+    // Two samples determine a line without telling its error.
+    const double slope = line.slope, error = n > 2 ? line.slope_std : std::abs(slope);
+    constexpr double kMoved = 0.03, kErrors = 5;
+    PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
+    pretest.at_rest = std::abs(slope) * duration < kMoved || std::abs(slope) < kErrors * error;
+    quality.pretest = pretest;
+    quality.notes.push_back(std::to_string(n) + " samples before the first change of u give the operating point: u = " +
+                            number_text(quality.u0) + ", y = " + number_text(quality.y0) +
+                            (pretest.at_rest ? "."
+                                             : "; y is not at rest there but moves by " + number_text(pretest.drift) +
+                                                   " per unit of time."));
+}
+
+void describe_input(const CleanRecord& r, DataQuality& quality) {
+    const InputLevels levels = input_levels(r);
+    const RecordKind found = found_kind(r);
+    quality.kind = r.kind == RecordKind::automatic ? found : r.kind;
+    quality.steps = levels.moves();
+    if (quality.kind == RecordKind::relay) {
+        const auto switches = static_cast<int>(two_levels(levels).switch_time.size());
+        quality.cycles = std::max(0, (switches - 1) / 2);
+        quality.notes.push_back("u is a relay's: " + std::to_string(switches) + " switches, " +
+                                std::to_string(*quality.cycles) + " complete periods.");
+    }
+    const bool differs = r.kind == RecordKind::relay ? found != RecordKind::relay
+                                                     : r.kind == RecordKind::step && found != RecordKind::step;
+    if (differs)
+        quality.notes.push_back(std::string("The record is said to be of kind ") + name_of(r.kind) +
+                                "; by its u and y it looks like " + name_of(found) + ".");
+}
+
+void describe_output(const CleanRecord& r, DataQuality& quality) {
+    const double noise = noise_std(r.y), grid = quantisation_step(r.y);
+    quality.noise_std = noise * r.scale.y_scale;
+    quality.quantisation = grid * r.scale.y_scale;
+    if (grid > 0.5 * noise && grid > 1e-3) {
+        quality.notes.push_back("y lies on a grid of " + number_text(quality.quantisation) + " (its range is " +
+                                number_text(r.scale.y_scale) + ").");
+    }
+    quality.saturation = flat_tops(r, noise, grid);
+    for (const Saturation& flat : quality.saturation) {
+        quality.notes.push_back("y stands at " + number_text(flat.level) + " in " +
+                                number_text(100 * flat.fraction, 2) +
+                                " % of the samples, cut off flat; they were used as they are.");
+    }
+}
+
+/// y on few levels while u moves all the time.
+bool look_swapped(const CleanRecord& r) {
+    int y_moves = 0;
+    for (int i = 1; i < r.samples(); ++i) y_moves += r.y[i] != r.y[i - 1] ? 1 : 0;
+    constexpr int kFew = 30;
+    return y_moves > 0 && y_moves <= std::max(3, r.samples() / 100) && y_moves <= kFew && 2 * r.changes() > r.samples();
+}
+
+}  // namespace
+
+double noise_std(std::span<const double> y) {
+    // A second difference of white noise has six times its variance; the median of |.| of a normal variable is 0.6745
+    // of its deviation.
+    std::vector<double> differences;
+    double squares = 0;
+    for (std::size_t i = 2; i < y.size(); ++i) {
+        const double d = y[i] - 2 * y[i - 1] + y[i - 2];
+        differences.push_back(std::abs(d));
+        squares += d * d;
+    }
+    if (differences.empty()) return 0;
+    const double by_square = std::sqrt(squares / static_cast<double>(differences.size()) / 6);
+    const double by_median = median(std::move(differences)) / 0.6745 / std::sqrt(6.0);
+    return by_median > 0 ? std::min(by_median, by_square) : by_square;
+}
+
+double quantisation_step(std::span<const double> y) {
+    std::vector<double> values(y.begin(), y.end());
+    std::sort(values.begin(), values.end());
+    const double range = values.back() - values.front();
+    const double same = 1e-9 * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
+    values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
+                 values.end());
+    if (values.size() == 2) return range;
+    if (values.size() < 3) return 0;
+    double smallest = range;
+    for (std::size_t i = 1; i < values.size(); ++i) smallest = std::min(smallest, values[i] - values[i - 1]);
+    double count = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) count += std::round((values[i] - values[i - 1]) / smallest);
+    const double step = range / count;
+    for (double value : values) {
+        const double places = (value - values.front()) / step;
+        if (std::abs(places - std::round(places)) > 0.1) return 0;
+    }
+    return step;
+}
+
+DataQuality describe_record(const CleanRecord& r) {
+    DataQuality quality;
+    quality.samples = r.samples();
+    quality.samples_dropped = r.dropped;
+    describe_times(r.cleaning, quality);
+    describe_sampling(r, quality);
+    describe_missing(r, quality);
+    describe_input(r, quality);
+    describe_pretest(r, quality);
+    describe_output(r, quality);
+    return quality;
+}
+
+std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& quality) {
+    std::vector<Warning> warnings;
+    const Cleaning& done = r.cleaning;
+    for (const Saturation& flat : quality.saturation) {
+        warnings.push_back({"saturated-output",
+                            "y is cut off at " + number_text(flat.level) + " in " +
+                                number_text(100 * flat.fraction, 2) +
+                                " % of the samples: a sensor or a valve stood at its end, which no linear model can "
+                                "follow. Repeat the test with a smaller step, or cut the record before that."});
+    }
+    constexpr double kLongGap = 0.03, kManyMissing = 0.05;
+    if (quality.gaps && quality.gaps->longest > kLongGap * r.scale.t_scale) {
+        warnings.push_back({"gaps", "Nothing was recorded for " + number_text(quality.gaps->longest) +
+                                        " from t = " + number_text(quality.gaps->at) + ", " +
+                                        number_text(100 * quality.gaps->longest / r.scale.t_scale, 2) +
+                                        " % of the record: a change of u inside it would be unknown."});
+    }
+    if (quality.missing && (quality.missing->count > kManyMissing * (r.samples() + quality.missing->count) ||
+                            quality.missing->longest > kLongGap * r.scale.t_scale)) {
+        warnings.push_back({"missing-samples", "y is missing in " + std::to_string(quality.missing->count) + " of " +
+                                                   std::to_string(r.samples() + quality.missing->count) +
+                                                   " rows, for up to " + number_text(quality.missing->longest) +
+                                                   " from t = " + number_text(quality.missing->at) +
+                                                   "; the model rests on the others."});
+    }
+    if (quality.outliers) {
+        warnings.push_back({"removed-outliers", std::to_string(quality.outliers->count) +
+                                                    " reading(s) of y that no process makes were left out: " +
+                                                    places_of_spikes(done) + ". Look whether they are false."});
+    }
+    if (done.reversed)
+        warnings.push_back({"reversed-time",
+                            "The times run backward from row to row; the record was turned round. Look "
+                            "whether it is the test that you mean."});
+    if (quality.backward_times > 0) {
+        warnings.push_back(
+            {"misplaced-times", std::to_string(quality.backward_times) + " row(s) are out of order in time (first " +
+                                    row_text(done, done.backward > 0 ? done.first_backward : done.first_early) +
+                                    ") and were left out."});
+    }
+    constexpr int kFew = 30;
+    if (r.samples() < kFew)
+        warnings.push_back(
+            {"few-samples", "The record has only " + std::to_string(r.samples()) +
+                                " samples: a model from so few follows every error of theirs. Record faster."});
+    if (look_swapped(r))
+        warnings.push_back({"columns-look-swapped",
+                            "y stays on a few levels while u moves from sample to sample: u and y "
+                            "look exchanged. Name them in columns."});
+    return warnings;
+}
+
+}  // namespace tunewright

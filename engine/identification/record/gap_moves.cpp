@@ -1,0 +1,68 @@
+#include "engine/identification/record/gap_moves.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+/// The time of the last row before the one at or after `time`.
+double row_before(const CleanRecord& r, double time) {
+    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - 1e-12);
+    return row == r.t.begin() ? time : *std::prev(row);
+}
+
+}  // namespace
+
+double usual_spacing(const CleanRecord& r) {
+    std::vector<double> spacings;
+    for (std::size_t i = 1; i < r.t.size(); ++i) {
+        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
+    }
+    return spacings.empty() ? 0 : median(std::move(spacings));
+}
+
+std::vector<int> gap_moves(const CleanRecord& record) {
+    constexpr double kLong = 1.5;
+    const double usual = usual_spacing(record);
+    std::vector<int> moves;
+    for (int j = 0; j < record.changes(); ++j) {
+        if (record.v_time[j] - row_before(record, record.v_time[j]) > kLong * usual) moves.push_back(j);
+    }
+    return moves;
+}
+
+CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
+                                  std::stop_token stop) {
+    constexpr int kRounds = 3, kFarthest = 8;  // rows back
+    const double usual = usual_spacing(record);
+    CleanRecord placed = record;
+    placed.moves_placed = static_cast<int>(moves.size());
+    const auto misses = [&] { return project({&placed, {}}, fit.form, fit.shape).sse; };
+    double least = misses();
+    for (int round = 0; round < kRounds; ++round) {
+        bool moved = false;
+        for (const int j : moves) {
+            if (stop.stop_requested()) return placed;
+            const double seen = record.v_time[j];
+            const double first = std::max(row_before(record, seen), j > 0 ? placed.v_time[j - 1] : 0.0);
+            double best = placed.v_time[j];
+            for (int back = 0; back <= kFarthest && seen - back * usual > first + 0.5 * usual; ++back) {
+                placed.v_time[j] = seen - back * usual;
+                const double now = misses();
+                if (now < least) {
+                    least = now;
+                    best = placed.v_time[j];
+                    moved = true;
+                }
+            }
+            placed.v_time[j] = best;
+        }
+        if (!moved) break;
+    }
+    return placed;
+}
+
+}  // namespace tunewright

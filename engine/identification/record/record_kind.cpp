@@ -1,0 +1,176 @@
+#include "engine/identification/record/record_kind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kFewestSwitches = 3;
+constexpr int kMostSteps = 20;
+
+double spread(const std::vector<double>& x) {
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    return *high - *low;
+}
+
+/// y just before `time`: what a relay has seen when it switched.
+double y_before(const CleanRecord& r, double time) {
+    const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + 1e-12);
+    return r.y[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - r.t.begin() - 1))];
+}
+
+/// Mean of y over the samples of [from, to], the value before `to` if there are none.
+double y_mean(const CleanRecord& r, double from, double to) {
+    const auto first = std::lower_bound(r.t.begin(), r.t.end(), from), last = std::upper_bound(first, r.t.end(), to);
+    if (first == last) return y_before(r, to);
+    const auto start = r.y.begin() + (first - r.t.begin());
+    return std::accumulate(start, start + (last - first), 0.0) / static_cast<double>(last - first);
+}
+
+/// Half periods between switches, apart for the two levels, without the first of each: the start is not steady.
+struct HalfPeriods {
+    std::vector<double> of[2];
+};
+
+HalfPeriods half_periods(const TwoLevels& u) {
+    HalfPeriods halves;
+    for (std::size_t k = 1; k < u.switch_time.size(); ++k)
+        halves.of[k % 2].push_back(u.switch_time[k] - u.switch_time[k - 1]);
+    for (auto& half : halves.of) {
+        if (half.size() > 2) half.erase(half.begin());
+    }
+    return halves;
+}
+
+bool regular(const HalfPeriods& halves, double tolerance) {
+    return std::all_of(std::begin(halves.of), std::end(halves.of), [&](const std::vector<double>& half) {
+        return half.empty() || deviation(half) <= tolerance * mean(half);
+    });
+}
+
+/// Whether y is nearly the same at all switches up, and at all switches down.
+bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
+    constexpr double kTolerance = 0.2;
+    std::vector<double> seen[2];
+    for (std::size_t k = 0; k < u.switch_time.size(); ++k) seen[k % 2].push_back(y_before(r, u.switch_time[k]));
+    const auto first = std::lower_bound(r.t.begin(), r.t.end(), u.switch_time.front()) - r.t.begin();
+    const double moved = spread({r.y.begin() + first, r.y.end()});
+    return std::all_of(std::begin(seen), std::end(seen),
+                       [&](const auto& y) { return y.empty() || deviation(y) <= kTolerance * moved; });
+}
+
+/// Whether y rests when u switches: in most half periods its last fifth moves little beside the whole.
+bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
+    int resting = 0, halves = 0;
+    for (std::size_t k = 1; k < u.switch_time.size(); ++k) {
+        const double from = u.switch_time[k - 1], to = u.switch_time[k], tenth = (to - from) / 10;
+        const double late = std::abs(y_mean(r, to - tenth, to) - y_mean(r, to - 2 * tenth, to - tenth));
+        const auto first = std::lower_bound(r.t.begin(), r.t.end(), from),
+                   last = std::upper_bound(first, r.t.end(), to);
+        if (last - first < 5) continue;
+        ++halves;
+        if (late < 0.03 * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())})) ++resting;
+    }
+    return 2 * resting > halves;
+}
+
+bool is_relay(const CleanRecord& r, const TwoLevels& u) {
+    if (static_cast<int>(u.switch_time.size()) < kFewestSwitches) return false;
+    const HalfPeriods halves = half_periods(u);
+    const bool repeats = u.switch_time.size() >= 5 && regular(halves, 0.1);
+    const bool follows_y = regular(halves, 0.5) && switched_by_y(r, u);
+    return (repeats || follows_y) && !rests_before_switches(r, u);
+}
+
+/// The border between the two groups that `levels` fall into; the widest gap.
+double widest_gap(std::vector<double> levels, double& gap) {
+    std::sort(levels.begin(), levels.end());
+    gap = 0;
+    double border = 0;
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        if (levels[i] - levels[i - 1] <= gap) continue;
+        gap = levels[i] - levels[i - 1];
+        border = 0.5 * (levels[i] + levels[i - 1]);
+    }
+    return border;
+}
+
+/// The levels [first, last) as two groups; false where they are not two.
+bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, TwoLevels& out) {
+    constexpr double kDistinct = 10;
+    const std::vector<double> used(levels.level.begin() + static_cast<std::ptrdiff_t>(first),
+                                   levels.level.begin() + static_cast<std::ptrdiff_t>(last));
+    double gap = 0;
+    const double border = widest_gap(used, gap);
+    std::vector<double> group[2];
+    for (const double level : used) group[level > border].push_back(level);
+    if (group[0].empty() || group[1].empty()) return false;
+    if (gap < kDistinct * std::max(spread(group[0]), spread(group[1]))) return false;
+    out = {mean(group[0]), mean(group[1]), {}, used.front() < border};
+    for (std::size_t i = first + 1; i < last; ++i) {
+        if ((levels.level[i] > border) != (levels.level[i - 1] > border)) out.switch_time.push_back(levels.time[i]);
+    }
+    return true;
+}
+
+}  // namespace
+
+InputLevels input_levels(const CleanRecord& r) {
+    constexpr double kJitter = 0.02, kSlew = 0.01;
+    const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
+    const double jitter = kJitter * (std::max(*high, 0.0) - std::min(*low, 0.0));
+    const double slew = std::max(kSlew, 2.5 / r.samples());
+    InputLevels out{{0}, {0}};
+    double last_move = 0;
+    for (int j = 0; j < r.changes(); ++j) {
+        const double move = r.v_level[j] - out.level.back();
+        if (std::abs(move) <= jitter) continue;
+        if (last_move * move > 0 && r.v_time[j] - out.time.back() <= slew) {
+            out.level.back() = r.v_level[j];
+            continue;
+        }
+        out.time.push_back(r.v_time[j]);
+        out.level.push_back(r.v_level[j]);
+        last_move = move;
+    }
+    return out;
+}
+
+TwoLevels two_levels(const InputLevels& levels) {
+    TwoLevels best;
+    const std::size_t n = levels.level.size();
+    // All of it, without the pre-test level, without the level after the test, without both.
+    for (const std::size_t before : {0u, 1u}) {
+        for (const std::size_t after : {0u, 1u}) {
+            if (n < before + after + 2) continue;
+            TwoLevels now;
+            if (alternate(levels, before, n - after, now) && now.switch_time.size() > best.switch_time.size())
+                best = std::move(now);
+        }
+    }
+    return best;
+}
+
+RecordKind found_kind(const CleanRecord& record) {
+    const InputLevels levels = input_levels(record);
+    if (levels.moves() <= 1) return RecordKind::step;
+    if (is_relay(record, two_levels(levels))) return RecordKind::relay;
+    return levels.moves() < kMostSteps ? RecordKind::several_steps : RecordKind::general;
+}
+
+const char* name_of(RecordKind kind) {
+    switch (kind) {
+        case RecordKind::automatic: break;
+        case RecordKind::step: return "step";
+        case RecordKind::several_steps: return "several_steps";
+        case RecordKind::relay: return "relay";
+        case RecordKind::general: return "general";
+    }
+    return "auto";
+}
+
+}  // namespace tunewright

@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/identification/record/data_quality.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kShortestRun = 5;
+constexpr double kLeastShare = 0.01;
+
+/// Movement of y over the few samples that end at i, per sample.
+double speed(const CleanRecord& r, int i, int samples) {
+    const int from = std::max(0, i - samples);
+    return i > from ? std::abs(r.y[i] - r.y[from]) / (i - from) : 0;
+}
+
+double fastest(const CleanRecord& r, int samples) {
+    double most = 0;
+    for (int i = samples; i < r.samples(); ++i) most = std::max(most, speed(r, i, samples));
+    return most;
+}
+
+/// Whether y goes up and down from sample to sample, as noise does and no response.
+bool alternates(const CleanRecord& r) {
+    int turns = 0, moves = 0;
+    double before = 0;
+    for (int i = 1; i < r.samples(); ++i) {
+        const double d = r.y[i] - r.y[i - 1];
+        if (d == 0) continue;
+        ++moves;
+        turns += d * before < 0 ? 1 : 0;
+        before = d;
+    }
+    constexpr double kTurning = 0.3;
+    return turns > kTurning * moves;
+}
+
+/// Whether y moved fast for some time before sample i: a jump of a sample or two is a fast process.
+bool arrives_fast(const CleanRecord& r, int i, int window, double least_speed) {
+    return i > 2 * window && speed(r, i, window) > least_speed && speed(r, i - window, window) > least_speed;
+}
+
+/// Samples in runs at `level` that were entered at speed; every run counts where `noisy`.
+int samples_at(const CleanRecord& r, double level, double same, bool noisy, double least_speed, int window) {
+    int count = 0;
+    for (int i = 0; i < r.samples();) {
+        int end = i;
+        while (end < r.samples() && std::abs(r.y[end] - level) <= same) ++end;
+        if (end - i >= kShortestRun && i > 0 && (noisy || arrives_fast(r, i, window, least_speed))) count += end - i;
+        i = std::max(end, i + 1);
+    }
+    return count;
+}
+
+}  // namespace
+
+std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
+    constexpr double kSame = 1e-9, kCoarse = 1.0 / 30, kNoisy = 2, kLeastNoise = 1e-3, kPart = 1.0 / 6;
+    if (grid > kCoarse) return {};
+    const int window = std::clamp(r.samples() / 200, 3, 50);
+    const double least_speed = kPart * fastest(r, window);
+    const bool noisy = noise > kNoisy * grid && noise > kLeastNoise && alternates(r);
+    std::vector<Saturation> found;
+    for (const double level : {0.0, 1.0}) {
+        const int count = samples_at(r, level, kSame, noisy, least_speed, window);
+        if (count < kLeastShare * r.samples() || count < kShortestRun) continue;
+        found.push_back({r.scale.y_origin + r.scale.y_scale * level, static_cast<double>(count) / r.samples()});
+    }
+    return found;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,139 @@
+#include "engine/identification/relay_test/relay_fourier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace tunewright {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kPi = std::numbers::pi;
+
+/// What a relay oscillation says once the sign of the plant is taken out: G = sign * A e^(-j lag) with lag in
+/// [0, 2 pi).
+struct Polar {
+    double A, lag, sign;
+};
+
+Polar polar(const RecordedCycle& cycle) {
+    const double sign = cycle.reversed ? -1 : 1;
+    const Complex G = sign * cycle.harmonics.front().G;
+    double lag = -std::arg(G);
+    if (lag < 0) lag += 2 * kPi;
+    return {std::abs(G), lag, sign};
+}
+
+/// Unit-gain magnitude and lag of the structure without its dead time at s = sigma + j omega.
+Complex denominator(Structure structure, double T, Complex s) {
+    switch (structure) {
+        case Structure::unstable: return 1.0 - T * s;
+        case Structure::ipdt_lag: return s * (1.0 + T * s);
+        default: return 1.0 + T * s;
+    }
+}
+
+Shape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
+
+/// The gain and dead time that meet Eqs. 11 and 12 at this T.
+struct Matched {
+    double K, L;
+};
+
+Matched matched(const Polar& point, double omega, Structure structure, double T) {
+    const Complex d = denominator(structure, T, Complex(0, omega));
+    // 1/(1 - j T omega) leads: with a negative gain, half a turn and that lead are the lag.
+    const double sign = structure == Structure::unstable ? -point.sign : point.sign;
+    const double own = structure == Structure::unstable ? kPi - std::atan(T * omega) : std::arg(d);
+    return {sign * point.A * std::abs(d), (point.lag - own) / omega};
+}
+
+RelayModel model_at(const RecordedCycle& cycle, const Polar& point, Structure structure, double T) {
+    const Matched m = matched(point, cycle.omega(), structure, T);
+    RelayModel model{shape_of(structure, T, m.L), m.K, 0, false};
+    model.fit_rms = harmonic_misfit(cycle, model.shape, model.K);
+    return model;
+}
+
+/// ln(|model|/|measured|) at the shifted point: Eq. 13 in logarithms.
+double excess(const Polar& point, double omega, Structure structure, double T, double sigma, double magnitude) {
+    const Matched m = matched(point, omega, structure, T);
+    const Complex s(sigma, omega);
+    return std::log(std::abs(m.K) / (std::abs(denominator(structure, T, s)) * magnitude)) - sigma * m.L;
+}
+
+/// Newton in ln T between two signs; a step that leaves the bracket becomes a bisection.
+double solve(const std::function<double(double)>& f, double low, double high) {
+    double at_low = f(low), x = 0.5 * (low + high);
+    for (int i = 0; i < 100 && high - low > 1e-14 * std::max(1.0, std::abs(x)); ++i) {
+        const double value = f(x);
+        if (value == 0) return x;
+        ((value > 0) == (at_low > 0) ? low : high) = x;
+        if ((value > 0) == (at_low > 0)) at_low = value;
+        constexpr double kStep = 1e-6;
+        const double slope = (f(x + kStep) - f(x - kStep)) / (2 * kStep), next = x - value / slope;
+        x = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return x;
+}
+
+}  // namespace
+
+double harmonic_misfit(const RecordedCycle& cycle, const Shape& shape, double K) {
+    double sum = 0;
+    for (const Harmonic& h : cycle.harmonics) {
+        const Complex s(0, h.order * cycle.omega());
+        sum += std::norm(h.Y - K * unit_transfer(shape, s) * h.U);
+    }
+    return std::sqrt(2 * sum);
+}
+
+std::optional<RelayModel> biased_fopdt(const RecordedCycle& cycle) {
+    const Polar point = polar(cycle);
+    const double K = cycle.static_gain(), omega = cycle.omega();
+    if (!(std::abs(K) > point.A) || !std::isfinite(K)) return std::nullopt;
+    const double T = std::sqrt(K * K / (point.A * point.A) - 1) / omega;
+    const Structure structure = K * point.sign > 0 ? Structure::fopdt : Structure::unstable;
+    const Matched m = matched(point, omega, structure, T);
+    if (m.L < 0) return std::nullopt;
+    RelayModel model{shape_of(structure, T, m.L), K, 0, true};
+    model.fit_rms = harmonic_misfit(cycle, model.shape, K);
+    return model;
+}
+
+std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shifted, double sigma,
+                                        Structure structure) {
+    const Polar point = polar(cycle);
+    const double omega = cycle.omega(), magnitude = std::abs(shifted);
+    auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
+    constexpr int kIntervals = 400;
+    const double low = std::log(1e-4 / omega), high = std::log(1e4 / omega);
+    std::vector<RelayModel> models;
+    double before = f(low);
+    for (int i = 1; i <= kIntervals; ++i) {
+        const double a = low + (high - low) * (i - 1) / kIntervals, b = low + (high - low) * i / kIntervals;
+        const double after = f(b);
+        if ((before > 0) != (after > 0)) {
+            RelayModel model = model_at(cycle, point, structure, std::exp(solve(f, a, b)));
+            if (model.shape.L() >= -1e-9) {
+                model.shape.p[0] = std::max(0.0, model.shape.p[0]);
+                models.push_back(model);
+            }
+        }
+        before = after;
+    }
+    std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) { return a.fit_rms < b.fit_rms; });
+    return models;
+}
+
+std::optional<RelayModel> integrating_model(const RecordedCycle& cycle) {
+    const Polar point = polar(cycle);
+    const double omega = cycle.omega(), L = (point.lag - 0.5 * kPi) / omega;
+    if (L < 0) return std::nullopt;
+    RelayModel model{{Structure::ipdt, {L, 0, 0, 0}}, point.sign * point.A * omega, 0, false};
+    model.fit_rms = harmonic_misfit(cycle, model.shape, model.K);
+    return model;
+}
+
+}  // namespace tunewright

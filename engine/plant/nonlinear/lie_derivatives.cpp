@@ -1,0 +1,144 @@
+#include "engine/plant/nonlinear/lie_derivatives.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/numerics/linear_algebra.h"
+#include "engine/plant/expression/taylor.h"
+#include "engine/plant/nonlinear/input_degree.h"
+
+namespace tunewright {
+namespace {
+
+// Values are compared with the sum of the terms' sizes that make them up, and with their values around.
+constexpr double kRounding = 1e-10, kVanishesThere = 1e-8, kNeighbourhood = 0.02;
+constexpr int kNeighbours = 12;
+
+// |C| |A|^(r-1) |B|: what L_g L_f^(r-1) h is made of at x, without cancellation. Below 0 outside the domain.
+std::vector<double> term_sizes(const NonlinearSystem& system, std::span<const double> x, int highest) {
+    const auto n = x.size();
+    std::vector<double> A(n * n), B(n), C(n), next(n), sizes;
+    if (!system.jacobian(x, system.u_nominal(), A, B) || !system.output_gradient(x, C)) return {};
+    for (int r = 1; r <= highest; ++r) {
+        double size = 0;
+        for (std::size_t i = 0; i < n; ++i) size += std::abs(C[i] * B[i]);
+        sizes.push_back(size);
+        for (std::size_t i = 0; i < n; ++i) {
+            next[i] = 0;
+            for (std::size_t j = 0; j < n; ++j) next[i] += std::abs(A[i * n + j] * B[j]);
+        }
+        B = next;
+    }
+    return sizes;
+}
+
+// Points around the steady state, spread evenly (Weyl's sequence of square roots of primes); the first is itself.
+std::vector<std::vector<double>> neighbourhood(const NonlinearSystem& system) {
+    constexpr int kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71};
+    const auto steady = system.x_steady();
+    std::vector<std::vector<double>> points = {{steady.begin(), steady.end()}};
+    for (int k = 1; k <= kNeighbours; ++k) {
+        std::vector<double> point(steady.begin(), steady.end());
+        for (std::size_t i = 0; i < point.size(); ++i) {
+            const double turn = k * std::sqrt(kPrimes[i]);
+            const double size = point[i] == 0 ? 1 : std::abs(point[i]);
+            point[i] += kNeighbourhood * size * (2 * (turn - std::floor(turn)) - 1);
+        }
+        points.push_back(std::move(point));
+    }
+    return points;
+}
+
+struct InputEffect {
+    bool anywhere = false, at_the_operating_point = false;
+};
+
+// Whether L_g L_f^(r-1) h vanishes identically or only at the operating point.
+InputEffect input_effect(const NonlinearSystem& system, int r, const std::vector<std::vector<double>>& points,
+                         const std::vector<std::vector<double>>& sizes) {
+    InputEffect effect;
+    double largest = 0, here = 0;
+    LieDerivatives lie;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (sizes[i].empty() || !lie_derivatives(system, r, points[i], lie)) continue;
+        const double value = std::abs(lie.of_g);
+        if (value <= kRounding * sizes[i][static_cast<std::size_t>(r) - 1]) continue;
+        effect.anywhere = true;
+        largest = std::max(largest, value);
+        if (i == 0) here = value;
+    }
+    effect.at_the_operating_point = effect.anywhere && here > kVanishesThere * largest;
+    return effect;
+}
+
+Error unsupported(const std::string& message) { return {ErrorKind::unsupported, "plant/output", message}; }
+
+}  // namespace
+
+bool lie_derivatives(const NonlinearSystem& system, int r, std::span<const double> x, LieDerivatives& out) {
+    using Coefficient = Dual<1>;
+    const Program& rates = system.program();
+    const Program& output = system.output_program();
+    const int n = system.order(), length = rates.length(n);
+    TaylorTable<Coefficient> flow(rates, r);
+    for (int i = 0; i < n; ++i) flow.series(i)[0] = constant_dual<1>(x[static_cast<std::size_t>(i)]);
+    Coefficient* u = flow.series(n);
+    u[0] = {0, {1}};  // f affine in u: at u = 0 the value is of f, the slope of g
+    for (int k = 1; k <= r; ++k) u[k] = constant_dual<1>(0);
+    for (int k = 0; k < r; ++k) {
+        flow.sweep(k, length);
+        for (int i = 0; i < n; ++i) flow.series(i)[k + 1] = flow.series(rates.output_register(i))[k] * (1.0 / (k + 1));
+    }
+
+    TaylorTable<Coefficient> along(output, r);
+    for (int i = 0; i < n; ++i) std::copy_n(flow.series(i), r + 1, along.series(i));
+    for (int k = 0; k <= r; ++k) {
+        set_constant(along.series(n)[k], 0);
+        along.sweep(k, output.length(1));
+    }
+    const Coefficient* y = along.series(output.output_register(0));
+    out.of_f.resize(static_cast<std::size_t>(r) + 1);
+    double factorial = 1;
+    bool finite = true;
+    for (int k = 0; k <= r; ++k) {
+        if (k > 0) factorial *= k;
+        out.of_f[static_cast<std::size_t>(k)] = factorial * y[k].v;
+        finite = finite && std::isfinite(out.of_f[static_cast<std::size_t>(k)]);
+    }
+    out.of_g = factorial * y[r].d[0];
+    return finite && std::isfinite(out.of_g);
+}
+
+Expected<int> relative_degree(const NonlinearSystem& system) {
+    if (auto error = not_affine(system)) return *error;
+    const auto points = neighbourhood(system);
+    std::vector<std::vector<double>> sizes;
+    sizes.reserve(points.size());
+    for (const auto& point : points) sizes.push_back(term_sizes(system, point, system.order()));
+    const std::string& u = system.description().input.name;
+    for (int r = 1; r <= system.order(); ++r) {
+        const InputEffect effect = input_effect(system, r, points, sizes);
+        if (effect.at_the_operating_point) return r;
+        if (effect.anywhere)
+            return unsupported("The relative degree is undefined at the operating point: " + u +
+                               " enters the derivative of order " + std::to_string(r) +
+                               " of the output around it, but its coefficient is 0 there. Choose another operating "
+                               "point or output.");
+    }
+    return unsupported("The input " + u + " enters no derivative of the output up to the order " +
+                       std::to_string(system.order()) + " of the plant: it cannot move this output.");
+}
+
+ZeroDynamics zero_dynamics(const NonlinearSystem& system) {
+    const StateSpace& linear = system.linearised();
+    const auto n = static_cast<std::size_t>(system.order());
+    const std::vector<double> A = row_by_row(linear.A);
+    ZeroDynamics result;
+    result.zeros = transmission_zeros(A, linear.B, linear.C, 0, static_cast<int>(n)).value_or(result.zeros);
+    double scale = 0;
+    for (const double a : A) scale = std::max(scale, std::abs(a));
+    for (const auto& zero : result.zeros) result.stable = result.stable && zero.real() < -kRounding * scale;
+    return result;
+}
+
+}  // namespace tunewright

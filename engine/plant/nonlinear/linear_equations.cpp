@@ -1,0 +1,50 @@
+#include "engine/plant/nonlinear/linear_equations.h"
+
+#include <charconv>
+#include <span>
+#include <string>
+
+namespace tunewright {
+namespace {
+
+std::string exact(double x) {
+    char buffer[40];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, x).ptr;
+    return "(" + std::string(buffer, end) + ")";
+}
+
+std::string state(int i) { return "x" + std::to_string(i + 1); }
+
+// "(0.5)*x1 + (-2)*x3"; empty where every coefficient is 0.
+std::string weighted_states(std::span<const double> row) {
+    std::string result;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        if (row[i] != 0) result += (result.empty() ? "" : " + ") + exact(row[i]) + "*" + state(static_cast<int>(i));
+    return result;
+}
+
+}  // namespace
+
+Expected<NonlinearSystem> as_equations(const LinearPlant& plant) {
+    const Realisation& realisation = plant.realisation();
+    const auto n = static_cast<std::size_t>(realisation.n);
+    if (realisation.D != 0 || n == 0)
+        return Error{ErrorKind::unsupported, "plant",
+                     "The plant has a direct term: its output jumps with its input. This method needs a plant whose "
+                     "output follows from its states; add the actuator's or the sensor's lag."};
+    NonlinearPlant written{.states = {},
+                           .parameters = {},
+                           .equations = {},
+                           .input = {.name = "u", .nominal = 0},
+                           .output = weighted_states(realisation.C),
+                           .L = plant.dead_time()};
+    for (std::size_t i = 0; i < n; ++i) {
+        std::string rate = weighted_states(std::span(realisation.A).subspan(i * n, n));
+        if (realisation.B[i] != 0) rate += (rate.empty() ? "" : " + ") + exact(realisation.B[i]) + "*u";
+        written.states.push_back({state(static_cast<int>(i)), 0});
+        written.equations.push_back({state(static_cast<int>(i)), rate.empty() ? "0" : rate});
+    }
+    return NonlinearSystem::make(written);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,77 @@
+// Any linear plant as one of the few forms that tuning rules are written for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/plant.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+enum class ReductionMethod {
+    automatic,       ///< the rule's own first, the other where that one does not apply
+    half_rule,       ///< Skogestad (2003): from poles and zeros
+    tangent,         ///< from the exact step response: the tangent at its steepest point
+    two_point_123c,  ///< Alfaro (2006): through 25 % and 75 % of the exact step response
+    min_ise,
+    min_iae,
+    min_itae,  ///< least integrated difference of the step responses: min_error.h
+};
+
+/// The contract's word for it: "auto", "half_rule", "tangent", "123c", "min_ise", "min_iae", "min_itae".
+const char* to_string(ReductionMethod method);
+
+/// The method of a word; automatic for any other.
+ReductionMethod reduction_method(const std::string& word);
+
+enum class ReducedOrder { first, second };
+
+/// What T is in the tangent construction.
+enum class TangentTime {
+    at_63_percent,  ///< from the tangent's foot to the instant at which 1 - 1/e of the change is reached
+    by_slope,       ///< static gain over steepest slope: the tangent's own length
+};
+
+struct ReductionRequest {
+    ReducedOrder order = ReducedOrder::first;
+    ReductionMethod method = ReductionMethod::automatic;
+    ReductionMethod preferred = ReductionMethod::half_rule;  ///< what `automatic` tries first
+    TangentTime tangent_time = TangentTime::at_63_percent;
+    std::optional<double> horizon = {};  ///< of min_*: where their integral ends; empty: settled
+};
+
+/// K e^(-Ls) / (s^integrators (T1 s + 1)(T2 s + 1)) with T1 >= T2 >= 0, L >= 0; with an integrator T2 = 0, with two T1
+/// = 0 as well.
+struct ReducedModel {
+    int integrators = 0;
+    double K = 0;  ///< static gain, slope or acceleration per unit of u; any sign
+    double T1 = 0;
+    double T2 = 0;
+    double L = 0;
+    bool exact = false;  ///< the plant has this form itself: nothing was left out
+    std::vector<Warning> warnings = {};
+
+    Plant plant() const;  ///< Fopdt, Sopdt, Ipdt, or a TransferFunction K/s^2
+};
+
+/// The plant in the asked order. One integrator is kept, its lags become the model's dead time (the asymptote of the
+/// ramp) except the one that second order retains; two integrators are kept with second order only.
+///
+/// half_rule: the largest neglected lag goes half to the smallest kept one, half to L, smaller ones and
+/// right-half-plane zeros to L entirely; left-half-plane zeros are first cancelled against neighbouring lags (rules T1
+/// to T3, which may change K). A complex pole pair with zeta >= 0.5 counts as two lags zeta T (same first moment), with
+/// a warning. tangent, two_point_123c: K static; stable plants get first order whatever is asked. They warn where the
+/// response is not essentially monotone.
+///
+/// Errors: unsupported (`where` "plant" or "reduction/method") for right-half-plane poles, undamped modes, zeros at the
+/// origin, too many integrators, and where the named method does not apply; the sentence names another.
+/// invalid_argument, `where` "reduction/horizon", for a horizon with a method that has none, or one before the response
+/// moves. Sources: Skogestad, J. Process Control 13 (2003), Eqs. 10-11 and Section 2.2; Hagglund & Astrom, J. Process
+/// Control 14 (2004), Section 2; Alfaro, Ciencia y Tecnologia 24 (2006).
+Expected<ReducedModel> reduce(const LinearPlant& plant, const ReductionRequest& request);
+
+}  // namespace tunewright

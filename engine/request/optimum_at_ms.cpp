@@ -1,0 +1,54 @@
+#include "engine/request/optimum_at_ms.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kGreatestMs = 4;  // of the method robust
+
+OptimumAtMs none(const std::string& reason) { return {{}, {}, {{"IAE", reason}, {"excess_percent", reason}}}; }
+
+}  // namespace
+
+RobustOptima::RobustOptima(TuningProblem problem, const EvaluateOptions& options)
+    : problem_(std::move(problem)), options_(options), front_(problem_) {
+    options_.points = 0;
+    options_.noise.reset();
+}
+
+Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control) {
+    const auto design = front_.at(Ms, {control.stop, nullptr, nullptr});
+    if (!design) return design.error();
+    // To infinity and without limits the loop is linear, and the search has simulated it.
+    if (!options_.horizon && !options_.actuator) return design->load_IAE * std::abs(options_.load_step);
+    const auto evaluation = evaluate(problem_.plant, design->controller, options_);
+    if (!evaluation) return evaluation.error();
+    const auto& load = evaluation->performance.load;
+    if (load.IAE) return *load.IAE;
+    const auto why = load.why_null.find("IAE");
+    return Error{ErrorKind::numerical_failure, "",
+                 why == load.why_null.end() ? "The optimum's load IAE is not finite." : why->second};
+}
+
+OptimumAtMs RobustOptima::beside(const Evaluation& evaluation, const RunControl& control) {
+    const auto& Ms = evaluation.robustness.Ms;
+    if (!Ms) return none("The loop has no Ms, so there is nothing to compare at.");
+    if (*Ms <= 1 || *Ms > kGreatestMs)
+        return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(kGreatestMs) + ".");
+    const auto optimum = load_IAE_at(*Ms, control);
+    if (!optimum) return none(optimum.error().message);
+    OptimumAtMs answer{*optimum, {}, {}};
+    const Performance& performance = evaluation.linear ? evaluation.linear->performance : evaluation.performance;
+    if (const auto& IAE = performance.load.IAE; IAE && *answer.IAE > 0)
+        answer.excess_percent = 100 * (*IAE / *answer.IAE - 1);
+    else
+        answer.why_null["excess_percent"] = "The controller's load IAE is not finite.";
+    return answer;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,40 @@
+// How far a controller's load IAE lies above the least that a PID reaches at the same Ms.
+#pragma once
+
+#include <optional>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/expected.h"
+#include "engine/progress.h"
+#include "engine/tuning/method/method.h"
+#include "engine/tuning/robust/robust.h"
+
+namespace tunewright {
+
+/// `IAE`: of the robust PID whose limits on Ms and Mt are both the controller's Ms. `excess_percent`: 100 (IAE of the
+/// controller over it - 1); may be below 0, where the controller's own filter or Mt lets it. Of a nonlinear plant both
+/// are the linearisation's, to which Ms belongs.
+struct OptimumAtMs {
+    std::optional<double> IAE, excess_percent;
+    WhyNull why_null;
+};
+
+/// The optima of one plant, each from its neighbours. Ms must lie in (1, 4]; elsewhere, and where there is no optimum,
+/// both figures are empty. Evaluated as `options` say (steps, horizon, actuator); limits hold on the nominal plant.
+class RobustOptima {
+public:
+    RobustOptima(TuningProblem problem, const EvaluateOptions& options);
+    RobustOptima(const RobustOptima&) = delete;  // the front looks at the problem kept here
+    RobustOptima& operator=(const RobustOptima&) = delete;
+
+    OptimumAtMs beside(const Evaluation& evaluation, const RunControl& control);
+
+private:
+    Expected<double> load_IAE_at(double Ms, const RunControl& control);
+
+    TuningProblem problem_;
+    EvaluateOptions options_;
+    RobustFront front_;
+};
+
+}  // namespace tunewright

@@ -1,0 +1,34 @@
+// What a request's list of methods asks for, row by row.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/expected.h"
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+struct MethodRequest {
+    std::string method = "robust";  ///< or "all": every method in all its variants, each with those options it knows
+    MethodOptions options;
+
+    bool of_all() const { return method == "all"; }
+};
+
+/// One row of the answer to come: a method with its options, or why it has none.
+struct PlannedRow {
+    const TuningMethod* method = nullptr;
+    MethodOptions options;
+    std::string title;             ///< the method's, in "all" with its variant in brackets
+    std::optional<Error> refusal;  ///< an option that was given does not suit the method (unsupported)
+    std::string where;             ///< its place in the request, "tune/2"
+    bool of_all = false;
+};
+
+/// In the request's order, "all" expanded (league.h). Errors: invalid_argument for an unknown method or none.
+Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& requests);
+
+}  // namespace tunewright

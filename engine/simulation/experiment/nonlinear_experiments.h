@@ -1,0 +1,38 @@
+// Step and relay tests made on a nonlinear plant by simulation: records that identification reads like measured ones.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/progress.h"
+#include "engine/simulation/relay/relay.h"
+
+namespace tunewright {
+
+struct StepTest {
+    std::vector<double> t, u, y;  ///< deviations; u[i] holds from t[i]; t[0] < 0: some rows at rest come first
+    double du = 0;                ///< the step of u at t = 0
+    bool settled = true;
+};
+
+/// From the operating point until y has settled (integrating and unstable plants: until it has moved enough): some
+/// thousand rows at equal distances, exact. `du` is cut to the input's limits. Errors: unsupported where the states
+/// leave the model's domain or y does not move; cancelled.
+Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, const RunControl& control);
+
+/// Until periods and swings repeat to 1e-6, at least six: some thousand rows at equal distances and at every switch.
+/// Switches at the instant of crossing; amplitude and hysteresis as deviations (relay.h). Errors: unsupported where
+/// there is no oscillation (without dead time a hysteresis is needed; where y turns at it at once there is no Ku) or
+/// the states leave the model's domain; cancelled.
+struct NonlinearRelayTest {
+    RelayRecord record;
+    double Pu = 0,
+           Ku = 0;  ///< of the last period; Ku = 4 d/(pi sqrt(a^2 - hysteresis^2)) (Astrom & Hagglund 1984), > 0
+    bool reversed = false;  ///< the relay acts on -y: the plant's gain is negative
+};
+Expected<NonlinearRelayTest> simulate_relay_test(const NonlinearSystem& system, double amplitude, double hysteresis,
+                                                 const RunControl& control);
+
+}  // namespace tunewright

@@ -1,0 +1,275 @@
+#include "engine/simulation/imc/imc_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/numerics/propagator.h"
+#include "engine/simulation/linear/signal.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
+constexpr double kUsualTolerance = 1e-6;  // at which these hold
+constexpr double kStepsPerResonance = 4;  // per 1/|p| of a complex pole
+constexpr int kCorrections = 6;           // of a step that is longer than a dead time and sees its own end
+
+/// What the loop would show without its dead times, kept to be looked at later.
+struct Memory {
+    double t = 0;
+    Signal y, y_model;  ///< slopes just after t
+    double integral_y = 0;
+};
+
+double cubic(double h, double s, double a, double slope_a, double b, double slope_b) {
+    const auto c = hermite_taylor(h, a, slope_a, b, slope_b);
+    return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6));
+}
+
+Signal cubic(double h, double s, Signal a, Signal b) {
+    const auto c = hermite_taylor(h, a.value, a.slope, b.value, b.slope);
+    return {cubic(h, s, a.value, a.slope, b.value, b.slope), c[1] + s * (c[2] + s * c[3] / 2)};
+}
+
+/// x' = F x + G e + b, u = M x + N e: plant states, the model's, Q's two, the integral of y without dead time. e is
+/// what Q sees; without a dead time of the plant, what it sees except for -y.
+struct ImcSystem {
+    int n = 0, plant_states = 0;
+    std::vector<double> F, G, b, M;
+    double N = 0;
+    std::vector<double> output;       // of y without dead time
+    std::vector<double> output_rate;  // of its slope, from x; and from e, and constant
+    double output_rate_e = 0, output_rate_1 = 0;
+};
+
+ImcSystem make_system(const LinearPlant& plant, const ImcController& c, double load) {
+    const Realisation& P = plant.realisation();
+    ImcSystem s;
+    s.plant_states = P.n;
+    s.n = P.n + 4;
+    const int model = P.n, z1 = P.n + 1, z2 = P.n + 2, integral = P.n + 3;
+    s.F.assign(Index(s.n * s.n), 0);
+    s.G.assign(Index(s.n), 0);
+    s.b.assign(Index(s.n), 0);
+    s.M.assign(Index(s.n), 0);
+    s.output.assign(Index(s.n), 0);
+    const auto F = [&](int row, int column) -> double& { return s.F[Index(row * s.n + column)]; };
+    // Q as two leads over lags: (beta s + 1)/(lambda s + 1), then (tau s + 1)/(lambda s + 1), then 1/kp.
+    const double lambda = c.lambda, first = c.beta / lambda, second = c.tau / lambda;
+    s.N = second * first / c.kp;
+    s.M[Index(z1)] = second * (1 - first) / c.kp;
+    s.M[Index(z2)] = (1 - second) / c.kp;
+    F(z1, z1) = -1 / lambda;
+    s.G[Index(z1)] = 1 / lambda;
+    F(z2, z1) = (1 - first) / lambda;
+    F(z2, z2) = -1 / lambda;
+    s.G[Index(z2)] = first / lambda;
+    F(model, model) = -1 / c.tau;
+    for (int i = 0; i < P.n; ++i) {
+        for (int j = 0; j < P.n; ++j) F(i, j) = P.A[Index(i * P.n + j)];
+        s.output[Index(i)] = P.C[Index(i)];
+        F(integral, i) = P.C[Index(i)];
+        s.b[Index(i)] = P.B[Index(i)] * load;
+    }
+    // u drives plant and model.
+    for (int i = 0; i <= P.n; ++i) {
+        const double gain = i < P.n ? P.B[Index(i)] : c.kp / c.tau;
+        for (int j = 0; j < s.n; ++j) F(i, j) += gain * s.M[Index(j)];
+        s.G[Index(i)] += gain * s.N;
+    }
+    if (plant.dead_time() == 0) {
+        for (int i = 0; i < s.n; ++i)
+            for (int j = 0; j < P.n; ++j) F(i, j) -= s.G[Index(i)] * s.output[Index(j)];
+        for (int j = 0; j < P.n; ++j) s.M[Index(j)] -= s.N * s.output[Index(j)];
+    }
+    s.output_rate.assign(Index(s.n), 0);
+    for (int i = 0; i < P.n; ++i) {
+        for (int j = 0; j < s.n; ++j) s.output_rate[Index(j)] += s.output[Index(i)] * F(i, j);
+        s.output_rate_e += s.output[Index(i)] * s.G[Index(i)];
+        s.output_rate_1 += s.output[Index(i)] * s.b[Index(i)];
+    }
+    return s;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& x) {
+    double sum = 0;
+    for (Index i = 0; i < a.size(); ++i) sum += a[i] * x[i];
+    return sum;
+}
+
+class ImcRun {
+public:
+    ImcRun(const LinearPlant& plant, const ImcController& c, const StepInputs& in, const ResponseOptions& options)
+        : system_(make_system(plant, c, in.d)),
+          c_(c),
+          in_(in),
+          options_(options),
+          L_(plant.dead_time()),
+          theta_(c.theta) {
+        response_.y_final = in.r;
+        response_.u_final = in.r / plant.low_frequency_gain() - in.d;
+        // C = 1/(kp d0 s) + ...: what the integral of the error must come to.
+        const double x = c.lambda / c.tau - 1;
+        const double d0 = c.lambda * c.lambda / c.tau + c.theta + c.tau * x * x * std::expm1(-c.theta / c.tau);
+        response_.error_integral_final = response_.u_final * c.kp * d0;
+        // Once what dead times bring back is smooth, only lambda and resonances say how far a cubic reaches: its error
+        // is of order 4.
+        const double shorter = std::pow(options.tolerance / kUsualTolerance, 0.25);
+        long_step_ = c.lambda / kStepsPerLambda;
+        for (const auto pole : plant.poles())
+            if (pole.imag() != 0) long_step_ = std::min(long_step_, 1 / (kStepsPerResonance * std::abs(pole)));
+        step_ = shorter * std::min(long_step_, (L_ + theta_) / kStepsPerDeadTime);
+        long_step_ *= shorter;
+        for (int i = 0; i <= 3; ++i)
+            for (int j = 0; i + j <= 3; ++j) events_.push_back(i * L_ + j * theta_);
+        std::ranges::sort(events_);
+        if (const auto end = options.horizon.value_or(events_.back()); end < events_.back()) {
+            std::erase_if(events_, [end](double t) { return t >= end; });
+            events_.push_back(end);
+        }
+        slack_ = 1e-9 * step_;
+    }
+
+    LinearResponse run() {
+        std::vector<double> x(Index(system_.n), 0.0);
+        remember(0, x, seen(0, true));
+        push(0, x, seen(0, true));
+        for (Index i = 1; i < events_.size(); ++i) {
+            const double from = memory_.back().t, length = events_[i] - from;
+            if (length <= slack_) continue;
+            const int parts = static_cast<int>(std::ceil(length / step_ - 1e-9));
+            for (int k = 1; k <= parts; ++k) {
+                const double t = k == parts ? events_[i] : from + length * k / parts;
+                take_step(x, length / parts, t);
+                if (finished()) return std::move(response_);
+            }
+            push(memory_.back().t, x, seen(memory_.back().t, true));  // u's slope may jump here
+        }
+        while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
+            const double now = memory_.back().t, left = options_.horizon.value_or(now + 2 * long_step_) - now;
+            const bool last = left <= long_step_ * (1 + 1e-9);
+            take_step(x, last ? left : long_step_, last ? *options_.horizon : now + long_step_);
+            if (finished()) return std::move(response_);
+        }
+        response_.settles = false;
+        return std::move(response_);
+    }
+
+private:
+    const ExactStep& exact(double h) {
+        auto at = steps_.find(h);
+        if (at == steps_.end()) {
+            Propagator propagator(system_.n, system_.F, system_.G, system_.b, h);
+            at = steps_.emplace(h, propagator.level(0)).first;
+        }
+        return at->second;
+    }
+
+    /// y or y_m as it was `t` from the start without dead time; 0 before.
+    Memory past(double t, bool after) {
+        if (t < -slack_ || (t <= slack_ && !after)) return {};
+        const auto right = std::ranges::upper_bound(memory_, t + slack_, {}, &Memory::t);
+        if (right == memory_.begin()) return memory_.front();
+        const Memory& a = *(right - 1);
+        if (std::abs(a.t - t) <= slack_) return a;
+        const Memory& b = right == memory_.end() ? a : *right;
+        if (right == memory_.end()) return ahead(t);
+        const double h = b.t - a.t, s = t - a.t;
+        return {t, cubic(h, s, a.y, b.y), cubic(h, s, a.y_model, b.y_model),
+                cubic(h, s, a.integral_y, a.y.value, b.integral_y, b.y.value)};
+    }
+
+    /// Beyond what is known: along the last slope, to be corrected.
+    Memory ahead(double t) const {
+        const Memory& a = memory_.back();
+        const double s = t - a.t;
+        return {t,
+                {a.y.value + s * a.y.slope, a.y.slope},
+                {a.y_model.value + s * a.y_model.slope, a.y_model.slope},
+                a.integral_y + s * a.y.value};
+    }
+
+    /// What Q sees at t; without a dead time of the plant without -y.
+    Signal seen(double t, bool after) {
+        const Signal model = past(t - theta_, after).y_model;
+        const Signal plant = L_ > 0 ? past(t - L_, after).y : Signal{};
+        return {in_.r - plant.value + model.value, model.slope - plant.slope};
+    }
+
+    void take_step(std::vector<double>& x, double h, double t) {
+        const double from = memory_.back().t;
+        const Signal e0 = seen(from, true);
+        const bool looks_ahead = h > theta_ + slack_ || (L_ > 0 && h > L_ + slack_);
+        const ExactStep& step = exact(h);
+        std::vector<double> next, scratch(x.size());
+        for (int i = 0; i < (looks_ahead ? kCorrections : 1); ++i) {
+            const Signal e1 = seen(t, false);
+            if (i > 0) memory_.pop_back();
+            next = x;
+            advance(step, hermite_taylor(h, e0.value, e0.slope, e1.value, e1.slope), next, scratch);
+            remember(t, next, e1);
+        }
+        x = next;
+        push(t, x, seen(t, false));
+    }
+
+    void remember(double t, const std::vector<double>& x, Signal e) {
+        const double u = dot(system_.M, x) + system_.N * e.value;
+        const double y_model = x[Index(system_.plant_states)];
+        memory_.push_back({t,
+                           {dot(system_.output, x),
+                            dot(system_.output_rate, x) + system_.output_rate_e * e.value + system_.output_rate_1},
+                           {y_model, (c_.kp * u - y_model) / c_.tau},
+                           x.back()});
+    }
+
+    void push(double t, const std::vector<double>& x, Signal e) {
+        ResponseNode node;
+        node.t = t;
+        node.u = dot(system_.M, x) + system_.N * e.value;
+        for (int i = 0; i < system_.n; ++i) {
+            double rate = system_.G[Index(i)] * e.value + system_.b[Index(i)];
+            for (int j = 0; j < system_.n; ++j) rate += system_.F[Index(i * system_.n + j)] * x[Index(j)];
+            node.u_slope += system_.M[Index(i)] * rate;
+        }
+        node.u_slope += system_.N * e.slope;
+        const Memory delayed = past(t - L_, response_.nodes.empty() || response_.nodes.back().t == t);
+        node.y = delayed.y.value;
+        node.y_slope = delayed.y.slope;
+        node.error_integral = in_.r * t - delayed.integral_y;
+        response_.nodes.push_back(node);
+        const double y = std::abs(node.y - response_.y_final), u = std::abs(node.u - response_.u_final);
+        largest_y_ = std::max(largest_y_, y);
+        largest_u_ = std::max(largest_u_, u);
+        if (y > options_.settled * largest_y_ || u > options_.settled * largest_u_) last_unsettled_ = t;
+    }
+
+    bool finished() const {
+        const double t = response_.nodes.back().t;
+        if (options_.horizon) return t >= *options_.horizon;
+        return t >= last_unsettled_ + std::max(2 * (L_ + theta_), 0.25 * last_unsettled_);
+    }
+
+    ImcSystem system_;
+    ImcController c_;
+    StepInputs in_;
+    ResponseOptions options_;
+    double L_, theta_, step_ = 0, long_step_ = 0, slack_ = 0;
+    std::vector<double> events_;
+    std::map<double, ExactStep> steps_;
+    std::vector<Memory> memory_;
+    LinearResponse response_;
+    double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
+};
+
+}  // namespace
+
+LinearResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
+                            const ResponseOptions& options) {
+    return ImcRun(plant, controller, inputs, options).run();
+}
+
+}  // namespace tunewright

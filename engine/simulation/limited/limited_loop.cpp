@@ -1,0 +1,129 @@
+#include "engine/simulation/limited/limited_loop.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
+
+double dot(const std::vector<double>& a, const std::vector<double>& x) {
+    double sum = 0;
+    for (Index i = 0; i < a.size(); ++i) sum += a[i] * x[i];
+    return sum;
+}
+
+}  // namespace
+
+std::optional<double> tracking_time(const ParallelPid& controller) {
+    if (controller.Ki == 0) return std::numeric_limits<double>::infinity();
+    if (controller.Kd != 0) return std::sqrt(std::abs(controller.Kd / controller.Ki));  // Ti Td = Kd/Ki
+    if (controller.Kp != 0) return std::abs(controller.Kp / controller.Ki);
+    return std::nullopt;
+}
+
+double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
+    if (const auto time = tracking_time(controller)) return *time;
+    double lags = plant.dead_time();
+    for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
+    return 0.1 * (lags > 0 ? lags : 1 / std::abs(controller.Ki * plant.gain()));
+}
+
+LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                         const OutputLimits& limits)
+    : system_(make_delay_system(plant, controller)), in_(inputs), limits_(limits) {
+    if (controller.Ki != 0) tracking_gain_ = 1 / (controller.Ki * tracking_time(plant, controller));
+    below_ = equations(Region::below);
+    inside_ = equations(Region::inside);
+    above_ = equations(Region::above);
+}
+
+LimitedLoop::Equations LimitedLoop::equations(Region region) const {
+    const DelaySystem& s = system_;
+    const Index n = Index(s.n), wide = n + 1;
+    Equations e{std::vector<double>(wide * wide, 0.0), s.G, std::vector<double>(wide, 0.0)};
+    e.G.push_back(s.Z);
+    for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j < n; ++j) e.F[i * wide + j] = s.F[i * n + j];
+        e.F[n * wide + i] = s.Y[i];
+        e.b[i] = s.H[i] * in_.r;
+    }
+    e.b[n] = -in_.r;
+    const double u = limit(region);
+    if (region != Region::inside && !std::isfinite(u)) return {};
+    if (region != Region::inside && s.integral_state >= 0) {
+        const Index row = Index(s.integral_state);
+        for (Index j = 0; j < n; ++j) e.F[row * wide + j] -= tracking_gain_ * s.M[j];
+        e.G[row] -= tracking_gain_ * s.N;
+        e.b[row] += tracking_gain_ * (u - s.R * in_.r);
+    }
+    if (delayed()) return e;
+    // v = u + d at once: constant at a limit, (M x + R r + d)/(1 - N) within them.
+    const double g = region == Region::inside ? 1 / (1 - s.N) : 0;
+    const double v0 = region == Region::inside ? g * (s.R * in_.r + in_.d) : u + in_.d;
+    for (Index i = 0; i < wide; ++i) {
+        for (Index j = 0; j < n; ++j) e.F[i * wide + j] += e.G[i] * g * s.M[j];
+        e.b[i] += e.G[i] * v0;
+        e.G[i] = 0;
+    }
+    return e;
+}
+
+double LimitedLoop::command(const std::vector<double>& x, double v) const {
+    return dot(system_.M, x) + system_.N * v + system_.R * in_.r;
+}
+
+std::vector<double> LimitedLoop::rates(Region region, const std::vector<double>& x, double v) const {
+    const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
+    const Index n = Index(system_.n), wide = n + 1;
+    std::vector<double> rate(n);
+    for (Index i = 0; i < n; ++i) {
+        rate[i] = e.b[i] + e.G[i] * v;
+        for (Index j = 0; j < n; ++j) rate[i] += e.F[i * wide + j] * x[j];
+    }
+    return rate;
+}
+
+LoopOutput LimitedLoop::output(Region region, const std::vector<double>& x, Signal v) const {
+    const DelaySystem& s = system_;
+    const bool inside = region == Region::inside;
+    const std::vector<double> rate = rates(region, x, v.value);
+    if (!delayed()) {
+        v = {limit(region) + in_.d, 0};
+        if (inside) v = {(command(x, 0) + in_.d) / (1 - s.N), dot(s.M, rate) / (1 - s.N)};
+    }
+    LoopOutput out;
+    out.command = {command(x, v.value), dot(s.M, rate) + s.N * v.slope};
+    out.y = {dot(s.Y, x) + s.Z * v.value, dot(s.Y, rate) + s.Z * v.slope};
+    out.u = inside ? out.command : Signal{limit(region), 0};
+    return out;
+}
+
+Region LimitedLoop::region(const std::vector<double>& x, Signal v) const {
+    const Signal inside = output(Region::inside, x, v).command;
+    const double band = kOnTheLimit * std::abs(inside.value);
+    const bool at_max = std::abs(inside.value - limits_.max) <= band,
+               at_min = std::abs(inside.value - limits_.min) <= band;
+    const bool beyond_max = at_max ? inside.slope > 0 : inside.value > limits_.max;
+    const bool beyond_min = at_min ? inside.slope < 0 : inside.value < limits_.min;
+    if (beyond_max) return region_after(Region::inside, true);
+    if (beyond_min) return region_after(Region::inside, false);
+    return Region::inside;
+}
+
+Region LimitedLoop::region_after(Region before, bool at_max) const {
+    // With N > 1 the algebraic loop has no solution beyond the limit that is crossed, but one at the other.
+    if (!delayed() && system_.N > 1) return at_max ? Region::below : Region::above;
+    if (before != Region::inside) return Region::inside;
+    return at_max ? Region::above : Region::below;
+}
+
+ExactStep LimitedLoop::step(Region region, double h) const {
+    const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
+    return Propagator(states(), e.F, e.G, e.b, h).level(0);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,59 @@
+// A loop with actuator limits as three linear systems: below, within and above the limits.
+#pragma once
+
+#include <vector>
+
+#include "engine/loop/delay_system.h"
+#include "engine/numerics/propagator.h"
+#include "engine/simulation/limited/limited_response.h"
+#include "engine/simulation/linear/signal.h"
+
+namespace tunewright {
+
+/// Where the controller's command lies.
+enum class Region { below, inside, above };
+
+/// The loop's outputs at one instant.
+struct LoopOutput {
+    Signal y;
+    Signal command;  ///< of the controller, before the limits
+    Signal u;        ///< after them
+};
+
+/// The delay system of `make_delay_system` with one more state, the integral of y - r, and the tracking term.
+class LimitedLoop {
+public:
+    LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                const OutputLimits& limits);
+
+    int states() const { return system_.n + 1; }
+    double dead_time() const { return system_.L; }
+    bool delayed() const { return system_.L > 0; }
+    const DelaySystem& system() const { return system_; }
+
+    /// Region for states x and delayed signal v (not used without dead time). On a limit the command's slope decides.
+    Region region(const std::vector<double>& x, Signal v) const;
+    /// The region after the command has crossed a limit.
+    Region region_after(Region before, bool at_max) const;
+    double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
+
+    LoopOutput output(Region region, const std::vector<double>& x, Signal v) const;
+    /// The exact step of length h; without dead time its Gamma is 0: the delayed signal is inside.
+    ExactStep step(Region region, double h) const;
+
+private:
+    struct Equations {
+        std::vector<double> F, G, b;
+    };
+    Equations equations(Region region) const;
+    double command(const std::vector<double>& x, double v) const;
+    std::vector<double> rates(Region region, const std::vector<double>& x, double v) const;
+
+    DelaySystem system_;
+    StepInputs in_;
+    OutputLimits limits_;
+    double tracking_gain_ = 0;  // 1/(Ki Tt)
+    Equations below_, inside_, above_;
+};
+
+}  // namespace tunewright

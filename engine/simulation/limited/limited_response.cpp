@@ -1,0 +1,465 @@
+#include "engine/simulation/limited/limited_response.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "engine/numerics/linear_algebra.h"
+#include "engine/simulation/limited/limited_loop.h"
+#include "engine/simulation/linear/error_tail.h"
+#include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/steady_state.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kRetardedEchoes = 4;  // a jump's echoes: smoothed by the plant at each passage
+constexpr int kMaxEchoes = 2000;
+constexpr double kEscaped = 1e6;         // of the scale of y: the limits cannot hold the plant
+constexpr double kTimeResolution = 128;  // in units of rounding of t: shorter steps are not taken
+constexpr double kRounding = 1e-5;       // times `settled`, of the value at rest: deviations below are none
+constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
+constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled length would still be fine
+
+double value_at(const std::array<double, 4>& c, double s) { return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)); }
+double slope_at(const std::array<double, 4>& c, double s) { return c[1] + s * (c[2] + s * c[3] / 2); }
+
+/// How far the cubic through a and c misses b halfway, in value and slope.
+double miss(double h, Signal a, Signal b, Signal c) {
+    const double value = 0.5 * (a.value + c.value) + h * (a.slope - c.slope) / 8;
+    const double slope = 1.5 * (c.value - a.value) / h - 0.25 * (a.slope + c.slope);
+    return std::max(std::abs(b.value - value), h * std::abs(b.slope - slope) / 8);
+}
+
+/// First s in [0, h] where the cubic c rises above 0 and stays no noise: it must reach more than `noise`.
+std::optional<double> first_rise(const std::array<double, 4>& c, double h, double noise) {
+    std::array<double, 4> mark = {0, h, h, h};
+    int n = 1;
+    // Turning points: c1 + c2 s + c3/2 s^2 = 0, by the formula without cancellation.
+    const double discriminant = c[2] * c[2] - 2 * c[1] * c[3];
+    if (discriminant >= 0) {
+        const double q = -(c[2] + std::copysign(std::sqrt(discriminant), c[2]));
+        std::array<double, 2> root = {q / c[3], 2 * c[1] / q};
+        if (!(root[0] <= root[1])) std::swap(root[0], root[1]);
+        for (const double s : root)
+            if (s > 0 && s < h) mark[Index(n++)] = s;
+    }
+    mark[Index(n++)] = h;
+    for (int i = 0; i < n; ++i) {
+        if (!(value_at(c, mark[Index(i)]) > noise)) continue;
+        if (i == 0) return 0;
+        double low = mark[Index(i - 1)], high = mark[Index(i)];
+        if (value_at(c, low) > 0) return low;
+        for (int k = 0; k < 60 && high - low > 4 * kEpsilon * high; ++k) {
+            const double middle = 0.5 * (low + high);
+            (value_at(c, middle) > 0 ? high : low) = middle;
+        }
+        return high;
+    }
+    return std::nullopt;
+}
+
+/// w = u + d as it was: 0 before t = 0, then cubic between the nodes.
+class History {
+public:
+    History(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
+
+    /// Limit from the right (`after`) or from the left.
+    Signal at(double t, bool after, double slack) const {
+        if (t < -slack || (t <= slack && !after)) return {};
+        auto i = std::lower_bound(nodes_.begin(), nodes_.end(), t - slack,
+                                  [](const ResponseNode& node, double time) { return node.t < time; });
+        if (i == nodes_.end()) return {nodes_.back().u + d_, nodes_.back().u_slope};
+        if (i->t <= t + slack) {
+            while (after && i + 1 != nodes_.end() && (i + 1)->t <= t + slack) ++i;
+            return {i->u + d_, i->u_slope};
+        }
+        const ResponseNode &a = *(i - 1), &b = *i;
+        const auto c = hermite_taylor(b.t - a.t, a.u, a.u_slope, b.u, b.u_slope);
+        return {value_at(c, t - a.t) + d_, slope_at(c, t - a.t)};
+    }
+
+private:
+    const std::vector<ResponseNode>& nodes_;
+    double d_;
+};
+
+/// Where the loop comes to rest, limits respected.
+struct Rest {
+    bool exists = false, within = false;  // within: by the control law, not at a limit
+    double y = 0, u = 0;
+    SteadyState linear;
+};
+
+Rest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+               const OutputLimits& limits) {
+    Rest rest;
+    rest.linear = steady_state(plant, controller, in);
+    if (!rest.linear.exists) return rest;
+    const double u = rest.linear.u, slack = 1e-9 * std::abs(u);
+    if (u <= limits.max + slack && u >= limits.min - slack) {
+        rest.exists = rest.within = true;
+        rest.y = rest.linear.y;
+        rest.u = std::clamp(u, limits.min, limits.max);
+        return rest;
+    }
+    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return rest;
+    rest.exists = true;
+    rest.u = u > limits.max ? limits.max : limits.min;
+    rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
+    return rest;
+}
+
+/// The size that y has when the actuator does all it can over the plant's own time.
+double scale_of_y(const LinearPlant& plant, const StepInputs& in, const OutputLimits& limits, double y_rest) {
+    double time = plant.dead_time(), u = std::abs(in.d);
+    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
+    for (const double limit : {limits.min, limits.max})
+        if (std::isfinite(limit)) u += std::abs(limit);
+    const double gain = std::abs(plant.rational({0, time > 0 ? 1 / time : 1}));
+    return std::max({std::abs(in.r), std::abs(y_rest), gain * u, 1e-200});
+}
+
+/// Steps of one length in one region.
+struct Stride {
+    double h = 0;
+    bool longer_than_L = false;
+    ExactStep whole;                   // of length h; or, beyond L, of length L
+    ExactStep rest;                    // h - L, at a limit
+    std::optional<LongStep> implicit;  // within the limits, beyond L
+};
+
+struct Point {
+    double t = 0;
+    std::vector<double> x;
+    LoopOutput out;
+};
+
+/// The run: chooses step lengths, finds the crossings of the limits, keeps the nodes, knows when to stop.
+class Run {
+public:
+    Run(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in, const OutputLimits& limits,
+        const ResponseOptions& options)
+        : loop_(plant, controller, in, limits),
+          system_(make_response_system(plant, controller, in)),
+          filter_(controller.filter),
+          in_(in),
+          limits_(limits),
+          options_(options),
+          rest_(find_rest(plant, controller, in, limits)),
+          scale_y_(scale_of_y(plant, in, limits, rest_.y)),
+          history_(response_.nodes, in.d),
+          scratch_(Index(loop_.states())) {
+        choose_h0(plant, controller);
+        const double q = std::abs(loop_.system().N);
+        if (q > 0)
+            echoes_ = std::min(kMaxEchoes, kRetardedEchoes + static_cast<int>(std::log(1e-3 * options.tolerance) /
+                                                                              std::log(std::min(q, 0.999))));
+    }
+
+    LinearResponse run() {
+        now_.x.assign(Index(loop_.states()), 0.0);
+        enter(loop_.region(now_.x, {}), {});
+        add_break(loop_.dead_time(), 0);
+        while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
+            if (!take_step() || escaped()) break;
+            if (finished()) return ended(true);
+        }
+        return ended(false);
+    }
+
+private:
+    void choose_h0(const LinearPlant& plant, const ParallelPid& controller) {
+        double fastest = 0;
+        for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
+        if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
+        if (!loop_.delayed()) {
+            const DelaySystem closed = close_without_delay(loop_.system());
+            for (const auto pole : eigenvalues(closed.F, closed.n)) fastest = std::max(fastest, std::abs(pole));
+        }
+        h0_ = fastest > 0 ? 0.25 / fastest : kInfinity;
+        if (loop_.delayed()) h0_ = std::min(h0_, loop_.dead_time() / 8);
+        if (!std::isfinite(h0_)) h0_ = 1;
+    }
+
+    double slack() const { return kTimeResolution / 4 * kEpsilon * std::max(now_.t, loop_.dead_time()); }
+
+    // Jumps and kinks of the delayed signal still to come, with the number of passages since their origin.
+    void add_break(double t, int passages) {
+        if (!loop_.delayed() || passages > echoes_) return;
+        const auto near = breaks_.lower_bound(t - slack());
+        if (near != breaks_.end() && near->first <= t + slack())
+            near->second = std::min(near->second, passages);
+        else
+            breaks_.emplace(t, passages);
+    }
+
+    void push(const Point& p) {
+        ResponseNode node{.t = p.t,
+                          .y = p.out.y.value,
+                          .y_slope = p.out.y.slope,
+                          .u = p.out.u.value,
+                          .u_slope = p.out.u.slope,
+                          .error_integral = -p.x.back()};
+        response_.nodes.push_back(node);
+    }
+
+    void note(const Point& p) {
+        push(p);
+        if (const auto& nodes = response_.nodes; options_.tail && nodes.size() > 1)
+            tail_.add(nodes[nodes.size() - 2], nodes.back(), in_.r);
+        const double dy = std::abs(p.out.y.value - rest_.y), du = std::abs(p.out.u.value - rest_.u);
+        largest_y_ = std::max(largest_y_, dy);
+        largest_u_ = std::max(largest_u_, du);
+        largest_command_ = std::max(largest_command_, std::abs(p.out.command.value));
+        // Rest reached from the first instant on (u at a limit, say) leaves rounding alone as its largest deviation.
+        const double size_y = std::max(largest_y_, kRounding * std::abs(rest_.y)),
+                     size_u = std::max(largest_u_, kRounding * std::abs(rest_.u));
+        if (dy > options_.settled * size_y || du > options_.settled * size_u) last_unsettled_ = p.t;
+    }
+
+    /// Continues from now in this region.
+    void enter(Region region, Signal v) {
+        region_ = region;
+        now_.out = loop_.output(region, now_.x, v);
+        note(now_);
+    }
+
+    bool escaped() const { return std::abs(now_.out.y.value) > kEscaped * scale_y_; }
+
+    bool finished() const {
+        if (options_.horizon) return now_.t + slack() >= *options_.horizon;
+        if (!rest_.exists) return false;
+        const double quiet = std::max(2 * loop_.dead_time(), 0.25 * last_unsettled_);
+        if (now_.t < last_unsettled_ + quiet || now_.t <= 0) return false;
+        const auto remaining = remaining_error_integral();
+        if (!remaining) return true;
+        // A slow tail that still has integral to add must at least have the sign to add it.
+        const double so_far = response_.nodes.back().error_integral;
+        const double error = in_.r - now_.out.y.value;
+        if (*remaining * error < 0 &&
+            std::abs(*remaining) > options_.settled * (std::abs(so_far) + std::abs(*remaining)))
+            return false;
+        return !options_.tail || tail_.little_is_left(*remaining, error, now_.t, *options_.tail);
+    }
+
+    /// To infinity, once the loop stays within the limits: what the integral's state has yet to change.
+    std::optional<double> remaining_error_integral() const {
+        if (!rest_.within || !rest_.linear.error_integral || region_ != Region::inside) return std::nullopt;
+        return *rest_.linear.error_integral - error_integral_in_states(loop_.system(), filter_, now_.x);
+    }
+
+    LinearResponse ended(bool by_rule) {
+        const ResponseNode& last = response_.nodes.back();
+        response_.settles = by_rule;
+        const bool at_rest = by_rule && rest_.exists;
+        response_.y_final = at_rest ? rest_.y : last.y;
+        response_.u_final = at_rest ? rest_.u : last.u;
+        if (const auto remaining = remaining_error_integral(); at_rest && remaining)
+            response_.error_integral_final = last.error_integral + *remaining;
+        return std::move(response_);
+    }
+
+    // ---- one step -----------------------------------------------------------------------------------------------
+
+    Stride make_stride(double h) const {
+        Stride stride;
+        stride.h = h;
+        const double L = loop_.dead_time();
+        stride.longer_than_L = loop_.delayed() && h > L * (1 + 1e-9);
+        stride.whole = loop_.step(region_, stride.longer_than_L ? L : h);
+        if (!stride.longer_than_L) return stride;
+        if (region_ == Region::inside)
+            stride.implicit.emplace(system_, stride.whole, loop_.step(region_, h - L));
+        else
+            stride.rest = loop_.step(region_, h - L);
+        return stride;
+    }
+
+    const Stride& stride_of_level(int level) {
+        auto& kept = strides_[static_cast<Index>(region_)];
+        const auto found = kept.find(level);
+        if (found != kept.end()) return found->second;
+        return kept.emplace(level, make_stride(std::ldexp(h0_, level))).first->second;
+    }
+
+    /// From `from` one stride on in the present region. Returns how far the delayed signal's cubic misses it halfway.
+    double advance(const Point& from, const Stride& stride, Point& to) {
+        to.t = from.t + stride.h;
+        to.x = from.x;
+        if (!loop_.delayed()) {
+            tunewright::advance(stride.whole, {}, to.x, scratch_);
+            to.out = loop_.output(region_, to.x, {});
+            return 0;
+        }
+        const double L = loop_.dead_time(), start = from.t - L, first = std::min(stride.h, L);
+        const Signal v0 = history_.at(start, true, slack());
+        const Signal w0 = {from.out.u.value + in_.d, from.out.u.slope};
+        const Signal v1 = stride.longer_than_L ? w0 : history_.at(start + first, false, slack());
+        const double missed = miss(first, v0, history_.at(start + 0.5 * first, true, slack()), v1);
+        if (stride.implicit) {
+            stride.implicit->start(v0, w0, from.x, scratch_, start_);
+            to.out = loop_.output(region_, to.x, stride.implicit->finish(start_, {}, to.x));
+            return missed;
+        }
+        tunewright::advance(stride.whole, hermite_taylor(first, v0.value, v0.slope, v1.value, v1.slope), to.x,
+                            scratch_);
+        // At a limit what the plant gets is constant.
+        if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x, scratch_);
+        to.out = loop_.output(region_, to.x, stride.longer_than_L ? Signal{w0.value, 0} : v1);
+        return missed;
+    }
+
+    /// Relative to the local deviation from rest.
+    double interpolation_error(double h, double missed_by_delay) const {
+        const auto relative = [&](Signal a, Signal b, Signal c, double rest, double largest) {
+            const double size = std::max(
+                {std::abs(a.value - rest), std::abs(b.value - rest), std::abs(c.value - rest), kFloor * largest});
+            return size > 0 ? miss(h, a, b, c) / size : 0;
+        };
+        double error = relative(now_.out.y, middle_.out.y, end_.out.y, rest_.y, largest_y_);
+        error = std::max(error, relative(now_.out.command, middle_.out.command, end_.out.command, rest_.u,
+                                         std::max(largest_u_, largest_command_)));
+        if (missed_by_delay > 0) {
+            const double size = std::max({std::abs(now_.out.u.value - rest_.u), std::abs(end_.out.u.value - rest_.u),
+                                          kFloor * std::max(largest_u_, std::abs(in_.d))});
+            error = std::max(error, size > 0 ? missed_by_delay / size : kInfinity);
+        }
+        return error;
+    }
+
+    double distance_to_next_stop() const {
+        double distance = breaks_.empty() ? kInfinity : breaks_.begin()->first - now_.t;
+        if (options_.horizon) distance = std::min(distance, *options_.horizon - now_.t);
+        return distance;
+    }
+
+    /// False where no finite step is possible.
+    bool take_step() {
+        const double distance = distance_to_next_stop();
+        const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, 1e-3 * h0_);
+        Stride cut;
+        while (true) {
+            const double wanted = std::ldexp(h0_, level_);
+            const bool to_stop = wanted >= 0.75 * distance;
+            if (to_stop) cut = make_stride(0.5 * distance);
+            const Stride& stride = to_stop ? cut : stride_of_level(level_ - 1);
+            const Index kept = response_.nodes.size();
+            double missed = advance(now_, stride, middle_);
+            push(middle_);
+            missed = std::max(missed, advance(middle_, stride, end_));
+            response_.nodes.resize(kept);
+            const double error = interpolation_error(2 * stride.h, missed);
+            const bool finite = std::isfinite(error) && std::isfinite(end_.x.back());
+            if (!(finite && error <= options_.tolerance) && 2 * stride.h > shortest) {
+                level_ = to_stop ? std::ilogb(distance / h0_) - 1 : level_ - 1;
+                continue;
+            }
+            if (!finite) return false;
+            if (crosses(now_, middle_)) return cross(now_, middle_, stride.h);
+            note(middle_);
+            if (crosses(middle_, end_)) return cross(Point(middle_), end_, stride.h);
+            const bool at_stop = to_stop;
+            if (!to_stop && error < kDoubling * options_.tolerance && level_ < 200) ++level_;
+            std::swap(now_, end_);
+            note(now_);
+            if (at_stop) pass_break();
+            return true;
+        }
+    }
+
+    // ---- crossings and breaks -----------------------------------------------------------------------------------
+
+    struct Crossing {
+        double s = 0;
+        bool at_max = false;
+    };
+
+    std::optional<Crossing> crosses(const Point& a, const Point& b) const {
+        const double h = b.t - a.t;
+        const auto c =
+            hermite_taylor(h, a.out.command.value, a.out.command.slope, b.out.command.value, b.out.command.slope);
+        const double noise = 1e-11 * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
+        const auto rise = [&](double limit, double sign) -> std::optional<double> {
+            if (!std::isfinite(limit)) return std::nullopt;
+            return first_rise({sign * (c[0] - limit), sign * c[1], sign * c[2], sign * c[3]}, h, noise);
+        };
+        std::optional<double> up, down;
+        if (region_ != Region::below) up = rise(limits_.max, region_ == Region::inside ? 1 : -1);
+        if (region_ != Region::above) down = rise(limits_.min, region_ == Region::inside ? -1 : 1);
+        if (up && (!down || *up <= *down)) return Crossing{*up, true};
+        if (down) return Crossing{*down, false};
+        return std::nullopt;
+    }
+
+    /// Steps from `from` to the crossing before `to`, found on the cubic and refined with exact steps.
+    bool cross(const Point& from, const Point& to, double h) {
+        const Crossing crossing = *crosses(from, to);
+        const double limit = crossing.at_max ? limits_.max : limits_.min;
+        const double shortest = std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, 1e-3 * h0_));
+        double s = std::clamp(crossing.s, shortest, h);
+        Point at;
+        for (int i = 0;; ++i) {
+            advance(from, make_stride(s), at);
+            const double gap = limit - at.out.command.value, correction = gap / at.out.command.slope;
+            if (i == 3 || !(std::abs(correction) < 0.1 * h) || std::abs(gap) <= 1e-14 * largest_command_) break;
+            const double next = std::clamp(s + correction, shortest, h);
+            if (next == s) break;
+            s = next;
+        }
+        now_ = std::move(at);
+        note(now_);
+        const Signal v = loop_.delayed() ? history_.at(now_.t - loop_.dead_time(), true, slack()) : Signal{};
+        enter(loop_.region_after(region_, crossing.at_max), v);
+        add_break(now_.t + loop_.dead_time(), 1);
+        if (!breaks_.empty() && breaks_.begin()->first <= now_.t + slack()) pass_break();
+        return true;
+    }
+
+    /// At an echo the delayed signal may jump, and with it the command.
+    void pass_break() {
+        if (breaks_.empty() || breaks_.begin()->first > now_.t + slack()) return;
+        const int passages = breaks_.begin()->second;
+        breaks_.erase(breaks_.begin());
+        const Signal v = history_.at(now_.t - loop_.dead_time(), true, slack());
+        const Region before = region_;
+        enter(loop_.region(now_.x, v), v);
+        add_break(now_.t + loop_.dead_time(), region_ == before ? passages + 1 : 0);
+    }
+
+    LimitedLoop loop_;
+    ResponseSystem system_;  // within the limits
+    Filter filter_;
+    StepInputs in_;
+    OutputLimits limits_;
+    const ResponseOptions& options_;
+    Rest rest_;
+    double scale_y_;
+    LinearResponse response_;
+    History history_;
+    std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
+    std::map<double, int> breaks_;
+    LongStep::Start start_;
+    std::vector<double> scratch_;
+    double h0_ = 1;
+    int level_ = 0, echoes_ = kRetardedEchoes;
+    Region region_ = Region::inside;
+    Point now_, middle_, end_;
+    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, last_unsettled_ = 0;
+    ErrorTail tail_;
+};
+
+}  // namespace
+
+LinearResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                                const OutputLimits& limits, const ResponseOptions& options) {
+    return Run(plant, controller, inputs, limits, options).run();
+}
+
+}  // namespace tunewright

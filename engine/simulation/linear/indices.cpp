@@ -1,0 +1,265 @@
+#include "engine/simulation/linear/indices.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+/// c0 + c1 s + c2 s^2 + c3 s^3 over s in [0, 1], through values and slopes at both ends.
+struct Cubic {
+    double c0, c1, c2, c3;
+
+    static Cubic through(double h, double a, double slope_a, double b, double slope_b) {
+        const double m = slope_a * h, n = slope_b * h, d = b - a;
+        return {a, m, 3 * d - 2 * m - n, m + n - 2 * d};
+    }
+    double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
+    double slope(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
+    double integral(double s) const { return s * (c0 + s * (c1 / 2 + s * (c2 / 3 + s * c3 / 4))); }
+
+    /// Points in (0, 1) where the slope changes sign.
+    int turning_points(std::array<double, 2>& s) const {
+        int count = 0;
+        const auto keep = [&](double root) {
+            if (root > 0 && root < 1) s[Index(count++)] = root;
+        };
+        const double a = 3 * c3, b = c2, c = c1;
+        const double discriminant = b * b - a * c;
+        if (discriminant <= 0) return 0;
+        const double q = -(b + std::copysign(std::sqrt(discriminant), b));
+        if (a != 0) keep(q / a);
+        if (q != 0) keep(c / q);
+        if (count == 2 && s[0] > s[1]) std::swap(s[0], s[1]);
+        return count;
+    }
+
+    /// The zero between s = a and s = b of opposite signs.
+    double zero(double a, double b) const {
+        double fa = at(a), s = a - fa * (b - a) / (at(b) - fa);
+        for (int i = 0; i < 50; ++i) {
+            const double f = at(s);
+            if ((f < 0) == (fa < 0)) {
+                a = s;
+                fa = f;
+            } else {
+                b = s;
+            }
+            double next = s - f / slope(s);
+            if (!(next > a && next < b)) next = 0.5 * (a + b);
+            if (std::abs(next - s) < 1e-14) return next;
+            s = next;
+        }
+        return s;
+    }
+};
+
+Cubic cubic_of_y(const ResponseNode& a, const ResponseNode& b) {
+    return Cubic::through(b.t - a.t, a.y, a.y_slope, b.y, b.y_slope);
+}
+
+/// Calls piece(s_from, s_to) for the parts of [0, 1] on which the cubic keeps its sign.
+template <class Piece>
+void signed_pieces(const Cubic& e, Piece&& piece) {
+    std::array<double, 4> mark{0};
+    std::array<double, 2> turns{};
+    int n = 1;
+    const int turning = e.turning_points(turns);
+    for (int i = 0; i < turning; ++i) mark[Index(n++)] = turns[Index(i)];
+    mark[Index(n++)] = 1;
+    double from = 0;
+    for (int i = 1; i < n; ++i) {
+        const double fa = e.at(mark[Index(i - 1)]), fb = e.at(mark[Index(i)]);
+        if ((fa < 0 && fb > 0) || (fa > 0 && fb < 0)) {
+            const double s = e.zero(mark[Index(i - 1)], mark[Index(i)]);
+            piece(from, s);
+            from = s;
+        }
+    }
+    piece(from, 1.0);
+}
+
+bool may_change_sign(const ResponseNode& a, const ResponseNode& b, double target, double h) {
+    const double ea = target - a.y, eb = target - b.y;
+    if ((ea < 0) != (eb < 0)) return true;
+    // The cubic's control values bound it: all of one sign, no zero.
+    const double first = ea - a.y_slope * h / 3, second = eb + b.y_slope * h / 3;
+    return (first < 0) != (ea < 0) || (second < 0) != (ea < 0);
+}
+
+/// The same bound for a band around the target.
+bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, double band, double h) {
+    return std::abs(a.y - target) <= band && std::abs(b.y - target) <= band &&
+           std::abs(a.y + a.y_slope * h / 3 - target) <= band && std::abs(b.y - b.y_slope * h / 3 - target) <= band;
+}
+
+}  // namespace
+
+double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
+                                  std::optional<double> error_integral_final) {
+    double sum = 0, last = 0;  // `last`: the error's integral at the last change of sign
+    for (Index i = 1; i < nodes.size(); ++i) {
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        const double h = b.t - a.t;
+        if (h <= 0 && (target - a.y < 0) != (target - b.y < 0)) {  // a jump across the target
+            sum += std::abs(a.error_integral - last);
+            last = a.error_integral;
+        }
+        if (h <= 0 || !may_change_sign(a, b, target, h)) continue;
+        const Cubic e = Cubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+        signed_pieces(e, [&](double, double to) {
+            if (to >= 1) return;
+            // From the nearer end, so that the interpolation's error stays smallest.
+            const double here = to < 0.5 ? a.error_integral + h * e.integral(to)
+                                         : b.error_integral - h * (e.integral(1) - e.integral(to));
+            sum += std::abs(here - last);
+            last = here;
+        });
+    }
+    return sum + std::abs(error_integral_final.value_or(nodes.back().error_integral) - last);
+}
+
+ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double target,
+                               std::optional<double> error_integral_final) {
+    ErrorIntegrals result;
+    result.IAE = integral_of_absolute_error(nodes, target, error_integral_final);
+    // Gauss-Legendre, 4 points: exact to degree 7.
+    constexpr std::array<double, 4> x = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
+                                         0.9305681557970263};
+    constexpr std::array<double, 4> w = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                         0.1739274225687269};
+    for (Index i = 1; i < nodes.size(); ++i) {
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        const double h = b.t - a.t;
+        if (h <= 0) continue;
+        const Cubic e = Cubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+        for (Index k = 0; k < 4; ++k) {
+            const double value = e.at(x[k]);
+            result.ISE += h * w[k] * value * value;
+        }
+        const auto weighted = [&](double from, double to) {
+            double sum = 0;
+            for (Index k = 0; k < 4; ++k) {
+                const double s = from + (to - from) * x[k];
+                sum += w[k] * (a.t + s * h) * e.at(s);
+            }
+            result.ITAE += std::abs(sum) * h * (to - from);
+        };
+        if (may_change_sign(a, b, target, h))
+            signed_pieces(e, weighted);
+        else
+            weighted(0, 1);
+    }
+    return result;
+}
+
+double total_variation(const std::vector<ResponseNode>& nodes) {
+    double sum = nodes.empty() ? 0 : std::abs(nodes.front().u);
+    for (Index i = 1; i < nodes.size(); ++i) {
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        const double h = b.t - a.t;
+        double from = a.u;
+        if (h > 0) {
+            const Cubic u = Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
+            std::array<double, 2> turns{};
+            const int n = u.turning_points(turns);
+            for (int k = 0; k < n; ++k) {
+                const double value = u.at(turns[Index(k)]);
+                sum += std::abs(value - from);
+                from = value;
+            }
+        }
+        sum += std::abs(b.u - from);
+    }
+    return sum;
+}
+
+Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
+    Extremes result;
+    const auto note = [&](double t, double y) {
+        if (y > result.max) {
+            result.max = y;
+            result.t_max = t;
+        }
+        if (y < result.min) {
+            result.min = y;
+            result.t_min = t;
+        }
+    };
+    for (Index i = 0; i < nodes.size(); ++i) {
+        note(nodes[i].t, nodes[i].y);
+        if (i == 0 || nodes[i].t <= nodes[i - 1].t) continue;
+        const Cubic y = cubic_of_y(nodes[i - 1], nodes[i]);
+        std::array<double, 2> turns{};
+        const int n = y.turning_points(turns);
+        for (int k = 0; k < n; ++k)
+            note(nodes[i - 1].t + turns[Index(k)] * (nodes[i].t - nodes[i - 1].t), y.at(turns[Index(k)]));
+    }
+    return result;
+}
+
+std::optional<double> first_reached(const std::vector<ResponseNode>& nodes, double level) {
+    const double sign = level < 0 ? -1 : 1;
+    for (Index i = 1; i < nodes.size(); ++i) {
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        const double h = b.t - a.t;
+        if (sign * (a.y - level) >= 0) return a.t;
+        if (h <= 0) continue;
+        Cubic y = cubic_of_y(a, b);
+        y.c0 -= level;
+        double reached = -1;
+        signed_pieces(y, [&](double, double to) {
+            if (to < 1 && reached < 0) reached = to;
+        });
+        if (reached >= 0) return a.t + reached * h;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, double target, double band) {
+    if (nodes.empty() || std::abs(nodes.back().y - target) > band) return std::nullopt;
+    for (Index i = nodes.size() - 1; i > 0; --i) {
+        const ResponseNode &a = nodes[i - 1], &b = nodes[i];
+        const double h = b.t - a.t;
+        if (h <= 0) {
+            if (std::abs(a.y - target) > band) return b.t;
+            continue;
+        }
+        if (stays_within(a, b, target, band, h)) continue;
+        double last = -1;
+        for (const double edge : {target + band, target - band}) {
+            Cubic y = cubic_of_y(a, b);
+            y.c0 -= edge;
+            signed_pieces(y, [&](double, double to) {
+                if (to < 1) last = std::max(last, to);
+            });
+        }
+        if (last >= 0) return a.t + last * h;
+        if (std::abs(a.y - target) > band) return a.t;
+    }
+    return 0.0;
+}
+
+std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points) {
+    std::vector<std::pair<double, double>> values;
+    values.reserve(Index(points));
+    Index at = 0;
+    for (int i = 0; i < points; ++i) {
+        const double t = horizon * i / (points - 1);
+        while (at + 1 < nodes.size() && nodes[at + 1].t <= t) ++at;
+        const ResponseNode& a = nodes[at];
+        if (at + 1 == nodes.size()) {
+            values.emplace_back(a.y, a.u);
+            continue;
+        }
+        const ResponseNode& b = nodes[at + 1];
+        const double h = b.t - a.t, s = (t - a.t) / h;
+        values.emplace_back(cubic_of_y(a, b).at(s), Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s));
+    }
+    return values;
+}
+
+}  // namespace tunewright

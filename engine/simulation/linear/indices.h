@@ -1,0 +1,43 @@
+// Performance indices from a response's nodes: integrals exact for the cubic between nodes, the tail closed by the
+// exact integral of error.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/simulation/linear/linear_response.h"
+
+namespace tunewright {
+
+/// Integrals of the error e = target - y from 0 to the end of the nodes.
+struct ErrorIntegrals {
+    double IAE = 0, ISE = 0, ITAE = 0;
+};
+
+/// `error_integral_final` closes the IAE's tail, in which e keeps its sign; absent: the integrals end with the nodes.
+ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double target,
+                               std::optional<double> error_integral_final);
+
+/// The same IAE alone, as searches need it thousands of times.
+double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
+                                  std::optional<double> error_integral_final);
+
+/// Total variation of u from its value 0 before t = 0, jumps included.
+double total_variation(const std::vector<ResponseNode>& nodes);
+
+struct Extremes {
+    double max = 0, t_max = 0, min = 0, t_min = 0;
+};
+Extremes extremes_of_y(const std::vector<ResponseNode>& nodes);
+
+/// First time at which y reaches `level` going away from 0 (sign of level decides); empty if never.
+std::optional<double> first_reached(const std::vector<ResponseNode>& nodes, double level);
+
+/// Last time at which |y - target| > band; 0 if it never leaves the band, empty if it is outside at the end.
+std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, double target, double band);
+
+/// y and u at `points` equidistant times from 0 to `horizon` (after a jump at that time); held after the last node.
+std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points);
+
+}  // namespace tunewright

@@ -1,0 +1,72 @@
+// A step that is longer than the dead time.
+//
+// Its last part sees the step's own, still unknown output w: a cubic through w at the start and through w, w' and w''
+// at the end, all three from the states there. Once the dead time and the plant's lags are short beside the step, an
+// integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
+// (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
+// for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
+// w' and w'' come from the states' derivatives, carried over the step like the states: as F x + G v at its end they
+// would be differences of large numbers, whose rounding the step's length magnifies. What they come to is a fixed row
+// for the states at the start, worked out once.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "engine/numerics/propagator.h"
+#include "engine/simulation/linear/response_system.h"
+
+namespace tunewright {
+
+class LongStep {
+public:
+    /// First the dead time, then the rest: exact steps of the system's states. `system` must live as long as this.
+    LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep rest);
+    /// Of length h0 2^level; the dead time is h0 2^level_of_L.
+    LongStep(const ResponseSystem& system, Propagator& propagator, int level, int level_of_L);
+
+    double h() const { return h_; }
+
+    /// Value and first two derivatives.
+    using Jet = std::array<double, 3>;
+
+    /// What a step starts from, before its output is known.
+    struct Start {
+        Signal v_end;  ///< the delayed signal at the end, as far as it follows from what is known now
+        Jet w_end{};   ///< the same of the output
+        std::vector<double> x;
+    };
+    void start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch, Start& start) const;
+
+    /// Puts the states at the step's end into x; gives the delayed signal there. `added` is what the controller's
+    /// output gets on top at the end, not from x.
+    Signal finish(const Start& start, const Jet& added, std::vector<double>& x) const;
+
+private:
+    struct Effect {
+        std::vector<double> x;
+        Signal v;
+        Jet out{};
+    };
+    using Cubic = std::array<double, 4>;  // Taylor coefficients at the start
+
+    void work_out_rows();
+    Cubic cubic(double w0, const Jet& end) const;
+    Signal delayed_end(const Cubic& c) const;
+    Jet through_cubic(const Cubic& c) const;
+    Effect effect(const Jet& end) const;
+    void invert();
+
+    const ResponseSystem* system_;
+    ExactStep over_L_, rest_;
+    double h_ = 0;
+    // M e^(F h) F and M e^(F h) F^2: what the states at the start leave of w' and w''.
+    std::vector<double> to_slope_, to_curvature_;
+    // The same for what comes in: M e^(F (h - L)) and M e^(F h) by the moments of the input, by G, by the constant.
+    std::array<double, 4> rest_moments_{}, over_L_moments_{};
+    double rest_G_ = 0, whole_G_ = 0, slope_G_ = 0, whole_b_ = 0, slope_b_ = 0;
+    std::array<Effect, 3> effects_;     // of value, slope and curvature at the end, times 1, h and h^2
+    std::array<double, 9> solution_{};  // (1 - effects on the output)^-1, row by row
+};
+
+}  // namespace tunewright

@@ -1,0 +1,432 @@
+#include "engine/simulation/linear/response_run.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/propagator.h"
+#include "engine/simulation/limited/delayed_signal.h"
+#include "engine/simulation/linear/error_tail.h"
+#include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/steady_state.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kFirstEchoes = 2;     // the kinks at L and 2L are always met with the shortest step
+constexpr int kRetardedEchoes = 4;  // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
+constexpr int kMaxEchoes = 2000;
+constexpr int kRepetitions = 20;        // of a step that sees its own end through the scaled integral
+constexpr double kConverged = 1e-10;    // of the response's size
+constexpr double kEscaped = 1e6;        // of the response's scale: it grows without bound
+constexpr double kOnTheHorizon = 1e-9;  // of a step
+
+double hermite_midpoint(double h, double a, double slope_a, double b, double slope_b) {
+    return 0.5 * (a + b) + h * (slope_a - slope_b) / 8;
+}
+
+double hermite_integral(double h, Signal a, Signal b) {
+    return 0.5 * h * (a.value + b.value) + h * h * (a.slope - b.slope) / 12;
+}
+
+/// Chooses step lengths, keeps the nodes, knows when to stop.
+class Run {
+public:
+    Run(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling, const StepInputs& in,
+        const ResponseOptions& options)
+        : system_(make_response_system(plant, controller, in)),
+          scaling_(system_.s.integral_state >= 0 ? scaling : nullptr),
+          options_(options),
+          steady_(steady_state(plant, controller, in)),
+          propagator_(system_.n, system_.F, input(), system_.b, choose_h0(plant, controller)),
+          history_(response_.nodes, in.d) {
+        if (scaling_ != nullptr) add_scaling(plant);
+        const double q = std::abs(system_.s.N);
+        echoes_ = kRetardedEchoes;
+        if (system_.delayed && q > 0)
+            echoes_ = std::min(
+                kMaxEchoes,
+                static_cast<int>(std::log(1e-3 * options.tolerance) / std::log(std::min(q, 0.999))) + kRetardedEchoes);
+        // An unstable plant's own modes amplify what a step gets wrong: no step may be long for them.
+        for (const auto pole : plant.poles())
+            if (pole.real() > 0) longest_step_ = std::min(longest_step_, 0.25 / pole.real());
+        // Before t = 0 everything is 0: that is the first deviation from where the loop comes to rest.
+        largest_y_ = std::abs(steady_.y);
+        largest_u_ = std::abs(steady_.u);
+        response_.y_final = steady_.y;
+        response_.u_final = steady_.u;
+        response_.error_integral_final = steady_.error_integral;
+    }
+
+    LinearResponse run() {
+        x_.assign(Index(system_.n), 0.0);
+        scratch_ = x_;
+        ResponseNode first = node_at(system_, 0, x_, {});
+        scale(first);
+        push(first);
+        response_.schedule.h0 = propagator_.h0();
+        for (int step = 0; options_.repeat != nullptr || step < options_.max_steps; ++step) {
+            const bool over = options_.repeat != nullptr && step == static_cast<int>(options_.repeat->level.size());
+            if (!over && finished()) return ended();
+            if (escaped()) break;
+            if (!over) choose_level(step);
+            if (over || reaches_horizon()) {
+                go_to_horizon();
+                return ended();
+            }
+            while (!take_step()) --level_;
+            response_.schedule.level.push_back(static_cast<signed char>(level_));
+        }
+        response_.settles = false;
+        return ended();
+    }
+
+private:
+    /// What comes into the steps as a cubic: the delayed signal, or what scaling adds to the integral's input.
+    std::vector<double> input() const {
+        if (system_.delayed || scaling_ == nullptr) return system_.G;
+        std::vector<double> into_integral(Index(system_.n), 0.0);
+        into_integral[Index(system_.s.integral_state)] = 1;
+        return into_integral;
+    }
+
+    void add_scaling(const LinearPlant& plant) {
+        const Index i = Index(system_.s.integral_state);
+        into_u_ = system_.s.M[i];
+        into_y_ = system_.s.Y[i];
+        const double time = plant.dead_time() + propagator_.h0();
+        escape_ = kEscaped * std::max({std::abs(system_.in.r), scaling_->delta_r, std::abs(steady_.y),
+                                       std::abs(system_.in.d) * std::abs(plant.rational({0, 1 / time}))});
+    }
+
+    /// Adds to a node's slopes what scaling changes in them.
+    void scale(ResponseNode& node) {
+        if (scaling_ == nullptr) return;
+        const double e = system_.in.r - node.y;
+        excess_.value = scaling_->excess(e);
+        node.y_slope += into_y_ * excess_.value;
+        node.u_slope += into_u_ * excess_.value;
+        excess_.slope = -scaling_->excess_slope(e) * node.y_slope;
+    }
+
+    bool escaped() const { return scaling_ != nullptr && !(std::abs(response_.nodes.back().y) <= escape_); }
+
+    double choose_h0(const LinearPlant& plant, const ParallelPid& controller) {
+        if (options_.repeat != nullptr) {
+            level_of_L_ =
+                system_.delayed ? static_cast<int>(std::lround(std::log2(system_.s.L / options_.repeat->h0))) : 0;
+            return options_.repeat->h0;
+        }
+        double fastest = 0;
+        for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
+        if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
+        if (!system_.delayed) {
+            // The closed loop's own speed: bounded by the norm of its matrix.
+            for (int i = 0; i < system_.s.n; ++i)
+                fastest = std::max(fastest, std::abs(system_.s.F[Index(i * system_.s.n + i)]));
+            for (const auto pole : eigenvalues(system_.s.F, system_.s.n)) fastest = std::max(fastest, std::abs(pole));
+            return 0.25 / std::max(fastest, std::numeric_limits<double>::min());
+        }
+        const double wanted = fastest > 0 ? std::min(system_.s.L / 8, 0.25 / fastest) : system_.s.L / 8;
+        level_of_L_ = std::clamp(static_cast<int>(std::ceil(std::log2(system_.s.L / wanted))), 3, 30);
+        return std::ldexp(system_.s.L, -level_of_L_);
+    }
+
+    void push(const ResponseNode& node) {
+        if (options_.tail && !response_.nodes.empty()) tail_.add(response_.nodes.back(), node, system_.in.r);
+        response_.nodes.push_back(node);
+        if (scaling_ != nullptr) excesses_.push_back(excess_);
+        largest_y_ = std::max(largest_y_, std::abs(node.y - steady_.y));
+        largest_u_ = std::max(largest_u_, std::abs(node.u - steady_.u));
+        if (std::abs(node.y - steady_.y) > options_.settled * largest_y_ ||
+            std::abs(node.u - steady_.u) > options_.settled * largest_u_)
+            last_unsettled_ = node.t;
+    }
+
+    bool finished() const {
+        const double t = response_.nodes.back().t;
+        if (options_.horizon) return t >= *options_.horizon;
+        if (t < last_unsettled_ + std::max(2 * system_.s.L, 0.25 * last_unsettled_) || t <= 0) return false;
+        // A slow tail that still has integral to add must at least have the sign to add it.
+        if (!steady_.error_integral) return true;
+        const double rest = error_integral_left(), error = system_.in.r - response_.nodes.back().y;
+        const double whole = std::max(std::abs(*steady_.error_integral), tail_.absolute_error());
+        if (rest * error < 0 && std::abs(rest) > options_.settled * whole) return false;
+        return !options_.tail || tail_.little_is_left(rest, error, t, *options_.tail);
+    }
+
+    /// From now to infinity. Scaled, the integral's state has that to go: near the end it sees the error as it is.
+    double error_integral_left() const {
+        if (scaling_ != nullptr) return *steady_.error_integral - x_[Index(system_.s.integral_state)];
+        return *steady_.error_integral - response_.nodes.back().error_integral;
+    }
+
+    LinearResponse ended() {
+        if (scaling_ != nullptr && steady_.error_integral)
+            response_.error_integral_final = response_.nodes.back().error_integral + error_integral_left();
+        return std::move(response_);
+    }
+
+    /// Whether a step of the present level ends on the horizon or beyond it. Steps longer than the dead time, which
+    /// have only some lengths, give way to shorter ones there.
+    bool reaches_horizon() {
+        if (!options_.horizon) return false;
+        const double left = (*options_.horizon - time()) / propagator_.h0();
+        while (system_.delayed && level_ > level_of_L_ && std::ldexp(1.0, level_) > left) --level_;
+        return std::ldexp(1.0, level_) * (1 + kOnTheHorizon) >= left;
+    }
+
+    /// The last steps, which end exactly there: one, or as many as a repetition asks for.
+    void go_to_horizon() {
+        if (!options_.horizon) return;
+        const double from = time(), left = *options_.horizon - from;
+        if (!(left > kOnTheHorizon * propagator_.h0())) return;
+        const int parts = options_.repeat != nullptr ? options_.repeat->to_horizon : 1;
+        const ExactStep step = propagator_.step(left / parts);
+        for (int i = 1; i <= parts; ++i) {
+            const double end = i == parts ? *options_.horizon : from + step.h * i;
+            ResponseNode node;
+            if (system_.delayed)
+                take_short_step(step, end, node);
+            else
+                take_closed_step(step, end, true, node);
+            push(node);
+        }
+        response_.schedule.to_horizon = parts;
+    }
+
+    bool echoes_are_over() const {
+        return !system_.delayed || (segment_ >= echoes_ && restart_level_ >= std::min(level_, level_of_L_));
+    }
+
+    void choose_level(int step) {
+        if (options_.repeat != nullptr) {
+            level_ = options_.repeat->level[Index(step)];
+            return;
+        }
+        if (segment_started_ && !echoes_are_over()) restart();
+        const Smoothness smooth = smoothness();
+        if (smooth == Smoothness::rough && level_ > 0) {
+            if (level_ <= restart_level_) restart_level_ = std::max(0, restart_level_ - 2);
+            --level_;
+        }
+        if (smooth == Smoothness::fine && may_double()) ++level_;
+        if (level_ < top_level_ && (smooth == Smoothness::rough || smooth == Smoothness::enough)) climb_blocked_ = true;
+        // Never across the end of a segment while jumps come with it.
+        if (!echoes_are_over() || (system_.delayed && level_ <= level_of_L_))
+            while (level_ > 0 && (offset_ & ((1L << level_) - 1)) != 0) --level_;
+    }
+
+    /// A segment starts short, at the scale of the kink that its start may bring. Where the way up to the former length
+    /// was free, the kink has faded: the next one starts longer.
+    void restart() {
+        if (segment_ > kFirstEchoes && !climb_blocked_) restart_level_ += 2;
+        climb_blocked_ = false;
+        top_level_ = level_;
+        level_ = std::min(level_, restart_level_);
+    }
+
+    bool may_double() const {
+        if (level_ >= 60) return false;
+        if (!system_.delayed) return true;
+        if (std::ldexp(propagator_.h0(), level_ + 1) > longest_step_) return false;
+        if (level_ + 1 > level_of_L_ && (!echoes_are_over() || equal_steps_ < 4)) return false;
+        return true;
+    }
+
+    enum class Smoothness { unknown, rough, enough, fine };
+
+    /// fine: a step twice as long would do; rough: even this one was too long; unknown: too few equal steps to tell.
+    Smoothness smoothness() const {
+        const auto& nodes = response_.nodes;
+        if (equal_steps_ < 2 || nodes.size() < 3) return Smoothness::unknown;
+        const ResponseNode &a = nodes[nodes.size() - 3], &b = nodes[nodes.size() - 2], &c = nodes.back();
+        const double h = c.t - a.t;
+        const auto error = [&](double va, double sa, double vb, double vc, double sc, double final_value,
+                               double largest) {
+            const double scale = std::max(
+                {std::abs(va - final_value), std::abs(vb - final_value), std::abs(vc - final_value), 2e-3 * largest});
+            return scale > 0 ? std::abs(vb - hermite_midpoint(h, va, sa, vc, sc)) / scale : 0;
+        };
+        double worst = std::max(error(a.y, a.y_slope, b.y, c.y, c.y_slope, steady_.y, largest_y_),
+                                error(a.u, a.u_slope, b.u, c.u, c.u_slope, steady_.u, largest_u_));
+        if (scaling_ != nullptr) worst = std::max(worst, roughness_of_excess());
+        if (worst < options_.tolerance) return Smoothness::fine;
+        return worst > 40 * options_.tolerance ? Smoothness::rough : Smoothness::enough;
+    }
+
+    /// Of the last two steps' cubic, relative to the local error of control.
+    double roughness_of_excess() const {
+        const Index last = excesses_.size() - 1;
+        const Signal &a = excesses_[last - 2], &b = excesses_[last - 1], &c = excesses_[last];
+        const auto& nodes = response_.nodes;
+        double size = 2e-3 * largest_y_;
+        for (Index i = last - 2; i <= last; ++i) size = std::max(size, std::abs(nodes[i].y - system_.in.r));
+        const double h = nodes[last].t - nodes[last - 2].t;
+        return size > 0 ? std::abs(b.value - hermite_midpoint(h, a.value, a.slope, c.value, c.slope)) / size : 0;
+    }
+
+    /// False: the step is too long for the scaled integral, and nothing has happened.
+    bool take_step() {
+        ResponseNode node;
+        if (system_.delayed && level_ > level_of_L_) {
+            if (!take_long_step(node)) return false;
+            count_step();
+            push(node);
+            return true;
+        }
+        const ExactStep& step = propagator_.level(level_);
+        const double end = time() + step.h;
+        if (system_.delayed)
+            take_short_step(step, end, node);
+        else if (!take_closed_step(step, end, level_ == 0, node))
+            return false;
+        count_step();
+        push(node);
+        if (!system_.delayed) return true;
+        offset_ += 1L << level_;
+        if (offset_ == (1L << level_of_L_)) end_segment();
+        return true;
+    }
+
+    /// Up to the dead time: the delayed signal is known.
+    void take_short_step(const ExactStep& step, double end, ResponseNode& node) {
+        const double L = system_.s.L, slack = 1e-9 * propagator_.h0(), t = end - step.h;
+        const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(end - L, false, slack);
+        advance(step, hermite_taylor(step.h, v0.value, v0.slope, v1.value, v1.slope), x_, scratch_);
+        node = node_at(system_, end, x_, v1);
+        if (scaling_ != nullptr) add_excess(step.h, node);
+    }
+
+    void count_step() {
+        equal_steps_ = level_ == last_level_ && !segment_started_ ? equal_steps_ + 1 : 1;
+        last_level_ = level_;
+        segment_started_ = false;
+        ticks_ += std::ldexp(1.0, level_);
+    }
+
+    /// The delayed signal may jump now, and with it u.
+    void end_segment() {
+        offset_ = 0;
+        ++segment_;
+        if (echoes_are_over()) return;
+        segment_started_ = true;
+        ResponseNode node =
+            node_at(system_, time(), x_, history_.at(time() - system_.s.L, true, 1e-9 * propagator_.h0()));
+        scale(node);
+        push(node);
+        equal_steps_ = 0;
+    }
+
+    /// The integral's state and u after a step within which y does not depend on them.
+    void add_excess(double h, ResponseNode& node) {
+        const Signal before = excess_;
+        scale(node);
+        const double added = hermite_integral(h, before, excess_);
+        x_[Index(system_.s.integral_state)] += added;
+        node.u += into_u_ * added;
+    }
+
+    /// Longer than the dead time.
+    bool take_long_step(ResponseNode& node) {
+        const LongStep& step = long_step();
+        const double end = time() + step.h();
+        const ResponseNode& now = response_.nodes.back();
+        step.start(history_.at(time() - system_.s.L, true, 1e-9 * propagator_.h0()),
+                   {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
+        return settle(step.h(), false, node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
+            const Signal v =
+                step.finish(start_, {into_u_ * added, into_u_ * excess_.value, into_u_ * excess_.slope}, x);
+            if (scaling_ != nullptr) x[Index(system_.s.integral_state)] += added;
+            at_end = node_at(system_, end, x, v);
+        });
+    }
+
+    /// Without dead time.
+    bool take_closed_step(const ExactStep& step, double end, bool shortest, ResponseNode& node) {
+        const Signal before = excess_;
+        return settle(step.h, shortest, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
+            x = x_;
+            advance(step, hermite_taylor(step.h, before.value, before.slope, excess_.value, excess_.slope), x,
+                    scratch_);
+            at_end = node_at(system_, end, x, {});
+        });
+    }
+
+    /// Finds the end of a step whose y depends on the integral's own input by repetition: `try_end` goes to the end
+    /// with the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is
+    /// taken as it comes.
+    template <class TryEnd>
+    bool settle(double h, bool shortest, ResponseNode& node, const TryEnd& try_end) {
+        end_x_.resize(x_.size());
+        const Signal before = excess_;
+        if (scaling_ == nullptr) {
+            try_end(0, end_x_, node);
+            x_.swap(end_x_);
+            return true;
+        }
+        excess_.value += h * before.slope;
+        for (int i = 0; i < kRepetitions; ++i) {
+            const Signal assumed = excess_;
+            try_end(hermite_integral(h, before, assumed), end_x_, node);
+            scale(node);
+            const double change =
+                std::max(std::abs(excess_.value - assumed.value), h * std::abs(excess_.slope - assumed.slope));
+            if (change > kConverged * std::max(largest_y_, std::abs(system_.in.r))) continue;
+            x_.swap(end_x_);
+            return true;
+        }
+        if (!shortest) {
+            excess_ = before;
+            return false;
+        }
+        x_.swap(end_x_);
+        return true;
+    }
+
+    const LongStep& long_step() {
+        while (static_cast<int>(long_steps_.size()) < level_ - level_of_L_)
+            long_steps_.emplace_back(system_, propagator_, level_of_L_ + 1 + static_cast<int>(long_steps_.size()),
+                                     level_of_L_);
+        return long_steps_[Index(level_ - level_of_L_ - 1)];
+    }
+
+    double time() const { return ticks_ * propagator_.h0(); }
+
+    ResponseSystem system_;
+    const ErrorScaling* scaling_;
+    const ResponseOptions& options_;
+    SteadyState steady_;
+    int level_of_L_ = 0;
+    Propagator propagator_;
+    LinearResponse response_;
+    DelayedSignal history_;
+    std::vector<LongStep> long_steps_;
+    LongStep::Start start_;
+    std::vector<double> x_, end_x_, scratch_;
+    Signal excess_;                 // phi(e) - e at the last node
+    std::vector<Signal> excesses_;  // of each node
+    double into_u_ = 0, into_y_ = 0, escape_ = 0;
+    int echoes_ = 0, segment_ = 0;
+    int level_ = 0, last_level_ = -1, equal_steps_ = 0;
+    bool segment_started_ = true, climb_blocked_ = false;
+    int restart_level_ = 0, top_level_ = 0;
+    long offset_ = 0;   // of the segment, in units of h0
+    double ticks_ = 0;  // since t = 0, in units of h0: exact
+    double longest_step_ = std::numeric_limits<double>::infinity();
+    double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
+    ErrorTail tail_;
+};
+
+}  // namespace
+
+LinearResponse run_response(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling,
+                            const StepInputs& inputs, const ResponseOptions& options) {
+    return Run(plant, controller, scaling, inputs, options).run();
+}
+
+}  // namespace tunewright

@@ -1,0 +1,71 @@
+#include "engine/simulation/linear/response_system.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+}  // namespace
+
+ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in) {
+    ResponseSystem system;
+    system.s = make_delay_system(plant, controller);
+    system.delayed = system.s.L > 0;
+    if (!system.delayed) system.s = close_without_delay(system.s);
+    const DelaySystem& s = system.s;
+    system.in = in;
+    const int n = s.n;
+    system.n = n + 1;
+    system.F.assign(Index(system.n * system.n), 0);
+    system.G = s.G;
+    system.G.push_back(s.Z);
+    system.b.assign(Index(system.n), 0);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) system.F[Index(i * system.n + j)] = s.F[Index(i * n + j)];
+        system.F[Index(n * system.n + i)] = s.Y[Index(i)];
+        system.b[Index(i)] = s.H[Index(i)] * in.r;
+    }
+    system.MF.assign(Index(n), 0);
+    system.YF.assign(Index(n), 0);
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            system.MF[Index(j)] += s.M[Index(i)] * s.F[Index(i * n + j)];
+            system.YF[Index(j)] += s.Y[Index(i)] * s.F[Index(i * n + j)];
+        }
+        system.MG += s.M[Index(i)] * s.G[Index(i)];
+        system.YG += s.Y[Index(i)] * s.G[Index(i)];
+        system.MH += s.M[Index(i)] * s.H[Index(i)] * in.r;
+        system.YH += s.Y[Index(i)] * s.H[Index(i)] * in.r;
+    }
+    system.b[Index(n)] = -in.r;
+    if (!system.delayed) {
+        // v is the load alone here, with the algebraic loop solved.
+        for (int i = 0; i < system.n; ++i) system.b[Index(i)] += system.G[Index(i)] * in.d;
+        // The error's integral also sees what the set point feeds through the plant's direct term.
+        system.b[Index(n)] = s.Z * (s.R * in.r + in.d) - in.r;
+    }
+    return system;
+}
+
+ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<double>& x, Signal v) {
+    const DelaySystem& s = system.s;
+    if (!system.delayed) v = {system.in.d, 0};
+    ResponseNode node;
+    node.t = t;
+    node.u = s.N * v.value + s.R * system.in.r;
+    node.u_slope = system.MG * v.value + system.MH + s.N * v.slope;
+    node.y = s.Z * v.value;
+    node.y_slope = system.YG * v.value + system.YH + s.Z * v.slope;
+    if (!system.delayed) node.y += s.Z * s.R * system.in.r;
+    for (int i = 0; i < s.n; ++i) {
+        const double xi = x[Index(i)];
+        node.u += s.M[Index(i)] * xi;
+        node.u_slope += system.MF[Index(i)] * xi;
+        node.y += s.Y[Index(i)] * xi;
+        node.y_slope += system.YF[Index(i)] * xi;
+    }
+    node.error_integral = -x[Index(s.n)];
+    return node;
+}
+
+}  // namespace tunewright

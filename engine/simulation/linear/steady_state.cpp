@@ -1,0 +1,50 @@
+#include "engine/simulation/linear/steady_state.h"
+
+#include "engine/numerics/linear_algebra.h"
+
+namespace tunewright {
+
+using Index = std::size_t;
+
+SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs) {
+    const DelaySystem s = make_delay_system(plant, controller);
+    const int n = s.n + 1;
+    std::vector<double> A(Index(n * n), 0.0), rhs(Index(n), 0.0);
+    for (int i = 0; i < s.n; ++i) {
+        for (int j = 0; j < s.n; ++j) A[Index(i * n + j)] = s.F[Index(i * s.n + j)];
+        A[Index(i * n + s.n)] = s.G[Index(i)];
+        rhs[Index(i)] = -s.H[Index(i)] * inputs.r;
+        A[Index(s.n * n + i)] = s.M[Index(i)];
+    }
+    A[Index(n * n - 1)] = s.N - 1;
+    rhs[Index(s.n)] = -(s.R * inputs.r + inputs.d);
+    auto solution = solve(A, rhs, n);
+    SteadyState steady;
+    if (!solution) return steady;
+    const double v = solution->back();
+    solution->pop_back();
+    steady.exists = true;
+    steady.x = std::move(*solution);
+    steady.u = v - inputs.d;
+    steady.y = s.Z * v;
+    for (int i = 0; i < s.n; ++i) steady.y += s.Y[Index(i)] * steady.x[Index(i)];
+    if (s.integral_state >= 0) {
+        steady.y = inputs.r;
+        steady.error_integral = error_integral_in_states(s, controller.filter, steady.x);
+    }
+    return steady;
+}
+
+double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x) {
+    // The integral of y - y_f follows from the filter's own equation: Tf y_f, or Tf y_f + Tf z/2 with z = Tf y_f'.
+    const int integral = system.integral_state;
+    const double sum = x[Index(integral)];
+    switch (filter.type) {
+        case FilterType::measurement_first_order: return sum - filter.Tf * x[Index(integral - 1)];
+        case FilterType::measurement_second_order:
+            return sum - filter.Tf * (x[Index(integral - 2)] + 0.5 * x[Index(integral - 1)]);
+        default: return sum;
+    }
+}
+
+}  // namespace tunewright

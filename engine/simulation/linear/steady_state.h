@@ -1,0 +1,26 @@
+// Where a linear loop comes to rest under constant set point and load.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/loop/delay_system.h"
+#include "engine/simulation/linear/linear_response.h"
+
+namespace tunewright {
+
+/// Of the loop without limits: 0 = F x + G v + H r, v = M x + N v + R r + d.
+struct SteadyState {
+    bool exists = false;  ///< false where these equations have no single solution; the rest is 0 then
+    double y = 0, u = 0;
+    std::vector<double> x;                 ///< states of the delay system
+    std::optional<double> error_integral;  ///< integral of r - y from rest at 0 to infinity; with integral action only
+};
+
+SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
+
+/// What the integral of r - y from 0 to now is in the states x of a loop whose integral state saw r - y_f alone: that
+/// state, less the lag of a measurement filter. Differences of it are integrals of r - y. Needs integral action.
+double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x);
+
+}  // namespace tunewright

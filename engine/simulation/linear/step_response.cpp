@@ -1,0 +1,101 @@
+#include "engine/simulation/linear/step_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/numerics/linear_algebra.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kMostSamples = 20'000;
+constexpr double kSamplesPerUnit = 10;    // per time constant or radian of a mode that is alive
+constexpr double kSamplesPerDouble = 24;  // spacing at most t/24
+constexpr double kDecay = 14;             // e^-14 = 8e-7
+
+// [x; 1] moves by exp([A B; 0 0] tau): a constant input is one more state.
+std::vector<double> propagator(const Realisation& realisation, double tau) {
+    const int n = realisation.n;
+    std::vector<double> augmented(static_cast<size_t>((n + 1) * (n + 1)), 0.0);
+    for (int row = 0; row < n; ++row) {
+        for (int column = 0; column < n; ++column)
+            augmented[row * (n + 1) + column] = realisation.A[row * n + column] * tau;
+        augmented[row * (n + 1) + n] = realisation.B[row] * tau;
+    }
+    return matrix_exponential(augmented, n + 1);
+}
+
+std::vector<double> apply(const std::vector<double>& propagator, const std::vector<double>& x) {
+    const size_t n = x.size();
+    std::vector<double> next(n);
+    for (size_t row = 0; row < n; ++row) {
+        const auto begin = propagator.begin() + static_cast<std::ptrdiff_t>(row * (n + 1));
+        next[row] = std::inner_product(x.begin(), x.end(), begin, begin[static_cast<std::ptrdiff_t>(n)]);
+    }
+    return next;
+}
+
+std::vector<double> times_A(const Realisation& realisation, const std::vector<double>& x) {
+    const size_t n = x.size();
+    std::vector<double> product(n);
+    for (size_t row = 0; row < n; ++row)
+        product[row] =
+            std::inner_product(x.begin(), x.end(), realisation.A.begin() + static_cast<std::ptrdiff_t>(row * n), 0.0);
+    return product;
+}
+
+StepSample sample(const Realisation& realisation, double t, std::vector<double> x) {
+    const auto output = [&](const std::vector<double>& state) {
+        return std::inner_product(state.begin(), state.end(), realisation.C.begin(), 0.0);
+    };
+    std::vector<double> rate = times_A(realisation, x);
+    for (size_t i = 0; i < rate.size(); ++i) rate[i] += realisation.B[i];
+    const double curvature = output(times_A(realisation, rate));
+    const double y = output(x) + realisation.D;
+    return {t, std::move(x), y, output(rate), curvature};
+}
+
+double decay_time(std::complex<double> pole, double modes) { return (kDecay + 3 * modes) / -pole.real(); }
+
+// The spacing that the modes alive at t ask for.
+double spacing(const LinearPlant& plant, double t, double shortest) {
+    double h = std::max(shortest, t / kSamplesPerDouble);
+    for (const auto pole : plant.poles()) {
+        const bool alive = pole.real() >= 0 || t < decay_time(pole, 0);
+        if (alive) h = std::min(h, 1 / (kSamplesPerUnit * std::abs(pole)));
+    }
+    return h;
+}
+
+}  // namespace
+
+StepSample step_response_after(const Realisation& realisation, const StepSample& from, double tau) {
+    return sample(realisation, from.t + tau, apply(propagator(realisation, tau), from.x));
+}
+
+std::vector<StepSample> step_response(const LinearPlant& plant) {
+    const Realisation& realisation = plant.realisation();
+    std::vector<StepSample> samples{sample(realisation, 0, std::vector<double>(realisation.n, 0.0))};
+    double fastest = 0, t_end = 0;
+    for (const auto pole : plant.poles()) {
+        fastest = std::max(fastest, std::abs(pole));
+        if (pole.real() < 0) t_end = std::max(t_end, decay_time(pole, static_cast<double>(plant.poles().size())));
+    }
+    if (t_end == 0) return samples;
+
+    const double shortest = 1 / (2 * kSamplesPerUnit * fastest);
+    std::vector<std::vector<double>> doublings;  // propagators over shortest 2^k
+    while (samples.back().t < t_end && static_cast<int>(samples.size()) < kMostSamples) {
+        const double t = samples.back().t;
+        const auto k =
+            static_cast<size_t>(std::max(0.0, std::floor(std::log2(spacing(plant, t, shortest) / shortest))));
+        while (doublings.size() <= k)
+            doublings.push_back(propagator(realisation, std::ldexp(shortest, static_cast<int>(doublings.size()))));
+        samples.push_back(
+            sample(realisation, t + std::ldexp(shortest, static_cast<int>(k)), apply(doublings[k], samples.back().x)));
+    }
+    return samples;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,27 @@
+// The open-loop unit step response of a linear plant, exact at every sample.
+#pragma once
+
+#include <vector>
+
+#include "engine/plant/linear/linear_plant.h"
+
+namespace tunewright {
+
+/// One instant of the response to v = 1 for t > 0, x(0) = 0. The dead time is left out: add it to t.
+struct StepSample {
+    double t = 0;
+    std::vector<double> x;  ///< state of the plant's realisation
+    double y = 0;
+    double slope = 0;      ///< dy/dt
+    double curvature = 0;  ///< d2y/dt2
+};
+
+/// Samples from t = 0+ until every decaying mode is below 1e-6 of itself, at most 20,000 of them. The spacing follows
+/// the modes that are still alive (a tenth of the shortest time constant or radian) and else grows with t: a plant with
+/// lags of 1 ms and 1 h needs some hundreds. Each sample is propagated by matrix exponentials: no discretisation error.
+std::vector<StepSample> step_response(const LinearPlant& plant);
+
+/// The same response `tau` >= 0 after `from`, exact for any `tau`.
+StepSample step_response_after(const Realisation& realisation, const StepSample& from, double tau);
+
+}  // namespace tunewright

@@ -1,0 +1,98 @@
+#include "engine/simulation/nonlinear/pid_law.h"
+
+namespace tunewright {
+
+PidLaw::PidLaw(const ParallelPid& gains, double r, std::optional<double> delta_r, double tracking_rate)
+    : gains_(gains), r_(r), tracking_rate_(tracking_rate) {
+    if (delta_r) scaling_ = ErrorScaling{*delta_r};
+    const double Kp = gains.Kp, Kd = gains.Kd, Tf = gains.filter.Tf;
+    switch (gains.filter.type) {
+        case FilterType::none: by_y_ = -Kp; break;
+        case FilterType::derivative:
+            order_ = 2;
+            by_y_ = -Kp - Kd / Tf;
+            by_state_[1] = -Kd / Tf;
+            break;
+        case FilterType::measurement_first_order:
+            order_ = 2;
+            by_y_ = -Kd / Tf;
+            by_state_[1] = -Kp + Kd / Tf;
+            break;
+        case FilterType::measurement_second_order:
+            order_ = 3;
+            by_state_[1] = -Kp;
+            by_state_[2] = -Kd / Tf;
+            break;
+    }
+}
+
+void PidLaw::rest(double y, std::span<double> s) const {
+    s[0] = 0;
+    if (order_ > 1) s[1] = gains_.filter.type == FilterType::derivative ? -y : y;
+    if (order_ > 2) s[2] = 0;
+}
+
+double PidLaw::command(double y, double y_slope, std::span<const double> s) const {
+    double command = gains_.Kp * gains_.b * r_ + by_y_ * y + s[0];
+    for (int i = 1; i < order_; ++i) command += by_state_[i] * s[std::size_t(i)];
+    if (gains_.filter.type == FilterType::derivative) command += gains_.Kd / gains_.filter.Tf * gains_.c * r_;
+    if (pure_derivative()) command -= gains_.Kd * y_slope;
+    return command;
+}
+
+void PidLaw::rates(double y, std::span<const double> s, double excess, std::span<double> ds) const {
+    const double Tf = gains_.filter.Tf;
+    double y_f = y;
+    switch (gains_.filter.type) {
+        case FilterType::none: break;
+        case FilterType::derivative: ds[1] = (gains_.c * r_ - y - s[1]) / Tf; break;
+        case FilterType::measurement_first_order:
+            y_f = s[1];
+            ds[1] = (y - y_f) / Tf;
+            break;
+        case FilterType::measurement_second_order:
+            y_f = s[1];
+            ds[1] = s[2] / Tf;
+            ds[2] = 2 * (y - y_f - s[2]) / Tf;
+            break;
+    }
+    const double e = r_ - y_f;
+    ds[0] = gains_.Ki * (scaling_ ? e + scaling_->excess(e) : e) + tracking_rate_ * excess;
+}
+
+double PidLaw::rate_by_y(int i, double y) const {
+    const double Tf = gains_.filter.Tf;
+    switch (gains_.filter.type) {
+        case FilterType::none: break;
+        case FilterType::derivative:
+            if (i == 1) return -1 / Tf;
+            break;
+        case FilterType::measurement_first_order: return i == 1 ? 1 / Tf : 0;
+        case FilterType::measurement_second_order: return i == 2 ? 2 / Tf : 0;
+    }
+    return -gains_.Ki * (scaling_ ? 1 + scaling_->excess_slope(r_ - y) : 1);
+}
+
+double PidLaw::rate_by_state(int i, int j) const {
+    const double Tf = gains_.filter.Tf;
+    switch (gains_.filter.type) {
+        case FilterType::none: return 0;
+        case FilterType::derivative: return i == 1 && j == 1 ? -1 / Tf : 0;
+        case FilterType::measurement_first_order: return j != 1 ? 0 : i == 1 ? -1 / Tf : -gains_.Ki;
+        case FilterType::measurement_second_order:
+            if (i == 0) return j == 1 ? -gains_.Ki : 0;
+            if (i == 1) return j == 2 ? 1 / Tf : 0;
+            return j > 0 ? -2 / Tf : 0;
+    }
+    return 0;
+}
+
+double PidLaw::error_integral_to_rest(std::span<const double> s, double integral_final) const {
+    // What the integral has yet to see of r - y_f, less the integral of y - y_f, which the filter's equation gives.
+    double rest = (integral_final - s[0]) / gains_.Ki;
+    if (gains_.filter.type == FilterType::measurement_first_order) rest -= gains_.filter.Tf * (r_ - s[1]);
+    if (gains_.filter.type == FilterType::measurement_second_order) rest -= gains_.filter.Tf * (r_ - s[1] - 0.5 * s[2]);
+    return rest;
+}
+
+}  // namespace tunewright

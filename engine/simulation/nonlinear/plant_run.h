@@ -1,0 +1,59 @@
+// A nonlinear plant from its operating point under an input that is constant between switches: open-loop experiments.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/numerics/ode_integrator.h"
+#include "engine/numerics/step_polynomial.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
+
+namespace tunewright {
+
+/// u and y are deviations. A switch of u at t reaches the plant at t + L exactly.
+class PlantRun {
+public:
+    PlantRun(const NonlinearSystem& system, double tolerance);
+    PlantRun(const PlantRun&) = delete;  // its equations refer to it
+    PlantRun& operator=(const PlantRun&) = delete;
+
+    /// u from now on, or from t in the last step: with a dead time only, which must not have brought it to the plant
+    /// yet.
+    void give(double u) { give_at(t(), u); }
+    void give_at(double t, double u);
+    /// One step, not beyond `t_stop` nor the next arrival of a switch. False where the run cannot go on: `why` says it.
+    bool step(double t_stop);
+    /// Goes back within the last step.
+    bool shorten(double t);
+
+    double t() const { return integrator_.t(); }
+    double u() const { return u_; }
+    double y() const { return y_.at(1); }
+    const StepPolynomial& last() const { return y_; }  ///< y over the last step
+    bool nothing_arrived() const { return !arrived_; }
+    /// The largest rate of change of a state, relative to how far the states have moved: 1/time.
+    double unrest() const;
+    const std::string& why() const { return why_; }
+
+private:
+    void arrive();
+    bool read_step(OdeStep outcome);
+
+    struct Switch {
+        double t = 0, u = 0;
+    };
+
+    const NonlinearSystem& system_;
+    double L_, u_ = 0, w_ = 0;
+    bool arrived_ = false;
+    OdeIntegrator integrator_;
+    std::deque<Switch> pending_;
+    std::vector<double> x_;
+    StepPolynomial y_;
+    std::string why_;
+};
+
+}  // namespace tunewright

@@ -1,0 +1,215 @@
+#include "engine/simulation/relay/relay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/number_text.h"
+#include "engine/simulation/relay/relay_cycle.h"
+#include "engine/simulation/relay/relay_plan.h"
+#include "engine/simulation/relay/relay_sampled.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kRowsPerPeriod = 200;
+
+Error refuse(const char* field, const std::string& message) {
+    return {ErrorKind::invalid_argument, std::string("relay/") + field, message};
+}
+
+Error stopped() { return {ErrorKind::cancelled, {}, "The simulation was stopped."}; }
+
+double wrapped(double angle) {
+    const double turn = 2 * std::numbers::pi;
+    angle = std::fmod(angle, turn);
+    return angle > 0 ? angle - turn : angle;
+}
+
+LimitCycle describe(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady) {
+    LimitCycle out;
+    out.Pu = steady.Pu();
+    const std::complex<double> j(0, 1);
+    const double omega = 2 * std::numbers::pi / out.Pu;
+    const std::complex<double> G = plant.at(j * omega);
+    out.Au = std::abs(G);
+    out.phi_u = wrapped(std::arg(G));
+    out.periods = std::max(0, settings.cycles - steady.settling_cycles);
+    const double sigma = settings.shift.value_or(1 / out.Pu);
+    const std::complex<double> shifted = plant.at(sigma + j * omega);
+    out.shift = ShiftedPoint{sigma, std::abs(shifted), wrapped(std::arg(shifted))};
+    const double d = (settings.u_plus - settings.u_minus) / 2, a = (steady.y_max - steady.y_min) / 2;
+    out.describing_function = UltimatePoint{steady.direction * 4 * d / (std::numbers::pi * a), out.Pu};
+    out.t_plus = steady.t_plus;
+    out.t_minus = steady.t_minus;
+    out.y_max = steady.y_max;
+    out.y_min = steady.y_min;
+    return out;
+}
+
+// The spacing of rows where none is given: as fine as is useful, coarser where the record would not hold it.
+double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
+    if (settings.record_interval) return *settings.record_interval;
+    const double most = 0.9 * static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles;
+    const double fitting = settings.cycles * steady.Pu() / most, Ts = settings.relay_sample_time;
+    return Ts > 0 ? Ts * std::max(1.0, std::ceil(fitting / Ts)) : std::max(steady.Pu() / kRowsPerPeriod, fitting);
+}
+
+std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRelayCycle& steady, double spacing) {
+    const double rows = settings.cycles * (steady.Pu() / spacing + 2);
+    if (rows <= static_cast<double>(kMostRelayRows)) return std::nullopt;
+    const double fitting =
+        settings.cycles * steady.Pu() / (static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles);
+    return refuse("record_interval", "record_interval is " + text(spacing) + "; " + std::to_string(settings.cycles) +
+                                         " cycles of about " + text(steady.Pu()) + " would make " + text(rows) +
+                                         " rows, and at most 100000 are recorded. Ask for fewer cycles, or rows at "
+                                         "least " +
+                                         text(1.01 * fitting) + " apart.");
+}
+
+Error full_record(const RelaySettings& settings, int cycles) {
+    return refuse("cycles", "cycles is " + std::to_string(settings.cycles) + "; the record was full after " +
+                                std::to_string(cycles) + ". Ask for fewer cycles or a longer record_interval.");
+}
+
+void add_row(RelayRecord& record, double t, double u, double y) {
+    record.t.push_back(t);
+    record.u.push_back(u);
+    record.y.push_back(y);
+}
+
+std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings& settings,
+                                   const SteadyRelayCycle& steady, double spacing, const RunControl& control,
+                                   RelayRecord& record) {
+    RelayMotion motion(plant, steady.direction);
+    const RelayLevels levels{settings.u_plus, settings.u_minus, settings.hysteresis};
+    RelayRun run(motion, plant.dead_time(), levels, held_start(plant, levels));
+    int switches = 0;
+    std::int64_t row = 0;
+    while (const auto piece = run.next()) {
+        if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return stopped();
+        // A row next to a switch, nearer than rounding of t, is the switch's own.
+        const double last = piece->switched ? piece->t_end - 1e-9 * spacing : piece->t_end;
+        for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
+            if (!record.t.empty() && t <= record.t.back() + 1e-9 * spacing) continue;
+            if (record.t.size() >= kMostRelayRows) return full_record(settings, switches / 2);
+            add_row(record, t, piece->u, steady.direction * piece->y.at(std::max(0.0, t - piece->t)));
+        }
+        if (!piece->switched) continue;
+        if (!record.t.empty() && record.t.back() == piece->t_end)
+            record.u.back() = run.u();
+        else
+            add_row(record, piece->t_end, run.u(), steady.direction * run.y());
+        if (++switches == 2 * settings.cycles) return std::nullopt;
+    }
+    return Error{ErrorKind::unsupported, "plant",
+                 "The run from rest ended after " + std::to_string(switches / 2) +
+                     " cycles within the steps allowed. Ask for fewer cycles."};
+}
+
+std::optional<Error> record_samples(const LinearPlant& plant, const RelaySettings& settings,
+                                    const SteadyRelayCycle& steady, double spacing, const RunControl& control,
+                                    RelayRecord& record) {
+    const RelayMotion motion(plant, steady.direction);
+    SampledRelay relay(motion, plant.dead_time(), {settings.u_plus, settings.u_minus, settings.hysteresis},
+                       settings.relay_sample_time, settings.noise_std, static_cast<std::uint64_t>(settings.seed));
+    const auto every = static_cast<std::int64_t>(std::llround(spacing / settings.relay_sample_time));
+    constexpr std::int64_t kMostSamples = 10'000'000;
+    int switches = 0;
+    for (std::int64_t k = 0; k < kMostSamples; ++k) {
+        if ((k & 4095) == 0 && control.stop.stop_requested()) return stopped();
+        const SampledRelay::Sample sample = relay.next();
+        if (sample.switched || k % every == 0) {
+            if (record.t.size() >= kMostRelayRows) break;
+            add_row(record, sample.t, sample.u, steady.direction * sample.y);
+        }
+        if (sample.switched && ++switches == 2 * settings.cycles) return std::nullopt;
+    }
+    return full_record(settings, switches / 2);
+}
+
+void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady,
+                  RelayExperiment& out) {
+    if (out.reversed)
+        out.warnings.push_back({"relay-reversed",
+                                "The plant answers a positive u with a negative y, so the relay acts on -y (to u_minus "
+                                "when y < -hysteresis); the other way round it would latch."});
+    if (const double held = held_start(plant, {settings.u_plus, settings.u_minus, settings.hysteresis});
+        held > 0 && settings.relay_sample_time == 0)
+        out.warnings.push_back({"start-held",
+                                "Without dead time and hysteresis a relay at rest cannot start: the record begins with "
+                                "u_plus held for " +
+                                    text(held) + "."});
+    if (out.limit_cycle.periods == 0)
+        out.warnings.push_back({"not-settled", "The oscillation takes " + std::to_string(steady.settling_cycles) +
+                                                   " cycles to become steady and the record has " +
+                                                   std::to_string(settings.cycles) + ". Ask for " +
+                                                   std::to_string(out.plan.cycles) + " cycles."});
+    if (plant.integrators() > 0 && settings.u_plus != -settings.u_minus)
+        out.warnings.push_back({"integrating-plant",
+                                "On an integrating plant the mean of u over a steady period is 0 whatever the bias: "
+                                "the ratio of the means of y and u says nothing about the plant."});
+    const double mean = out.record.t.back() / settings.cycles;
+    if (settings.noise_std > 0 && mean < steady.Pu() / 2)
+        out.warnings.push_back({"noise-switches-relay", "Noise switches the relay: its cycles take " + text(mean) +
+                                                            " on average instead of " + text(steady.Pu()) +
+                                                            ". Raise the hysteresis to " + text(out.plan.hysteresis) +
+                                                            ", 3 noise_std."});
+}
+
+}  // namespace
+
+std::optional<Error> refuse_settings(const RelaySettings& settings) {
+    const auto& s = settings;
+    if (!(s.u_minus < s.u_plus))
+        return refuse("u_minus", "u_minus is " + text(s.u_minus) + "; it must be less than u_plus, " + text(s.u_plus) +
+                                     ". Exchange the two.");
+    if (!(s.hysteresis >= 0)) return refuse("hysteresis", "hysteresis must be >= 0.");
+    if (!(s.noise_std >= 0)) return refuse("noise_std", "noise_std must be >= 0.");
+    if (!(s.relay_sample_time >= 0)) return refuse("relay_sample_time", "relay_sample_time must be >= 0.");
+    if (s.noise_std > 0 && s.relay_sample_time == 0)
+        return refuse("relay_sample_time",
+                      "relay_sample_time is 0 and noise_std > 0; noise belongs to samples. Give the time between looks "
+                      "of the relay, or set noise_std to 0.");
+    if (s.cycles < 1 || s.cycles > kMostRelayCycles)
+        return refuse("cycles", "cycles is " + std::to_string(s.cycles) + "; it must be 1 to 1000.");
+    if (s.seed < 0) return refuse("seed", "seed must be >= 0.");
+    if (s.shift && !(*s.shift > 0)) return refuse("shift", "shift must be > 0.");
+    if (!s.record_interval) return std::nullopt;
+    if (!(*s.record_interval > 0)) return refuse("record_interval", "record_interval must be > 0.");
+    const double ratio = s.relay_sample_time > 0 ? *s.record_interval / s.relay_sample_time : 1;
+    if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
+        return refuse("record_interval", "record_interval is " + text(*s.record_interval) +
+                                             "; it must be a whole multiple of relay_sample_time, " +
+                                             text(s.relay_sample_time) + ". Leave it out to record every sample.");
+    return std::nullopt;
+}
+
+Expected<RelayExperiment> simulate_relay(const Plant& given, const RelaySettings& settings, const RunControl& control) {
+    if (auto error = refuse_settings(settings)) return *error;
+    const auto plant = LinearPlant::make(given);
+    if (!plant) return plant.error();
+    const RelayLevels levels{settings.u_plus, settings.u_minus, settings.hysteresis};
+    const bool sampled = settings.relay_sample_time > 0;
+    if (sampled && plant->dead_time() > kMostDeadSamples * settings.relay_sample_time)
+        return refuse("relay_sample_time", "relay_sample_time is " + text(settings.relay_sample_time) +
+                                               "; the dead time may hold at most 1000000 samples. Make it longer.");
+    const auto steady = sampled ? steady_sampled_cycle(*plant, levels, settings.relay_sample_time, control)
+                                : steady_relay_cycle(*plant, levels, control);
+    if (!steady) return steady.error();
+
+    RelayExperiment out;
+    out.reversed = steady->direction < 0;
+    out.limit_cycle = describe(*plant, settings, *steady);
+    const double spacing = interval(settings, *steady);
+    if (auto error = refuse_rows(settings, *steady, spacing)) return *error;
+    const auto failed = sampled ? record_samples(*plant, settings, *steady, spacing, control, out.record)
+                                : record_events(*plant, settings, *steady, spacing, control, out.record);
+    if (failed) return *failed;
+    out.plan = plan_relay(*plant, settings, *steady, control);
+    if (control.stop.stop_requested()) return stopped();
+    add_warnings(*plant, settings, *steady, out);
+    return out;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,341 @@
+#include "engine/simulation/relay/relay_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/numerics/linear_algebra.h"
+#include "engine/simulation/relay/relay_refusal.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kMostCycles = 400;
+constexpr double kNear = 0.02;    // of the period: a run that has come so close is on its way to the cycle
+constexpr double kSteady = 1e-3;  // of the period
+
+struct Durations {
+    double t_plus = 0, t_minus = 0;
+};
+
+// What Newton's method needs to know of the switches.
+struct Switching {
+    bool minus_at_jump = false, plus_at_jump = false;  ///< y jumps over the threshold instead of crossing it
+};
+
+// One complete cycle of a run, from u_plus to u_plus.
+struct Cycle {
+    Durations durations;
+    Switching switching;
+};
+
+std::optional<Cycle> next_cycle(RelayRun& run, const RunControl& control) {
+    Cycle cycle;
+    const double start = run.t();
+    double middle = start;
+    bool first = true;
+    while (const auto piece = run.next()) {
+        if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return std::nullopt;
+        if (!piece->switched) continue;
+        const bool jump = piece->h == 0;
+        if (first) {
+            middle = piece->t_end;
+            cycle.switching.minus_at_jump = jump;
+            first = false;
+            continue;
+        }
+        cycle.durations = {middle - start, piece->t_end - middle};
+        cycle.switching.plus_at_jump = jump;
+        return cycle;
+    }
+    return std::nullopt;
+}
+
+double distance(const Durations& a, const Durations& b) {
+    return (std::abs(a.t_plus - b.t_plus) + std::abs(a.t_minus - b.t_minus)) / (b.t_plus + b.t_minus);
+}
+
+// The periodicity and switching conditions with their Jacobian at (x, t_plus, t_minus).
+class ShootingProblem {
+public:
+    ShootingProblem(RelayMotion& motion, double dead_time, const RelayLevels& levels, const Switching& switching)
+        : motion_(motion), L_(dead_time), levels_(levels), switching_(switching), n_(motion.states()) {}
+
+    struct Point {
+        std::vector<double> x;
+        Durations durations;
+    };
+
+    /// A Newton step; false where the Jacobian is singular.
+    bool improve(Point& point, double& relative_change) const {
+        const int m = n_ + 2;
+        std::vector<double> J(Index(m * m), 0.0), residual(Index(m), 0.0);
+        const auto [t_plus, t_minus] = point.durations;
+        const Half plus = half(point.x, t_plus, levels_.u_plus);
+        const Half minus = half(plus.end, t_minus, levels_.u_minus);
+        const std::vector<double> whole = product(minus.step.Phi, plus.step.Phi);
+        const std::vector<double> carried = times(minus.step.Phi, plus.end_rate);
+        for (int i = 0; i < n_; ++i) {
+            for (int j = 0; j < n_; ++j) J[Index(i * m + j)] = whole[Index(i * n_ + j)] - (i == j ? 1 : 0);
+            J[Index(i * m + n_)] = carried[Index(i)];
+            J[Index(i * m + n_ + 1)] = minus.end_rate[Index(i)];
+            residual[Index(i)] = minus.end[Index(i)] - point.x[Index(i)];
+        }
+        add_switch(point, plus, true, &J[Index(n_ * m)], residual[Index(n_)]);
+        add_switch(point, plus, false, &J[Index((n_ + 1) * m)], residual[Index(n_ + 1)]);
+        for (double& r : residual) r = -r;
+        const auto change = solve(J, residual, m);
+        if (!change) return false;
+        double scale = 1;
+        const double dp = (*change)[Index(n_)], dm = (*change)[Index(n_ + 1)];
+        while (t_plus + scale * dp < 0.2 * t_plus || t_minus + scale * dm < 0.2 * t_minus) {
+            scale /= 2;
+            if (scale < 1e-6) return false;
+        }
+        for (int i = 0; i < n_; ++i) point.x[Index(i)] += scale * (*change)[Index(i)];
+        point.durations.t_plus += scale * dp;
+        point.durations.t_minus += scale * dm;
+        relative_change = (std::abs(dp) + std::abs(dm)) / (t_plus + t_minus);
+        return std::isfinite(relative_change);
+    }
+
+private:
+    struct Half {
+        HeldStep step;
+        std::vector<double> end, end_rate;
+    };
+
+    Half half(const std::vector<double>& from, double t, double v) const {
+        Half out{motion_.step(t), from, {}};
+        motion_.advance(out.step, v, out.end);
+        out.end_rate = motion_.rate(out.end, v);
+        return out;
+    }
+
+    std::vector<double> times(const std::vector<double>& M, const std::vector<double>& x) const {
+        std::vector<double> out(Index(n_), 0.0);
+        for (int i = 0; i < n_; ++i)
+            for (int j = 0; j < n_; ++j) out[Index(i)] += M[Index(i * n_ + j)] * x[Index(j)];
+        return out;
+    }
+
+    std::vector<double> product(const std::vector<double>& M, const std::vector<double>& N) const {
+        std::vector<double> out(Index(n_ * n_), 0.0);
+        for (int i = 0; i < n_; ++i)
+            for (int k = 0; k < n_; ++k)
+                for (int j = 0; j < n_; ++j) out[Index(i * n_ + j)] += M[Index(i * n_ + k)] * N[Index(k * n_ + j)];
+        return out;
+    }
+
+    std::vector<double> row_times(const std::vector<double>& row, const std::vector<double>& M) const {
+        std::vector<double> out(Index(n_), 0.0);
+        for (int i = 0; i < n_; ++i)
+            for (int j = 0; j < n_; ++j) out[Index(j)] += row[Index(i)] * M[Index(i * n_ + j)];
+        return out;
+    }
+
+    // Where the relay switches, on the clock of the delayed input (0: u_plus arrives; t_plus: u_minus arrives), in
+    // (0, P], with its derivatives.
+    struct Phase {
+        double s = 0, by_plus = 0, by_minus = 0;
+    };
+    Phase phase(const Durations& d, bool to_minus) const {
+        const double P = d.t_plus + d.t_minus;
+        const double raw = (to_minus ? d.t_plus : 0) - L_;
+        double turns = std::ceil(-raw / P);
+        if (raw + turns * P <= 0) turns += 1;
+        return {raw + turns * P, turns + (to_minus ? 1 : 0), turns};
+    }
+
+    void add_switch(const Point& point, const Half& plus, bool to_minus, double* row, double& residual) const {
+        const Phase at = phase(point.durations, to_minus);
+        const double t_plus = point.durations.t_plus, P = t_plus + point.durations.t_minus;
+        if (to_minus ? switching_.minus_at_jump : switching_.plus_at_jump) {
+            const bool early = at.s<t_plus / 2, late = at.s>(t_plus + P) / 2;
+            const double target = early ? 0 : late ? P : t_plus;
+            residual = at.s - target;
+            row[n_] = at.by_plus - (early ? 0 : 1);
+            row[n_ + 1] = at.by_minus - (late ? 1 : 0);
+            return;
+        }
+        const bool in_plus = at.s <= t_plus;
+        const double v = in_plus ? levels_.u_plus : levels_.u_minus;
+        const Half here = half(in_plus ? point.x : plus.end, in_plus ? at.s : at.s - t_plus, v);
+        const OutputMotion y = motion_.output(here.end, v);
+        residual = y.y - (to_minus ? levels_.hysteresis : -levels_.hysteresis);
+        std::vector<double> by_state = row_times(motion_.C(), here.step.Phi);
+        row[n_] = y.slope * at.by_plus;
+        row[n_ + 1] = y.slope * at.by_minus;
+        if (!in_plus) {
+            row[n_] += std::inner_product(by_state.begin(), by_state.end(), plus.end_rate.begin(), 0.0) - y.slope;
+            by_state = row_times(by_state, plus.step.Phi);
+        }
+        for (int j = 0; j < n_; ++j) row[j] = by_state[Index(j)];
+    }
+
+    RelayMotion& motion_;
+    double L_;
+    RelayLevels levels_;
+    Switching switching_;
+    int n_;
+};
+
+std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem, ShootingProblem::Point point) {
+    double change = 1;
+    for (int i = 0; i < 40 && change > 1e-15; ++i) {
+        const double before = change;
+        if (!problem.improve(point, change)) return std::nullopt;
+        if (change < 1e-11 && change >= before / 2) break;
+    }
+    if (change > 1e-10) return std::nullopt;
+    return point;
+}
+
+// Runs one period from the fixed point: it must switch where it says. Adds the extremes of y.
+bool verify(RelayMotion& motion, double L, const RelayLevels& levels, SteadyRelayCycle& cycle) {
+    RelayRun run(motion, L, levels, state_at_switch(motion, L, levels, cycle));
+    const double tolerance = 1e-8 * cycle.Pu();
+    double top = run.y(), bottom = top;
+    int switches = 0;
+    while (const auto piece = run.next()) {
+        for (const double y : {piece->y.at(0), piece->y.at(piece->h)}) {
+            top = std::max(top, y);
+            bottom = std::min(bottom, y);
+        }
+        if (const auto at = piece->y.extremum(); at && *at < piece->h) {
+            top = std::max(top, piece->y.at(*at));
+            bottom = std::min(bottom, piece->y.at(*at));
+        }
+        if (!piece->switched) continue;
+        ++switches;
+        const double expected = switches == 1 ? cycle.t_plus : cycle.Pu();
+        if (std::abs(piece->t_end - expected) > tolerance) return false;
+        if (switches == 2) break;
+    }
+    cycle.y_max = cycle.direction > 0 ? top : -bottom;
+    cycle.y_min = cycle.direction > 0 ? bottom : -top;
+    return switches == 2;
+}
+
+// Lets a run from rest settle, and solves for the cycle as soon as the run is near it.
+class Settling {
+public:
+    Settling(const LinearPlant& plant, const RelayLevels& levels, double direction, const RunControl& control)
+        : plant_(plant),
+          levels_(levels),
+          control_(control),
+          motion_(plant, direction),
+          direction_(direction),
+          run_(motion_, plant.dead_time(), levels, held_start(plant, levels)) {}
+
+    Expected<SteadyRelayCycle> solve() {
+        double previous = 1;
+        int next_attempt = 2;
+        for (int count = 1; count <= kMostCycles; ++count) {
+            const auto cycle = next_cycle(run_, control_);
+            if (!cycle) return refusal();
+            history_.push_back(cycle->durations);
+            if (count < next_attempt) continue;
+            next_attempt = count + std::max(1, count / 4);
+            auto steady = attempt(*cycle);
+            if (!steady) continue;
+            const double now = distance(cycle->durations, {steady->t_plus, steady->t_minus});
+            const bool arrived = now <= kNear && (now <= previous || now < 1e-6);
+            previous = now;
+            if (!arrived && count + count / 4 < kMostCycles) continue;
+            if (!arrived && now > 0.2) break;
+            steady->settling_cycles = count_settling(*steady);
+            return *steady;
+        }
+        return no_steady_cycle(plant_, kMostCycles);
+    }
+
+private:
+    Error refusal() const {
+        if (control_.stop.stop_requested()) return {ErrorKind::cancelled, {}, "The simulation was stopped."};
+        return no_oscillation({plant_, levels_, direction_, run_.end(), run_.u(), run_.y()});
+    }
+
+    std::optional<SteadyRelayCycle> attempt(const Cycle& last) {
+        const ShootingProblem problem(motion_, plant_.dead_time(), levels_, last.switching);
+        const auto point = fixed_point(problem, {run_.state_at_rise(), last.durations});
+        if (!point) return std::nullopt;
+        SteadyRelayCycle cycle;
+        cycle.direction = direction_;
+        cycle.t_plus = point->durations.t_plus;
+        cycle.t_minus = point->durations.t_minus;
+        cycle.x = point->x;
+        if (!verify(motion_, plant_.dead_time(), levels_, cycle)) return std::nullopt;
+        return cycle;
+    }
+
+    int count_settling(const SteadyRelayCycle& steady) {
+        const Durations target{steady.t_plus, steady.t_minus};
+        while (static_cast<int>(history_.size()) < kMostCycles && distance(history_.back(), target) > kSteady) {
+            const auto cycle = next_cycle(run_, control_);
+            if (!cycle) break;
+            history_.push_back(cycle->durations);
+        }
+        int count = static_cast<int>(history_.size());
+        while (count > 0 && distance(history_[Index(count - 1)], target) <= kSteady) --count;
+        return count;
+    }
+
+    const LinearPlant& plant_;
+    RelayLevels levels_;
+    const RunControl& control_;
+    RelayMotion motion_;
+    double direction_;
+    RelayRun run_;
+    std::vector<Durations> history_;
+};
+
+}  // namespace
+
+double relay_direction(const LinearPlant& plant) {
+    const double sign = plant.low_frequency_gain() < 0 ? -1 : 1;
+    return plant.unstable_poles() % 2 == 1 ? -sign : sign;
+}
+
+RelayState state_at_switch(RelayMotion& motion, double dead_time, const RelayLevels& levels,
+                           const SteadyRelayCycle& cycle) {
+    const double P = cycle.Pu(), L = dead_time;
+    RelayState state;
+    state.x = cycle.x;
+    state.u = levels.u_plus;
+    // The delayed input is L behind: it stands s after the arrival of u_plus. What arrives just now is still pending.
+    const double now = 1e-12 * P;
+    double s = std::ceil(L / P) * P - L;
+    if (s <= now) s += P;
+    motion.advance(motion.step(std::min(s, cycle.t_plus)), levels.u_plus, state.x);
+    state.v = levels.u_plus;
+    if (s > cycle.t_plus + now) {
+        motion.advance(motion.step(s - cycle.t_plus), levels.u_minus, state.x);
+        state.v = levels.u_minus;
+    }
+    for (int k = static_cast<int>(std::ceil(L / P)) + 1; k >= 0; --k) {
+        const double arrives = L - k * P;
+        if (arrives >= -now) state.pending.push_back({std::max(arrives, 0.0), levels.u_plus});
+        if (k > 0 && arrives + cycle.t_plus >= -now)
+            state.pending.push_back({std::max(arrives + cycle.t_plus, 0.0), levels.u_minus});
+    }
+    return state;
+}
+
+Expected<SteadyRelayCycle> steady_relay_cycle(const LinearPlant& plant, const RelayLevels& levels,
+                                              const RunControl& control) {
+    const double direction = relay_direction(plant);
+    const bool both = plant.unstable_poles() > 0 || plant.integrators() < 0;
+    const auto try_one = [&](double which) -> Expected<SteadyRelayCycle> {
+        if (auto error = switches_without_end(plant, levels, which)) return *error;
+        return Settling(plant, levels, which, control).solve();
+    };
+    auto first = try_one(direction);
+    if (first || !both || first.error().kind == ErrorKind::cancelled) return first;
+    auto second = try_one(-direction);
+    return second ? second : first;
+}
+
+}  // namespace tunewright

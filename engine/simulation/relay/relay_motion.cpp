@@ -1,0 +1,165 @@
+#include "engine/simulation/relay/relay_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "engine/numerics/linear_algebra.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kStepsPerRadian = 10;
+constexpr double kDecay = 25;  // e^-25 = 1e-11
+constexpr int kLevels = 60;
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+// a A for a row a.
+std::vector<double> row_times(const std::vector<double>& a, const std::vector<double>& A, int n) {
+    std::vector<double> out(Index(n), 0.0);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) out[Index(j)] += a[Index(i)] * A[Index(i * n + j)];
+    return out;
+}
+
+}  // namespace
+
+Quintic::Quintic(double h, const OutputMotion& start, const OutputMotion& end) : h_(h) {
+    const double rise = end.y - start.y, v0 = h * start.slope, v1 = h * end.slope;
+    const double a0 = h * h * start.curvature, a1 = h * h * end.curvature;
+    c_ = {start.y,
+          v0,
+          a0 / 2,
+          10 * rise - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
+          -15 * rise + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
+          6 * rise - 3 * (v0 + v1) - 0.5 * a0 + 0.5 * a1};
+}
+
+double Quintic::at(double tau) const {
+    const double s = h_ > 0 ? tau / h_ : 0;
+    return c_[0] + s * (c_[1] + s * (c_[2] + s * (c_[3] + s * (c_[4] + s * c_[5]))));
+}
+
+double Quintic::slope(double tau) const {
+    if (h_ <= 0) return 0;
+    const double s = tau / h_;
+    return (c_[1] + s * (2 * c_[2] + s * (3 * c_[3] + s * (4 * c_[4] + s * 5 * c_[5])))) / h_;
+}
+
+std::optional<double> Quintic::extremum() const {
+    double low = 0, high = h_;
+    const double first = slope(low), last = slope(high);
+    if (!(first * last < 0)) return std::nullopt;
+    for (int i = 0; i < 60 && high - low > 1e-16 * h_; ++i) {
+        const double middle = (low + high) / 2;
+        (slope(middle) * first > 0 ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
+    : n_(plant.realisation().n),
+      integrators_(plant.integrators()),
+      A_(plant.realisation().A),
+      B_(plant.realisation().B),
+      C_(plant.realisation().C),
+      D_(direction * plant.realisation().D),
+      levels_(Index(kLevels)) {
+    for (double& c : C_) c *= direction;
+    CA_ = row_times(C_, A_, n_);
+    CAA_ = row_times(CA_, A_, n_);
+    CB_ = dot(C_, B_);
+    CAB_ = dot(CA_, B_);
+    double fastest = 0;
+    for (const auto pole : plant.poles()) {
+        const double size = std::abs(pole);
+        fastest = std::max(fastest, size);
+        const bool decays = pole.real() < -1e-10 * size;
+        const double ends = decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
+        if (decays) decay_time_ = std::max(decay_time_, ends);
+        if (pole.real() > 1e-10 * size) growth_rate_ = std::max(growth_rate_, pole.real());
+        modes_.push_back({size, ends});
+    }
+    if (fastest > 0)
+        shortest_ = 1 / (kStepsPerRadian * fastest);
+    else if (plant.dead_time() > 0)
+        shortest_ = plant.dead_time() / kStepsPerRadian;
+}
+
+HeldStep RelayMotion::step(double h) const {
+    const int m = n_ + 1;
+    std::vector<double> augmented(Index(m * m), 0.0);
+    for (int i = 0; i < n_; ++i) {
+        for (int j = 0; j < n_; ++j) augmented[Index(i * m + j)] = A_[Index(i * n_ + j)] * h;
+        augmented[Index(i * m + n_)] = B_[Index(i)] * h;
+    }
+    const std::vector<double> exponential = matrix_exponential(augmented, m);
+    HeldStep out{h, std::vector<double>(Index(n_ * n_)), std::vector<double>(Index(n_))};
+    for (int i = 0; i < n_; ++i) {
+        for (int j = 0; j < n_; ++j) out.Phi[Index(i * n_ + j)] = exponential[Index(i * m + j)];
+        out.Gamma[Index(i)] = exponential[Index(i * m + n_)];
+    }
+    return out;
+}
+
+const HeldStep& RelayMotion::level(int k) {
+    auto& slot = levels_[Index(k)];
+    if (!slot) slot = step(std::ldexp(shortest_, k));
+    return *slot;
+}
+
+void RelayMotion::advance(const HeldStep& step, double v, std::vector<double>& x) const {
+    constexpr int kOnStack = 24;
+    std::array<double, kOnStack> small;
+    std::vector<double> large;
+    double* next = small.data();
+    if (n_ > kOnStack) {
+        large.resize(Index(n_));
+        next = large.data();
+    }
+    const double* row = step.Phi.data();
+    for (int i = 0; i < n_; ++i, row += n_) {
+        double sum = step.Gamma[Index(i)] * v;
+        for (int j = 0; j < n_; ++j) sum += row[j] * x[Index(j)];
+        next[i] = sum;
+    }
+    std::copy(next, next + n_, x.begin());
+}
+
+OutputMotion RelayMotion::output(const std::vector<double>& x, double v) const {
+    return {dot(C_, x) + D_ * v, dot(CA_, x) + CB_ * v, dot(CAA_, x) + CAB_ * v};
+}
+
+std::vector<double> RelayMotion::rate(const std::vector<double>& x, double v) const {
+    std::vector<double> out(Index(n_), 0.0);
+    for (int i = 0; i < n_; ++i) {
+        double sum = B_[Index(i)] * v;
+        for (int j = 0; j < n_; ++j) sum += A_[Index(i * n_ + j)] * x[Index(j)];
+        out[Index(i)] = sum;
+    }
+    return out;
+}
+
+bool RelayMotion::bounded() const {
+    return integrators_ <= 0 &&
+           std::all_of(modes_.begin(), modes_.end(), [](const Mode& mode) { return std::isfinite(mode.ends); });
+}
+
+double RelayMotion::spacing(double elapsed, bool& quiet) const {
+    double h = std::max(shortest_, elapsed / 4);
+    quiet = true;
+    for (const Mode& mode : modes_) {
+        if (elapsed >= mode.ends) continue;
+        quiet = false;
+        h = std::min(h, 1 / (kStepsPerRadian * mode.magnitude));
+    }
+    return h;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,240 @@
+#include "engine/tuning/arrieta/arrieta.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/arrieta/arrieta_rule.h"
+#include "engine/tuning/arrieta/degradation_search.h"
+#include "engine/tuning/method/rule.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kLowestTau = 0.1, kHighestTau = 2;  // of the source
+constexpr double kDefaultMs = 1.6, kDefaultDegradation = 0.35;
+constexpr const char* kSource =
+    "Arrieta, Vilanova and Alfaro, Performance degradation driven PID controller design, IFAC PID'12 (2012), ";
+constexpr const char* kCorrectedB3 = "b3 = 1.3870 M^2 - 4.7810 M + 4.9470 (0.3870 in print, a misprint)";
+constexpr const char* kRefittedC3 = "c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic through Table 1)";
+
+// The rule's model, or why there is none.
+Expected<ReducedModel> model_for(const TuningProblem& problem, const MethodOptions& options) {
+    auto model =
+        rule_model(problem, options, {.order = ReducedOrder::first, .preferred = ReductionMethod::two_point_123c});
+    if (!model) return model.error();
+    if (model->integrators > 0)
+        return degenerate("plant", "The rule is written for stable first-order models, and the plant integrates.",
+                          "Use simc, lambda, amigo or robust.");
+    if (model->L <= 0)
+        return degenerate("plant/L", "The rule needs a dead time: Kp grows without end as L/T goes to 0.",
+                          "Give the loop's true dead time, or use lambda, simc with tau_c, or robust.");
+    if (model->T1 <= 0)
+        return degenerate("plant/T", "The rule needs a lag, and the model is a pure dead time (T = 0).",
+                          "Use amigo or robust.");
+    return model;
+}
+
+Expected<TunedController> answer(const TuningProblem& problem, const ReducedModel& model,
+                                 const ArrietaConstants& constants, ArrietaReport report,
+                                 std::vector<Warning> warnings) {
+    const double tau = model.L / model.T1;
+    const Pid pid = arrieta_pid(constants, report.model);
+    if (pid.Td < 0 || pid.Ti <= 0 || pid.Kp * model.K <= 0)
+        return degenerate("plant",
+                          "The rule gives Kp = " + text(pid.Kp) + ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +
+                              " for L/T = " + text(tau) + ", far outside its range of 0.1 to 2.",
+                          "Use simc, amigo or robust.");
+    if (tau < kLowestTau || tau > kHighestTau)
+        warnings.push_back(
+            outside_validity("L/T is " + text(tau) +
+                             ", outside 0.1 to 2, for which the rule was fitted: Ms and degradation may be far "
+                             "from those asked for."));
+    auto tuned = rule_answer(problem, model, pid, std::move(warnings));
+    if (tuned) tuned->arrieta = std::move(report);
+    return tuned;
+}
+
+ArrietaReport report_on(const ReducedModel& model, const MethodOptions& options) {
+    return {.model = {.K = model.K, .T = model.T1, .L = model.L},
+            .constants = {},
+            .Ms_design = {},
+            .degradation = {},
+            .profile = options.boolean("profile").value_or(false)};
+}
+
+Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const auto model = model_for(problem, options);
+    if (!model) return model.error();
+    ArrietaReport report = report_on(*model, options);
+    if (options.text("Ms") == "free") {
+        report.constants = "Table 1, column without a limit on Ms";
+        return answer(problem, *model, arrieta_free(), report, {});
+    }
+    const double Ms = options.number("Ms").value_or(kDefaultMs);
+    if (!(Ms >= kArrietaLowestMs && Ms <= kArrietaHighestMs))
+        return Error{ErrorKind::invalid_argument, "Ms",
+                     "Ms is " + text(Ms) + "; this rule has settings for 1.4 to 2, and for \"free\"."};
+    report.Ms_design = Ms;
+    if (const ArrietaConstants* column = arrieta_column(arrieta_Ms_levels(), Ms)) {
+        report.constants = "Table 1, column Ms = " + text(Ms);
+        return answer(problem, *model, *column, report, {});
+    }
+    const bool printed = options.text("c3") == "printed";
+    report.constants = "Eq. 9 at Ms = " + text(Ms) + ", with " + kCorrectedB3 + " and " +
+                       (printed ? std::string("c3 as printed") : kRefittedC3);
+    const auto constants = arrieta_equation_9(Ms, printed ? ArrietaC3::printed : ArrietaC3::refitted);
+    return answer(problem, *model, constants, report, {});
+}
+
+Expected<TunedController> tune_exactly(const TuningProblem& problem, const ReducedModel& model, double degradation,
+                                       ArrietaReport report, std::vector<Warning> warnings, const RunControl& control) {
+    const auto Ms = Ms_of_degradation(report.model, degradation, control.stop);
+    if (!Ms) return Ms.error();
+    report.Ms_design = *Ms;
+    report.constants = "Eq. 9 at Ms = " + text(*Ms) + ", whose degradation on the model is " + text(degradation) +
+                       ", with " + kCorrectedB3 + " and " + kRefittedC3;
+    return answer(problem, model, arrieta_equation_9(*Ms, ArrietaC3::refitted), report, std::move(warnings));
+}
+
+std::string listed_levels() {
+    std::string levels;
+    for (const ArrietaLevel& column : arrieta_degradation_levels())
+        levels += (levels.empty() ? "" : ", ") + text(column.level);
+    return levels;
+}
+
+Expected<TunedController> tune_by_degradation(const TuningProblem& problem, const MethodOptions& options,
+                                              const RunControl& control) {
+    const auto model = model_for(problem, options);
+    if (!model) return model.error();
+    ArrietaReport report = report_on(*model, options);
+    const double degradation = options.number("degradation").value_or(kDefaultDegradation);
+    const auto exact = options.boolean("exact");
+    const ArrietaConstants* column = arrieta_column(arrieta_degradation_levels(), degradation);
+    if (column && (degradation == 0 || !exact.value_or(false))) {
+        report.constants = "Table 2, column degradation = " + text(degradation);
+        report.degradation = degradation;
+        return answer(problem, *model, *column, report, {});
+    }
+    if (!column && exact.has_value() && !*exact)
+        return Error{ErrorKind::invalid_argument, "degradation",
+                     "degradation is " + text(degradation) + "; Table 2 has settings for " + listed_levels() +
+                         ". Take one of these, or \"exact\": true, which solves for any other on the model."};
+    std::vector<Warning> warnings;
+    if (!exact)
+        warnings.push_back({"exact-degradation", "Table 2 has settings for " + listed_levels() + "; those for " +
+                                                     text(degradation) +
+                                                     " were solved for on the model, as with \"exact\": true."});
+    return tune_exactly(problem, *model, degradation, report, std::move(warnings), control);
+}
+
+OptionDescription profile_option() {
+    OptionDescription option;
+    option.name = "profile";
+    option.type = OptionType::boolean;
+    option.sentence =
+        "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.";
+    option.default_value = false;
+    return option;
+}
+
+OptionDescription Ms_option() {
+    OptionDescription option;
+    option.name = "Ms";
+    option.type = OptionType::number_or_word;
+    option.sentence =
+        "Largest |S| that the loop on the model shall have, from 1.4 (robust) to 2 (fast); free: no limit, the least "
+        "combined distance from both optima (Ms is then 2 to 2.9).";
+    option.default_value = kDefaultMs;
+    option.minimum = kArrietaLowestMs;
+    option.maximum = kArrietaHighestMs;
+    option.choices = {"free"};
+    return option;
+}
+
+OptionDescription c3_option() {
+    OptionDescription option;
+    option.name = "c3";
+    option.type = OptionType::choice;
+    option.sentence =
+        "Constant c3 of Eq. 9, which serves the Ms between the levels of Table 1. refitted: the quadratic through "
+        "Table "
+        "1, within 0.006 of it; printed: the source's, off by 0.014 at Ms 1.4 and 2, so that Td jumps there.";
+    option.default_value = std::string("refitted");
+    option.choices = {"refitted", "printed"};
+    return option;
+}
+
+std::vector<OptionDescription> degradation_options() {
+    OptionDescription degradation;
+    degradation.name = "degradation";
+    degradation.sentence =
+        "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on Ms, "
+        "0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.";
+    degradation.default_value = kDefaultDegradation;
+    degradation.minimum = 0;
+    degradation.maximum = 1;
+    OptionDescription exact;
+    exact.name = "exact";
+    exact.type = OptionType::boolean;
+    exact.sentence =
+        "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the levels "
+        "of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. Left out: "
+        "the table at its levels, solved in between.";
+    return {degradation, exact};
+}
+
+constexpr const char* kFormula =
+    "tau = L/T; Kp = (a1 tau^b1 + c1)/K, Ti = (a2 tau^b2 + c2) T, Td = (a3 tau^b3 + c3) T, Tf = Td/10; ";
+
+OptionDescription reduction() {
+    return reduction_option("123c, as in the source; half_rule where that does not apply.");
+}
+
+MethodVariant variant(const std::string& name, const std::string& option, OptionValue value) {
+    MethodVariant row{name, {}};
+    row.options.set(option, std::move(value));
+    return row;
+}
+
+}  // namespace
+
+TuningMethod arrieta_ms_method() {
+    TuningMethod method;
+    method.id = "arrieta_ms";
+    method.title = "Servo and regulation for an Ms (Arrieta et al.)";
+    method.formula = std::string(kFormula) +
+                     "a1 ... c3 from Table 1 for Ms free, 2.0, 1.8, 1.6 and 1.4, in between from Eq. 9, quadratic in "
+                     "Ms, with b3 and "
+                     "c3 corrected";
+    method.source = std::string(kSource) + "Eqs. 7-9, Table 1";
+    method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
+    method.validity = "L/T from 0.1 to 2, Ms from 1.4 to 2";
+    method.options = {Ms_option(), c3_option(), profile_option(), reduction()};
+    method.variants = {variant("Ms 2", "Ms", 2.0), variant("Ms 1.6", "Ms", 1.6), variant("Ms 1.4", "Ms", 1.4)};
+    method.tune = tune_by_Ms;
+    return method;
+}
+
+TuningMethod arrieta_degradation_method() {
+    TuningMethod method;
+    method.id = "arrieta_degradation";
+    method.title = "Servo and regulation with allowed degradation (Arrieta et al.)";
+    method.formula =
+        std::string(kFormula) +
+        "a1 ... c3 from Table 2 for degradation 0, 0.25, 0.35, 0.45 and 0.55; exact: from Eq. 9 with the Ms "
+        "for which 1 - J_rd(free)/J_rd on the model is the degradation asked for";
+    method.source = std::string(kSource) + "Eqs. 5-11, Table 2";
+    method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
+    method.validity = "L/T from 0.1 to 2, degradation up to 0.55";
+    method.options = degradation_options();
+    method.options.push_back(profile_option());
+    method.options.push_back(reduction());
+    for (const ArrietaLevel& column : arrieta_degradation_levels())
+        method.variants.push_back(variant("degradation " + text(column.level), "degradation", column.level));
+    method.tune = tune_by_degradation;
+    return method;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,69 @@
+// The trade-off between servo and regulation: how far a controller stays from the corner that is best for both.
+//
+// J_r is the IAE of a unit set-point step, J_d that of a unit load step on the plant scaled to static gain 1 (the IAE
+// over |K|): both are times, whatever the units of u and y. (J_r_opt, J_d_opt) is the corner: what the servo-optimal
+// and the load-optimal controller of the *model* reach, each in its own discipline.
+//
+//   J_rd = sqrt((J_r - J_r_opt)^2 + (J_d - J_d_opt)^2)      I_perf = J_rd(free)/J_rd      Deg = 1 - I_perf
+//
+// with "free" the rule of Table 1 without a limit on Ms, which was made for the least J_rd. It is a fit, so I_perf may
+// exceed 1. Source: Arrieta, Vilanova and Alfaro (2012), Eqs. 5, 10, 11; there the plant's gain and the load are 1.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/plant.h"
+#include "engine/tuning/arrieta/ideal_point.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+/// Empty ones are explained in why_null.
+struct TradeoffFigures {
+    std::optional<double> J_r, J_d, J_rd, J_r_opt, J_d_opt, I_perf, Deg, Ms;
+    WhyNull why_null;
+};
+
+/// Every figure empty, for one reason.
+TradeoffFigures no_tradeoff(const std::string& reason);
+
+/// The controllers that others are compared with; they belong to a model.
+struct ReferenceControllers {
+    Fopdt model;
+    IdealControllers ideal;
+    std::optional<Pid> free;  ///< empty below L/T of 0.045, where the rule gives Td < 0
+};
+
+/// Errors: those of ideal_controllers().
+Expected<ReferenceControllers> reference_controllers(const Fopdt& model);
+
+/// One plant with what the reference controllers reach on it.
+class TradeoffScale {
+public:
+    /// An error in place of the references: only J_r, J_d and Ms are told.
+    TradeoffScale(LinearPlant plant, const Expected<ReferenceControllers>& references);
+
+    TradeoffFigures figures(const ParallelPid& controller) const;
+
+    /// The same for a controller whose Ms, J_r and J_d were found otherwise; `no_J` says why one of these is empty.
+    TradeoffFigures placed(std::optional<double> Ms, std::optional<double> J_r, std::optional<double> J_d,
+                           const std::string& no_J) const;
+
+    /// Empty: the plant integrates or its gain is 0, and all figures are empty.
+    std::optional<double> static_gain() const { return K_; }
+
+    /// Deg alone, as searches need it; empty where `figures` has none.
+    std::optional<double> degradation(const ParallelPid& controller) const;
+
+private:
+    LinearPlant plant_;
+    std::optional<double> K_;                                  // static gain
+    std::optional<double> J_r_opt_, J_d_opt_, J_rd_free_;      // of the references on this plant
+    std::string no_gain_, no_J_r_opt_, no_J_d_opt_, no_free_;  // why not
+};
+
+}  // namespace tunewright

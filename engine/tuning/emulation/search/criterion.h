@@ -1,0 +1,51 @@
+// J of a PID: the mean over the scenarios of int_0^horizon wy (y_nl - y)^2 + wu (u_nl - u)^2 dt (Eq. 2).
+#pragma once
+
+#include "engine/tuning/emulation/search/parameters.h"
+#include "engine/tuning/emulation/trajectories.h"
+
+namespace tunewright::emulation {
+
+/// The PID's own run of one scenario; deviations. Shorter than the horizon where it ended early.
+struct PidRun {
+    std::vector<double> y, u;
+    double share = 1;   ///< of the horizon
+    std::string ended;  ///< why it ended early; empty: it did not
+};
+
+struct Cost {
+    double J = 0, J_y = 0, J_u = 0;  ///< of what was run
+    double share = 1;                ///< of the horizon, in the run that ended first
+    std::string ended;               ///< why that one did; empty: every run reached the horizon
+};
+
+/// By simulation on the nonlinear plant.
+class Criterion {
+public:
+    Criterion(const Problem& problem, const std::vector<Trajectory>& trajectories);
+
+    /// `stop` ends the run early.
+    PidRun run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop = {}) const;
+    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop = {}) const {
+        return weigh(pid, tolerance, stop, nullptr);
+    }
+    /// The same, and residuals whose squares add up to J.
+    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>& residuals) const {
+        return weigh(pid, tolerance, stop, &residuals);
+    }
+    /// J, or where a run ended early more than that: the earlier, the more. Finite.
+    double penalised(const Cost& cost) const;
+
+    const Problem& problem() const { return problem_; }
+    const std::vector<Trajectory>& trajectories() const { return trajectories_; }
+
+private:
+    Cost weigh(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>* residuals) const;
+
+    const Problem& problem_;
+    const std::vector<Trajectory>& trajectories_;
+    std::vector<double> weights_;
+    double at_rest_ = 0;  // J where nothing moves
+};
+
+}  // namespace tunewright::emulation

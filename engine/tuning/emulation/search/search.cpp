@@ -1,0 +1,268 @@
+#include "engine/tuning/emulation/search/search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/numerics/global_minimum.h"
+#include "engine/tuning/emulation/search/best_so_far.h"
+#include "engine/tuning/emulation/search/box_step.h"
+
+namespace tunewright::emulation {
+namespace {
+
+constexpr double kCoarseTolerance = 1e-6;        // of simulations while looking around
+constexpr double kSearchTolerance = 1e-8;        // of those between which differences are taken
+constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
+constexpr int kPolished = 2;                     // starts that are polished
+constexpr double kApart = 0.05;                  // of two of them, in a unit box
+constexpr int kMostSteps = 25;
+constexpr double kDifference = 1e-4;    // of a derivative, relative to the unknown
+constexpr double kFlat = 1e-10;         // expected fall of J, relative, at which a polish ends
+constexpr double kFirstDamping = 1e-3;  // of Levenberg and Marquardt
+constexpr double kLeastDamping = 1e-9;
+constexpr double kMostDamping = 1e8;
+constexpr double kConfident = 10;      // damping up to which a small expected fall means that J is flat
+constexpr double kLongestStep = 0.5;   // relative to the unknown
+constexpr double kLeastSize = 1e-3;    // of an unknown near 0, relative to its range
+constexpr double kSubplexStep = 0.02;  // in a unit box
+constexpr double kNotLookedAt = 700;   // ln J of a point where the search is stopped
+constexpr int kSubplexEvaluations = 150;
+constexpr double kSubplexTolerance = 1e-9;
+constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
+
+// One unknown between its bounds as 0 to 1.
+class Scale {
+public:
+    Scale(double low, double high)
+        : low_(low), high_(high), logarithmic_(low * high > 0 && ratio(low, high) > kLogarithmicFrom) {}
+    double from_unit(double q) const {
+        if (q <= 0) return low_;
+        if (q >= 1) return high_;
+        return logarithmic_ ? low_ * std::pow(high_ / low_, q) : low_ + q * (high_ - low_);
+    }
+    double to_unit(double x) const {
+        return logarithmic_ ? std::log(x / low_) / std::log(high_ / low_) : (x - low_) / (high_ - low_);
+    }
+
+private:
+    static double ratio(double low, double high) { return std::max(high / low, low / high); }
+    double low_, high_;
+    bool logarithmic_;
+};
+
+class Search {
+public:
+    Search(const Criterion& criterion, const Bounds& bounds, const RunControl& control)
+        : criterion_(criterion), bounds_(bounds), control_(control) {
+        for (std::size_t i = 0; i < bounds.low.size(); ++i) scales_.emplace_back(bounds.low[i], bounds.high[i]);
+    }
+
+    std::optional<Optimum> run(const std::vector<Point>& starts) {
+        std::vector<LocalMinimum> met = look_around();
+        for (const Point& start : starts) {
+            if (stopped()) break;
+            const Point inside = clipped(start, bounds_);
+            met.push_back({units(inside), judged(inside, kCoarseTolerance)});
+        }
+        if (met.empty()) return std::nullopt;
+        std::ranges::stable_sort(met, {}, &LocalMinimum::value);
+        std::vector<LocalMinimum> chosen = apart(met);
+        best_.point = point_at(chosen.front().x);
+        bool flat = false;
+        for (std::size_t i = 0; i < chosen.size() && !stopped(); ++i) {
+            report(0.4 + 0.2 * static_cast<double>(i), "Polishing the emulating controller.");
+            const double before = best_value_;
+            const bool ended_flat = polish(point_at(chosen[i].x));
+            if (best_value_ < before) flat = ended_flat;
+        }
+        if (!flat && !stopped()) subplex();
+        best_.cost = criterion_.cost(controller_at(criterion_.problem(), best_.point), kFineTolerance);
+        best_.stopped = stopped();
+        return best_;
+    }
+
+private:
+    bool stopped() const { return control_.stop.stop_requested(); }
+    // With the best design so far, if there is one.
+    void report(double fraction, const char* message) const {
+        if (!control_.progress) return;
+        std::optional<BestSoFar> best;
+        if (!best_.point.empty())
+            best = best_so_far(*criterion_.problem().linear, controller_at(criterion_.problem(), best_.point));
+        control_.progress({fraction, "tune", message, best});
+    }
+    Point point_at(const std::vector<double>& q) const {
+        Point point(q.size());
+        for (std::size_t i = 0; i < q.size(); ++i) point[i] = scales_[i].from_unit(q[i]);
+        return point;
+    }
+    std::vector<double> units(const Point& point) const {
+        std::vector<double> q(point.size());
+        for (std::size_t i = 0; i < q.size(); ++i) q[i] = std::clamp(scales_[i].to_unit(point[i]), 0.0, 1.0);
+        return q;
+    }
+    double judged(const Point& point, double tolerance) const {
+        return criterion_.penalised(
+            criterion_.cost(controller_at(criterion_.problem(), point), tolerance, control_.stop));
+    }
+
+    std::vector<LocalMinimum> look_around() {
+        const auto f = [this](const std::vector<double>& q, bool& stop) {
+            stop = stopped();
+            return stop ? kNotLookedAt : std::log(judged(point_at(q), kCoarseTolerance) + 1e-300);
+        };
+        const std::size_t n = scales_.size();
+        report(0.1, "Looking for the emulating controller within the bounds.");
+        auto met = explore(f, {std::vector<double>(n, 0), std::vector<double>(n, 1)}, kExplored[n]);
+        for (LocalMinimum& point : met) point.value = std::exp(point.value);
+        return met;
+    }
+
+    std::vector<LocalMinimum> apart(const std::vector<LocalMinimum>& met) const {
+        std::vector<LocalMinimum> chosen;
+        for (const LocalMinimum& point : met) {
+            if (chosen.size() == kPolished) break;
+            const bool close = std::ranges::any_of(chosen, [&](const LocalMinimum& other) {
+                double distance = 0;
+                for (std::size_t i = 0; i < point.x.size(); ++i)
+                    distance = std::max(distance, std::abs(point.x[i] - other.x[i]));
+                return distance < kApart;
+            });
+            if (!close) chosen.push_back(point);
+        }
+        return chosen;
+    }
+
+    // Residuals and their derivatives by the unknowns, each relative to its own size there.
+    struct Slope {
+        std::vector<double> size, g, H;
+    };
+
+    std::optional<Slope> slope_at(const Point& point, const std::vector<double>& residuals) const {
+        const std::size_t n = point.size();
+        std::vector<std::vector<double>> columns(n);
+        Slope slope{std::vector<double>(n), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
+        for (std::size_t i = 0; i < n; ++i) {
+            slope.size[i] = std::max(std::abs(point[i]), kLeastSize * (bounds_.high[i] - bounds_.low[i]));
+            Point moved = point;
+            moved[i] += kDifference * slope.size[i];
+            if (stopped()) return std::nullopt;
+            const Cost cost = criterion_.cost(controller_at(criterion_.problem(), moved), kSearchTolerance,
+                                              control_.stop, columns[i]);
+            if (!cost.ended.empty() || columns[i].size() != residuals.size()) return std::nullopt;
+            for (std::size_t k = 0; k < residuals.size(); ++k)
+                columns[i][k] = (columns[i][k] - residuals[k]) / kDifference;
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t k = 0; k < residuals.size(); ++k) slope.g[i] += columns[i][k] * residuals[k];
+            for (std::size_t j = 0; j <= i; ++j) {
+                double sum = 0;
+                for (std::size_t k = 0; k < residuals.size(); ++k) sum += columns[i][k] * columns[j][k];
+                slope.H[i * n + j] = slope.H[j * n + i] = sum;
+            }
+        }
+        return slope;
+    }
+
+    // Levenberg and Marquardt's step inside the box.
+    Point stepped(const Point& point, const Slope& slope, double damping) const {
+        const std::size_t n = point.size();
+        std::vector<double> H = slope.H, low(n), high(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            H[i * n + i] *= 1 + damping;
+            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kLongestStep));
+            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kLongestStep));
+        }
+        const std::vector<double> d = best_step_in_box(H, slope.g, low, high);
+        Point next = point;
+        for (std::size_t i = 0; i < n; ++i) next[i] += d[i] * slope.size[i];
+        return clipped(next, bounds_);
+    }
+
+    // What the step should gain, relative to J.
+    static double expected_fall(const Point& from, const Point& to, const Slope& slope, double J) {
+        const std::size_t n = from.size();
+        double fall = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double d = (to[i] - from[i]) / slope.size[i];
+            fall -= 2 * slope.g[i] * d;
+            for (std::size_t j = 0; j < n; ++j) fall -= d * slope.H[i * n + j] * (to[j] - from[j]) / slope.size[j];
+        }
+        return fall / (J + 1e-300);
+    }
+
+    // Whether it ends where no step promises anything.
+    bool polish(Point point) {
+        std::vector<double> residuals, tried;
+        Cost cost =
+            criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop, residuals);
+        keep(point, cost);
+        if (!cost.ended.empty()) return false;
+        double damping = kFirstDamping;
+        for (int i = 0; i < kMostSteps; ++i) {
+            const auto slope = slope_at(point, residuals);
+            if (!slope) return false;
+            for (;;) {
+                if (stopped()) return false;
+                const Point next = stepped(point, *slope, damping);
+                const double fall = expected_fall(point, next, *slope, cost.J);
+                if (fall < kFlat) return damping < kConfident;
+                Cost there =
+                    criterion_.cost(controller_at(criterion_.problem(), next), kSearchTolerance, control_.stop, tried);
+                if (there.ended.empty() && there.J < cost.J) {
+                    point = next;
+                    cost = there;
+                    residuals.swap(tried);
+                    keep(point, cost);
+                    damping = std::max(kLeastDamping, damping / 10);
+                    break;
+                }
+                damping *= 10;
+                if (damping > kMostDamping) return false;
+            }
+        }
+        return false;
+    }
+
+    void keep(const Point& point, const Cost& cost) {
+        const double value = criterion_.penalised(cost);
+        if (value >= best_value_) return;
+        best_value_ = value;
+        best_.point = point;
+    }
+
+    // Where limits of the input bend J.
+    void subplex() {
+        const auto f = [this](const std::vector<double>& q, bool& stop) {
+            stop = stopped();
+            if (stop) return kNotLookedAt;
+            double outside = 0;
+            for (const double x : q) outside += std::max(0.0, -x) + std::max(0.0, x - 1);
+            const Point point = point_at(q);
+            const Cost cost =
+                criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop);
+            if (outside == 0) keep(point, cost);
+            return std::log(criterion_.penalised(cost) + 1e-300) + outside;
+        };
+        report(0.8, "Polishing the emulating controller.");
+        const std::size_t n = scales_.size();
+        find_local_minimum(LocalSearch::subplex, f, units(best_.point),
+                           {std::vector<double>(n, kSubplexStep), kSubplexTolerance, kSubplexEvaluations});
+    }
+
+    const Criterion& criterion_;
+    const Bounds& bounds_;
+    const RunControl& control_;
+    std::vector<Scale> scales_;
+    Optimum best_;
+    double best_value_ = HUGE_VAL;
+};
+
+}  // namespace
+
+std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds, const std::vector<Point>& starts,
+                                    const RunControl& control) {
+    return Search(criterion, bounds, control).run(starts);
+}
+
+}  // namespace tunewright::emulation

@@ -1,0 +1,25 @@
+// The second level's optimum within its bounds: a global look, then Gauss-Newton steps on the residuals.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/tuning/emulation/search/criterion.h"
+
+namespace tunewright::emulation {
+
+struct Optimum {
+    Point point;
+    Cost cost;
+    bool stopped = false;  ///< the best design so far
+};
+
+/// The least J: DIRECT over the box (NLopt) and `starts`, the best of them polished by bounded Levenberg-Marquardt
+/// steps, then by NLopt's subplex where those leave off before J is flat. Empty: stopped before anything was tried.
+std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds, const std::vector<Point>& starts,
+                                    const RunControl& control);
+
+/// Of the last simulations, for J as precise as the answer tells it.
+constexpr double kFineTolerance = 1e-9;
+
+}  // namespace tunewright::emulation

@@ -1,0 +1,60 @@
+#include "engine/tuning/method/first_order_rule.h"
+
+#include <optional>
+
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderRule& rule) {
+    if (model.integrators > 0) return {};
+    const double ratio = model.L / model.T1;
+    if (ratio >= rule.least && ratio <= rule.most) return {};
+    std::string range = "outside " + text(rule.least) + " to " + text(rule.most);
+    if (rule.least == 0) range = "above " + text(rule.most);
+    if (rule.most == std::numeric_limits<double>::infinity()) range = "below " + text(rule.least);
+    return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range in which " + rule.name +
+                             " holds. Check Ms, or use robust.")};
+}
+
+}  // namespace
+
+std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule) {
+    if (model.integrators == 1 && !rule.has_integrating_form)
+        return degenerate("plant", rule.name + " has no form for integrating plants.",
+                          "Use simc, lambda, amigo, ziegler_nichols_ultimate or robust.");
+    if (model.L <= 0)
+        return degenerate("plant/L", rule.name + " divides by the dead time, and that of the model is 0.",
+                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
+                          "a fixed filter Tf.");
+    if (model.integrators == 0 && model.T1 <= 0)
+        return degenerate("plant/T", rule.name + " needs a lag, and the model is a pure dead time (T = 0).",
+                          "Use amigo, improved_simc or robust.");
+    return std::nullopt;
+}
+
+Expected<TunedController> tune_first_order(const TuningProblem& problem, const MethodOptions& options,
+                                           const FirstOrderRule& rule,
+                                           const std::function<Pid(const ReducedModel&)>& settings) {
+    const auto model =
+        rule_model(problem, options, {.preferred = ReductionMethod::tangent, .tangent_time = rule.tangent_time});
+    if (!model) return model.error();
+    if (const auto error = unfit(*model, rule)) return *error;
+    Pid controller = settings(*model);
+    if (!(controller.Ti > 0))
+        return degenerate("plant",
+                          rule.name + " gives a negative integral time for L/T = " + text(model->L / model->T1) +
+                              ", far outside its range.",
+                          "Use simc, amigo or robust.");
+    controller.filter = chosen_filter(options, FilterType::derivative, controller.Td);
+    return rule_answer(problem, *model, controller, range_warnings(*model, rule));
+}
+
+std::vector<OptionDescription> with_first_order_options(std::vector<OptionDescription> own) {
+    own.push_back(reduction_option("tangent, half_rule where the step response has no tangent."));
+    own.push_back(filter_option("of the derivative part, Td s/(1 + s Tf); the source has none."));
+    return own;
+}
+
+}  // namespace tunewright

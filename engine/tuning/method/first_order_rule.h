@@ -1,0 +1,35 @@
+// What the rules on K e^(-Ls)/(T s + 1) share: the model, what they refuse, their range in L/T, the filter, the answer.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "engine/tuning/method/rule.h"
+
+namespace tunewright {
+
+struct FirstOrderRule {
+    std::string name;  ///< as sentences call it
+    double least = 0;  ///< range of L/T for which the source gives the rule
+    double most = std::numeric_limits<double>::infinity();
+    bool has_integrating_form = false;                      ///< also for K e^(-Ls)/s
+    TangentTime tangent_time = TangentTime::at_63_percent;  ///< T of the tangent that plants of other forms get
+};
+
+/// What such a rule refuses: L = 0, T = 0 and, without an integrating form, an integrator.
+std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule);
+
+/// `settings` on the model of the plant (by option `reduction`, tangent first), with a derivative filter by option
+/// `filter`. Warns "outside-validity" with L/T beyond the rule's range.
+/// Errors: those of reduce(); unsupported for L = 0, T = 0, a negative Ti and, without an integrating form, for
+/// integrating plants.
+Expected<TunedController> tune_first_order(const TuningProblem& problem, const MethodOptions& options,
+                                           const FirstOrderRule& rule,
+                                           const std::function<Pid(const ReducedModel&)>& settings);
+
+/// Options `reduction` and `filter` as every such rule has them.
+std::vector<OptionDescription> with_first_order_options(std::vector<OptionDescription> own);
+
+}  // namespace tunewright

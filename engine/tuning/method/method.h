@@ -1,0 +1,95 @@
+// What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/loop/ultimate_point.h"
+#include "engine/plant/frequency_response.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/uncertain/plant_family.h"
+#include "engine/progress.h"
+#include "engine/tuning/arrieta/arrieta_report.h"
+#include "engine/tuning/emulation/emulation_report.h"
+#include "engine/tuning/method/options.h"
+#include "engine/tuning/rimc/rimc_report.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+class NonlinearSystem;
+
+/// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j];
+/// empty: no feasible Kp.
+struct CostSurface {
+    std::vector<double> Ti, Td;
+    std::vector<std::vector<std::optional<double>>> cost;
+};
+
+struct TunedController {
+    Pid controller;
+    bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
+    std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
+    std::vector<Warning> warnings;
+    std::optional<CostSurface> surface;
+    std::optional<RimcReport> rimc;
+    std::optional<ArrietaReport> arrieta;
+    std::optional<EmulationReport> emulation;
+    bool partial = false;  ///< stopped early: the best feasible design so far
+};
+
+/// The controller that the method answers.
+inline Controller answered(const TunedController& tuned) {
+    const Pid& pid = tuned.controller;
+    if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
+    return pid;
+}
+
+/// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
+/// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits
+/// work on the nominal plant.
+struct TuningProblem {
+    Plant plant;
+    LinearPlant linear;
+    std::optional<double> dead_time_std;
+    std::optional<PlantFamily> family = {};
+    std::optional<UltimatePoint> relay_point = {};  ///< by the describing function of a recorded relay test
+    /// Where `linear` is only the linearisation of this plant, which lives as long as the problem; else null.
+    const NonlinearSystem* nonlinear = nullptr;
+};
+
+/// Options that make one row of a comparison of all methods.
+struct MethodVariant {
+    std::string name;  ///< e.g. "PI, servo, 20 %"
+    MethodOptions options;
+};
+
+struct TuningMethod {
+    std::string id;
+    std::string title;
+    std::string formula;   ///< readable as in the source, plain text
+    std::string source;    ///< author, year, where
+    std::string needs;     ///< "any linear plant", "fopdt (others are reduced)", ...
+    std::string validity;  ///< the range the source claims
+    std::vector<OptionDescription> options;
+    /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
+    /// integral action, or the defaults.
+    std::vector<MethodVariant> variants = {};
+    bool holds_family = false;      ///< limits hold on all of TuningProblem::family
+    bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
+    Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
+    /// For a plant known by measured points of its frequency response; null: the method needs a model.
+    Expected<TunedController> (*tune_on_points)(const MeasuredPlant&, const MethodOptions&,
+                                                const RunControl&) = nullptr;
+};
+
+/// Every method, in the order in which they are listed. The one place that names them all.
+const std::vector<TuningMethod>& method_registry();
+
+/// Null if there is none of this id.
+const TuningMethod* find_method(const std::string& id);
+
+}  // namespace tunewright

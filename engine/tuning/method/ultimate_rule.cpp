@@ -1,0 +1,82 @@
+#include "engine/tuning/method/ultimate_rule.h"
+
+#include "engine/loop/ultimate_point.h"
+
+namespace tunewright {
+namespace {
+
+Error wrong(const std::string& where, const std::string& sentence) {
+    return {ErrorKind::invalid_argument, where, sentence};
+}
+
+Expected<UltimatePoint> given_by_hand(const MethodOptions& options) {
+    const auto Ku = options.number("Ku"), Pu = options.number("Pu");
+    if (!Pu) return wrong("Pu", "Ku is given without Pu; give both, or neither.");
+    if (!Ku) return wrong("Ku", "Pu is given without Ku; give both, or neither.");
+    if (*Ku == 0)
+        return wrong(
+            "Ku", "Ku is 0; it must be the gain at which the loop oscillates (negative for a plant of negative gain).");
+    return UltimatePoint{*Ku, *Pu};
+}
+
+Error no_oscillation(const LinearPlant& plant) {
+    const std::string reason =
+        plant.unstable_poles() > 0
+            ? "The plant is unstable, and no proportional gain stabilises it."
+            : "No proportional gain makes this plant oscillate: its phase does not reach -180 degrees.";
+    return {ErrorKind::unsupported, "plant",
+            reason + " It has no ultimate point: use a rule on a step-response model (simc, lambda), or robust."};
+}
+
+}  // namespace
+
+std::vector<OptionDescription> with_ultimate_options(std::vector<OptionDescription> own,
+                                                     const std::string& filter_law) {
+    OptionDescription source;
+    source.name = "ultimate";
+    source.type = OptionType::choice;
+    source.sentence =
+        "Where Ku and Pu come from: model (computed from the plant, dead time exact) or relay (the describing "
+        "function's of a recorded relay test).";
+    source.default_value = std::string("model");
+    source.choices = {"model", "relay"};
+    OptionDescription Ku;
+    Ku.name = "Ku";
+    Ku.sentence = "Ultimate gain by hand, with Pu: the proportional gain at which the loop oscillates.";
+    Ku.unit = "u/y";
+    OptionDescription Pu;
+    Pu.name = "Pu";
+    Pu.sentence = "Period of that oscillation.";
+    Pu.unit = "time";
+    Pu.exclusive_minimum = 0;
+    own.insert(own.end(), {source, Ku, Pu, filter_option(filter_law)});
+    return own;
+}
+
+Expected<UltimatePoint> chosen_ultimate_point(const TuningProblem& problem, const MethodOptions& options) {
+    // Integral action cannot hold such a plant, whichever rule sets it: the reason is that of the reduction.
+    if (problem.linear.integrators() < 0) return reduce(problem.linear, {}).error();
+    if (options.has("Ku") || options.has("Pu")) return given_by_hand(options);
+    if (options.text("ultimate").value_or("model") == "relay") {
+        if (problem.relay_point) return *problem.relay_point;
+        return wrong("ultimate",
+                     "ultimate is relay, but there is no recorded relay test with a steady oscillation. Send one as "
+                     "record, give Ku and Pu, or take the model's.");
+    }
+    const auto point = ultimate_point(problem.linear);
+    if (!point) return no_oscillation(problem.linear);
+    return *point;
+}
+
+double gain_ratio(const LinearPlant& plant, const UltimatePoint& at) {
+    return plant.integrators() > 0 ? 0 : 1 / (plant.low_frequency_gain() * at.Ku);
+}
+
+std::vector<Warning> ultimate_warnings(const TuningProblem& problem) {
+    if (problem.linear.unstable_poles() == 0) return {};
+    return {outside_validity(
+        "The plant is unstable: it also needs a least gain, of which a rule that takes a share of Ku knows nothing. "
+        "Check that the loop is stable, or use robust.")};
+}
+
+}  // namespace tunewright

@@ -1,0 +1,88 @@
+#include "engine/tuning/model_based/gain_phase_margin.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/first_order_rule.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kGainMargin = 3, kPhaseMargin = 60;
+constexpr double pi = std::numbers::pi;
+
+struct Margins {
+    double gain = kGainMargin, phase_deg = kPhaseMargin;
+};
+
+SeriesPid settings(const ReducedModel& model, const Margins& margins) {
+    const double Am = margins.gain, phi = margins.phase_deg * pi / 180, L = model.L;
+    const double omega = (Am * phi + 0.5 * pi * Am * (Am - 1)) / ((Am * Am - 1) * L);
+    return {.Kp = omega * model.T1 / (Am * model.K),
+            .Ti = 1 / (2 * omega - 4 * omega * omega * L / pi + 1 / model.T1),
+            .Td = model.T2};
+}
+
+Error contradiction(const Margins& margins) {
+    return {ErrorKind::invalid_argument, "phase_margin_deg",
+            "A gain margin of " + text(margins.gain) + " with a phase margin of " + text(margins.phase_deg) +
+                " degrees needs a negative integral time on this model. Ask for a phase margin nearer to 90 (1 - "
+                "1/gain_margin) = " +
+                text(90 * (1 - 1 / margins.gain)) + " degrees."};
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const bool wants_PID = chosen_controller(options) == "PID";
+    const auto model = half_rule_model(problem, options);
+    if (!model) return model.error();
+    if (const auto error = unfit(*model, {.name = "Ho, Hang and Cao's rule"})) return *error;
+    const Margins margins{options.number("gain_margin").value_or(kGainMargin),
+                          options.number("phase_margin_deg").value_or(kPhaseMargin)};
+    const SeriesPid series = settings(*model, margins);
+    if (!(series.Ti > 0)) return contradiction(margins);
+
+    auto ideal = to_ideal(series);
+    if (!ideal) return ideal.error();
+    ideal->b = 1;
+    ideal->filter = chosen_filter(options, FilterType::derivative, ideal->Td);
+    std::vector<Warning> warnings;
+    if (wants_PID && series.Td == 0) warnings.push_back(no_second_lag());
+    return rule_answer(problem, *model, *ideal, std::move(warnings));
+}
+
+}  // namespace
+
+TuningMethod gain_phase_margin_method() {
+    OptionDescription gain;
+    gain.name = "gain_margin";
+    gain.sentence = "Gain margin wanted.";
+    gain.default_value = kGainMargin;
+    gain.exclusive_minimum = 1;
+    gain.maximum = 20;
+    OptionDescription phase;
+    phase.name = "phase_margin_deg";
+    phase.sentence = "Phase margin wanted, in degrees.";
+    phase.unit = "deg";
+    phase.default_value = kPhaseMargin;
+    phase.exclusive_minimum = 0;
+    phase.maximum = 89;
+
+    TuningMethod method;
+    method.id = "gain_phase_margin";
+    method.title = "Ho-Hang-Cao, gain and phase margin";
+    method.formula =
+        "omega_p = (Am phi + pi Am (Am - 1)/2)/((Am^2 - 1) L); series form: Kp = omega_p T1/(Am K), Ti = 1/(2 omega_p "
+        "- 4 omega_p^2 L/pi + 1/T1), Td = T2; answered in the ideal form";
+    method.source = "Ho, Hang and Cao, Automatica 31 (1995) 497-502";
+    method.needs = "fopdt for PI, sopdt for PID, T > 0, L > 0 (others are reduced)";
+    method.validity = "margins are met within some percent where L/T is below about 2";
+    method.options = {controller_option({"PI", "PID"}), gain, phase,
+                      reduction_option("half_rule; tangent (first order: PI) where that does not apply."),
+                      filter_option("of the derivative part of the ideal form, Td s/(1 + s Tf).")};
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

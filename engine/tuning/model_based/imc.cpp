@@ -1,0 +1,174 @@
+#include "engine/tuning/model_based/imc.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/rule.h"
+#include "engine/tuning/model_based/imc_terms.h"
+
+namespace tunewright {
+namespace {
+
+// K e^(-Ls)/(1 + n1 s + n2 s^2).
+struct Model {
+    double K = 0, n1 = 0, n2 = 0, L = 0;
+    bool second_order() const { return n2 > 0; }
+};
+
+// f = 1/(lambda s + 1)^n.
+struct ImcFilter {
+    double lambda = 0;
+    int n = 1;
+};
+
+double binomial(int n, int k) {
+    double value = 1;
+    for (int i = 0; i < k; ++i) value = value * (n - i) / (i + 1);
+    return value;
+}
+
+Pid by_maclaurin(const Model& model, const ImcFilter& f) {
+    std::array<double, 4> d{};
+    double power = 1, dead = 1;  // lambda^k and (-L)^k/k!
+    for (int k = 1; k <= 4; ++k) {
+        power *= f.lambda;
+        dead *= -model.L / k;
+        d[static_cast<std::size_t>(k - 1)] = (k <= f.n ? binomial(f.n, k) * power : 0) - dead;
+    }
+    return maclaurin_pid(imc_terms(model.K, model.n1, model.n2, d));
+}
+
+// (1 + a1 s + a2 s^2)/(K s (d0 + d1 s)): a PID with the filter time d1/d0.
+Pid by_pade(const Model& model, const ImcFilter& f) {
+    const double half = model.L / 2, lambda = f.lambda;
+    const double a1 = model.second_order() ? model.n1 : model.n1 + half;
+    const double a2 = model.second_order() ? model.n2 : model.n1 * half;
+    const double d0 = f.n * lambda + (model.second_order() ? model.L : half);
+    const double Tf = f.n == 2 ? lambda * lambda / d0 : 0;
+    const double Kp = (a1 - Tf) / (model.K * d0);
+    Pid pid{.Kp = Kp, .Ti = a1 - Tf, .Td = a2 / (a1 - Tf) - Tf};
+    if (Tf > 0) pid.filter = {FilterType::derivative, Tf};
+    return pid;
+}
+
+// A stable plant of two poles and no zero is its own model, oscillatory ones too.
+std::optional<Model> exact_second_order(const LinearPlant& plant) {
+    if (plant.poles().size() != 2 || plant.integrators() != 0 || !plant.zeros().empty()) return std::nullopt;
+    const auto p = plant.poles()[0], q = plant.poles()[1];
+    if (!(p.real() < 0) || !(q.real() < 0)) return std::nullopt;
+    const double product = (p * q).real();
+    return Model{plant.low_frequency_gain(), -(p + q).real() / product, 1 / product, plant.dead_time()};
+}
+
+std::optional<Error> unfit(const ReducedModel& model) {
+    if (model.integrators == 0) return std::nullopt;
+    return degenerate(
+        "plant",
+        "This plant integrates: a constant load at its input would not be taken back by this controller's "
+        "filter.",
+        "Use simc, lambda, amigo or robust.");
+}
+
+Error no_pid(const Pid& pid, const ImcFilter& f) {
+    const bool is_default_order = f.n == 1;
+    return {ErrorKind::no_feasible_controller, "lambda",
+            "lambda = " + text(f.lambda) + " with filter_order " + std::to_string(f.n) + " gives Kp = " + text(pid.Kp) +
+                ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +
+                ", which is no PID with the sign of the plant's gain and Td >= 0. Give a smaller lambda" +
+                (is_default_order ? "." : ", or filter_order 1.")};
+}
+
+Expected<ReducedModel> model_of(const TuningProblem& problem, const MethodOptions& options, bool& exact) {
+    exact = exact_second_order(problem.linear).has_value();
+    if (exact) {
+        ReducedModel as_given;
+        as_given.exact = true;
+        return as_given;
+    }
+    return rule_model(problem, options, {.order = ReducedOrder::second, .preferred = ReductionMethod::half_rule});
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    bool exact = false;
+    const auto reduced = model_of(problem, options, exact);
+    if (!reduced) return reduced.error();
+    if (const auto error = unfit(*reduced)) return *error;
+    const Model model = exact ? *exact_second_order(problem.linear)
+                              : Model{reduced->K, reduced->T1 + reduced->T2, reduced->T1 * reduced->T2, reduced->L};
+    const ImcFilter f{.lambda = options.number("lambda").value_or(std::max(model.L, 0.1 * model.n1)),
+                      .n = static_cast<int>(options.number("filter_order").value_or(model.second_order() ? 2 : 1))};
+    if (!(f.lambda > 0))
+        return degenerate("plant/L", "The default lambda is the dead time, and the model has none.",
+                          "Give lambda, the closed-loop time constant that you want.");
+    const bool pade = options.text("expansion").value_or("maclaurin") == "pade";
+    Pid pid = pade ? by_pade(model, f) : by_maclaurin(model, f);
+    if (!(model.K * pid.Kp > 0) || !(pid.Ti > 0) || !(pid.Td >= 0)) return no_pid(pid, f);
+    const bool own_filter = pid.filter.type != FilterType::none;
+    if (own_filter && options.has("filter/Tf") + options.has("filter/Tf_over_Td") > 0)
+        return Error{ErrorKind::invalid_argument, "filter",
+                     "The pade expansion with filter_order 2 has its own filter time. Leave filter out, or use "
+                     "filter_order 1."};
+    if (!own_filter) pid.filter = chosen_filter(options, FilterType::derivative, pid.Td);
+    if (pid.Td == 0) pid.filter = {};
+
+    std::vector<Warning> warnings;
+    const double least = std::max(0.25 * model.L, 0.02 * model.n1);
+    if (f.lambda < least)
+        warnings.push_back(outside_validity("lambda = " + text(f.lambda) + " is below " + text(least) +
+                                            ": the PID no longer follows the controller that it approximates. Give a "
+                                            "larger lambda."));
+    auto answer = rule_answer(problem, *reduced, pid, std::move(warnings));
+    if (answer && exact) answer->reduced_model.reset();
+    return answer;
+}
+
+}  // namespace
+
+TuningMethod imc_method() {
+    OptionDescription lambda;
+    lambda.name = "lambda";
+    lambda.sentence =
+        "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. Default: the "
+        "larger of the dead time and a tenth of the lags.";
+    lambda.unit = "time";
+    lambda.exclusive_minimum = 0;
+    OptionDescription order;
+    order.name = "filter_order";
+    order.type = OptionType::integer;
+    order.sentence = "n of that filter, 1 or 2. Default: the model's order.";
+    order.minimum = 1;
+    order.maximum = 2;
+    OptionDescription expansion;
+    expansion.name = "expansion";
+    expansion.type = OptionType::choice;
+    expansion.sentence =
+        "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time replaced by "
+        "a "
+        "fraction first (1/1 on a first-order model, 1 - L s on a second-order one).";
+    expansion.default_value = std::string("maclaurin");
+    expansion.choices = {"maclaurin", "pade"};
+
+    TuningMethod method;
+    method.id = "imc";
+    method.title = "Internal model control";
+    method.formula =
+        "model K e^(-L s)/(1 + n1 s + n2 s^2); maclaurin: d_k = C(n, k+1) lambda^(k+1) - (-L)^(k+1)/(k+1)!, Ki = 1/(K "
+        "d0), "
+        "Kp = (n1 - d1/d0)/(K d0), Kd = (n2/K - d1 Kp - d2 Ki)/d0; "
+        "pade, first order, n = 1: Kp = (2 T + L)/(K (2 lambda + L)), Ti = T + L/2, Td = T L/(2 T + L); "
+        "second order, n = 1: Kp = n1/(K (lambda + L)), Ti = n1, Td = n2/n1";
+    method.source =
+        "Rivera, Morari and Skogestad, Ind. Eng. Chem. Process Des. Dev. 25 (1986) 252-265; Morari and Zafiriou, "
+        "Robust "
+        "Process Control (1989); Maclaurin: Liu and Gao, IFAC World Congress (2008)";
+    method.needs = "fopdt or stable sopdt, also oscillatory (others are reduced)";
+    method.validity = "lambda above about 0.25 L; loads are slow to be taken back where a lag is long";
+    method.options = {lambda, order, expansion,
+                      reduction_option("half_rule; tangent (first order) where that does not apply."),
+                      filter_option("of the derivative part, Td s/(1 + s Tf).")};
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

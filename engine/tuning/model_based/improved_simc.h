@@ -1,0 +1,14 @@
+// Grimholt and Skogestad's improvement of SIMC for plants with much dead time.
+#pragma once
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+/// PI: SIMC with T + L/3 in place of T. PID: SIMC's PI settings with a series derivative time L/3, answered in the
+/// ideal form. On a first-order model (half rule), also integrating, also a pure dead time. Option tau_c, default L for
+/// PI, L/2 for PID. Sources: Grimholt & Skogestad, IFAC Conf. Advances in PID Control (2012) for PI; J. Process Control
+/// 70 (2018) 36-46 for PID.
+TuningMethod improved_simc_method();
+
+}  // namespace tunewright

@@ -1,0 +1,97 @@
+#include "engine/tuning/model_based/lambda.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/rule.h"
+
+namespace tunewright {
+namespace {
+
+double default_lambda(const ReducedModel& model) {
+    return model.integrators == 1 ? std::sqrt(10.0) * model.L : std::max(model.T1, model.L);
+}
+
+Pid pi(const ReducedModel& model, double lambda) {
+    const double K = model.K, T = model.T1, L = model.L;
+    if (model.integrators == 1) return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L, 2)), .Ti = 2 * lambda + L};
+    return {.Kp = T / (K * (lambda + L)), .Ti = T};
+}
+
+Pid pid(const ReducedModel& model, double lambda) {
+    const double K = model.K, T = model.T1, L = model.L;
+    if (model.integrators == 1)
+        return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L / 2, 2)),
+                .Ti = 2 * lambda + L,
+                .Td = (lambda * L + L * L / 4) / (2 * lambda + L)};
+    return {.Kp = (2 * T + L) / (K * (2 * lambda + L)), .Ti = T + L / 2, .Td = T * L / (2 * T + L)};
+}
+
+// Rivera et al.'s limits on lambda: those of their PI hold for lambda + L in the form used here.
+std::vector<Warning> remarks(const ReducedModel& model, double lambda, bool wants_PID) {
+    if (model.integrators == 1) {
+        if (lambda >= model.L) return {};
+        return {outside_validity("lambda = " + text(lambda) + " is below the dead time L = " + text(model.L) +
+                                 ": the loop will be oscillatory. Give a larger lambda.")};
+    }
+    const double least =
+        wants_PID ? std::max(0.8 * model.L, 0.1 * model.T1) : std::max(0.7 * model.L, 0.2 * model.T1 - model.L);
+    if (lambda >= least) return {};
+    return {outside_validity("lambda = " + text(lambda) + " is below " + text(least) +
+                             ", the least that the source recommends for this model. Give a larger lambda.")};
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
+    if (!model) return model.error();
+    if (model->integrators == 0 && model->T1 <= 0)
+        return degenerate("plant/T", "Lambda tuning sets Ti = T, and the model is a pure dead time (T = 0).",
+                          "Use amigo or robust.");
+    const double lambda = options.number("lambda").value_or(default_lambda(*model));
+    if (lambda <= 0)
+        return degenerate("plant/L",
+                          "The default lambda of an integrating plant is a multiple of its dead time, which is 0.",
+                          "Give lambda, the closed-loop time constant that you want.");
+
+    const bool wants_PID = chosen_controller(options) == "PID";
+    Pid controller = wants_PID ? pid(*model, lambda) : pi(*model, lambda);
+    controller.filter = chosen_filter(options, FilterType::derivative, controller.Td);
+    return rule_answer(problem, *model, controller, remarks(*model, lambda, wants_PID));
+}
+
+}  // namespace
+
+TuningMethod lambda_method() {
+    OptionDescription lambda;
+    lambda.name = "lambda";
+    lambda.sentence =
+        "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.";
+    lambda.unit = "time";
+    lambda.exclusive_minimum = 0;
+
+    TuningMethod method;
+    method.id = "lambda";
+    method.title = "Lambda tuning";
+    method.formula =
+        "PI: Kp = T/(K (lambda + L)), Ti = T; PID: Kp = (2 T + L)/(K (2 lambda + L)), Ti = T + L/2, Td = T L/(2 T + "
+        "L); "
+        "integrating PI: Kp = (2 lambda + L)/(K (lambda + L)^2), Ti = 2 lambda + L; "
+        "integrating PID: Kp = (2 lambda + L)/(K (lambda + L/2)^2), Ti = 2 lambda + L, Td = (lambda L + L^2/4)/(2 "
+        "lambda + L)";
+    method.source =
+        "Rivera, Morari and Skogestad, Ind. Eng. Chem. Process Des. Dev. 25 (1986) 252-265; Åström and Hägglund, "
+        "Advanced PID Control (2006), section 6.5; "
+        "integrating: Chien and Fruehauf, Chem. Eng. Prog. 86 (1990) 33-41";
+    method.needs = "fopdt with T > 0 or ipdt (others are reduced)";
+    method.validity =
+        "PID: lambda above 0.8 L and 0.1 T; PI: lambda above 0.7 L and lambda + L above 0.2 T; integrating: lambda "
+        "above L";
+    method.options = {controller_option({"PI", "PID"}), lambda,
+                      reduction_option("tangent, half_rule where the step response has no tangent."),
+                      filter_option("of the derivative part, Td s/(1 + s Tf).")};
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

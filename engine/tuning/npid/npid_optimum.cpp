@@ -1,0 +1,194 @@
+#include "engine/tuning/npid/npid_optimum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "engine/loop/stability.h"
+#include "engine/loop/ultimate_point.h"
+#include "engine/number_text.h"
+#include "engine/numerics/global_minimum.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/nonlinear/npid_response.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kNoLoop = 50;         // ln(cost/scale) of what is no stable loop
+constexpr double kMostNeutral = 0.98;  // of |L(infinity)|: beyond it echoes hardly fade
+constexpr int kExplored = 500;         // points of the global search
+constexpr int kStarts = 3;             // of local searches from it
+constexpr double kApart = 0.5;         // of two starts, in ln
+constexpr int kLocalEvaluations = 260;
+constexpr int kPolishes = 8;
+constexpr double kPolished = 2e-5;  // gain in ln at which they end
+constexpr int kExpected = kExplored + (kStarts + 2) * kLocalEvaluations;
+constexpr int kReportEvery = 50;
+constexpr double kNearBound = 1e-3;  // in ln
+constexpr int kMostSteps = 4000;     // of a response; what has not settled then is no candidate
+
+class Search {
+public:
+    Search(const NpidProblem& problem, const UltimatePoint& ultimate, const RunControl& control)
+        : problem_(problem), control_(control), sign_(ultimate.Ku < 0 ? -1 : 1) {
+        const double Ku = std::abs(ultimate.Ku), Pu = ultimate.Pu;
+        double lags = 0;
+        for (const auto pole : problem.plant.poles()) lags += 1 / std::abs(pole);
+        with_derivative_ = problem.plant.pole_excess() > 0 || problem.Tf_over_Td > 0 || problem.Tf;
+        box_.low = {std::log(0.02 * Ku), std::log(0.05 * Pu)};
+        box_.high = {std::log(10 * Ku), std::log(20 * (Pu + lags))};
+        if (with_derivative_) {
+            box_.low.push_back(std::log(2e-3 * Pu));
+            box_.high.push_back(std::log(Pu + lags));
+        }
+        time_ = Pu;
+    }
+
+    Expected<NpidOptimum> run() {
+        const auto f = [this](const std::vector<double>& x, bool& stop) { return log_cost(x, stop); };
+        std::vector<LocalMinimum> starts = apart(explore(f, box_, kExplored));
+        if (problem_.start) starts.push_back({logs(*problem_.start), 0});
+        const LocalOptions wide{std::vector<double>(box_.low.size(), 0.15), 1e-5, kLocalEvaluations};
+        for (const auto& start : starts)
+            if (!stopped_) find_local_minimum(LocalSearch::subplex, f, start.x, wide);
+        if (!(best_.value < kNoLoop)) return nothing_found();
+        fine_ = true;
+        polish(f);
+        return answer();
+    }
+
+private:
+    /// From the best point with finer responses, again and again: the valleys are narrow and bent where the plant's lag
+    /// is long against its dead time.
+    void polish(const std::function<double(const std::vector<double>&, bool&)>& f) {
+        const LocalOptions narrow{std::vector<double>(box_.low.size(), 0.03), 1e-7, kLocalEvaluations};
+        best_.value = kNoLoop;  // of the coarser responses
+        for (int i = 0; i < kPolishes && !stopped_; ++i) {
+            const double before = best_.value;
+            find_local_minimum(i % 2 == 0 ? LocalSearch::subplex : LocalSearch::nelder_mead, f,
+                               std::vector<double>(best_.x), narrow);
+            if (i > 0 && before - best_.value < kPolished) break;
+        }
+    }
+
+    Pid controller(const std::vector<double>& x) const {
+        Pid pid{.Kp = sign_ * std::exp(x[0]), .Ti = std::exp(x[1])};
+        if (!with_derivative_) return pid;
+        pid.Td = std::exp(x[2]);
+        const double Tf = problem_.Tf.value_or(problem_.Tf_over_Td * pid.Td);
+        if (Tf > 0) pid.filter = {FilterType::derivative, Tf};
+        return pid;
+    }
+
+    std::vector<double> logs(const Pid& pid) const {
+        std::vector<double> x = {std::log(std::abs(pid.Kp)), std::log(pid.Ti)};
+        if (with_derivative_) x.push_back(std::log(pid.Td > 0 ? pid.Td : std::exp(box_.low[2])));
+        return x;
+    }
+
+    double log_cost(const std::vector<double>& x, bool& stop) {
+        ++evaluations_;
+        if (control_.stop.stop_requested()) {
+            stop = stopped_ = true;
+            return kNoLoop;
+        }
+        if (control_.progress && evaluations_ % kReportEvery == 0)
+            control_.progress({std::min(1.0, double(evaluations_) / kExpected), "tune",
+                               "Searching the nonlinear PID's optimum.", std::nullopt});
+        const double value = within(x) ? cost(controller(x)) : kNoLoop;
+        if (value < best_.value) best_ = {x, value};
+        return value;
+    }
+
+    bool within(const std::vector<double>& x) const {
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (!(x[i] >= box_.low[i] - 1e-9 && x[i] <= box_.high[i] + 1e-9)) return false;
+        return true;
+    }
+
+    /// ln of the criterion, time in periods; kNoLoop where the response does not settle.
+    double cost(const Pid& pid) const {
+        const auto loop = Loop::make(problem_.plant, to_parallel(pid));
+        if (!loop) return kNoLoop;
+        if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMostNeutral) return kNoLoop;
+        ResponseOptions options;
+        options.tolerance = fine_ ? 1e-6 : 1e-4;
+        options.settled = fine_ ? 1e-8 : 1e-6;
+        options.max_steps = kMostSteps;
+        const LinearResponse response = simulate_npid(problem_.plant, loop->gains(), 1, {1, 0}, options);
+        if (!response.settles) return kNoLoop;
+        const auto e = error_integrals(response.nodes, 1, response.error_integral_final);
+        const double value = problem_.criterion == ErrorCriterion::ISE   ? e.ISE / time_
+                             : problem_.criterion == ErrorCriterion::IAE ? e.IAE / time_
+                                                                         : e.ITAE / (time_ * time_);
+        const double log_value = std::log(value);
+        return std::isfinite(log_value) ? std::min(log_value, kNoLoop) : kNoLoop;
+    }
+
+    /// The best points that are not close to better ones.
+    static std::vector<LocalMinimum> apart(std::vector<LocalMinimum> met) {
+        std::ranges::stable_sort(met, {}, &LocalMinimum::value);
+        std::vector<LocalMinimum> chosen;
+        for (const auto& point : met) {
+            if (point.value >= kNoLoop || chosen.size() == kStarts) break;
+            const auto close = [&](const LocalMinimum& other) {
+                double distance = 0;
+                for (std::size_t i = 0; i < point.x.size(); ++i)
+                    distance = std::max(distance, std::abs(point.x[i] - other.x[i]));
+                return distance < kApart;
+            };
+            if (std::ranges::none_of(chosen, close)) chosen.push_back(point);
+        }
+        return chosen;
+    }
+
+    Error nothing_found() const {
+        if (stopped_) return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."};
+        return {ErrorKind::no_feasible_controller, "plant",
+                "No nonlinear PID was found whose set-point response settles on this plant. Use robust."};
+    }
+
+    Expected<NpidOptimum> answer() const {
+        NpidOptimum optimum;
+        optimum.controller = controller(best_.x);
+        const double scale = problem_.criterion == ErrorCriterion::ITAE ? time_ * time_ : time_;
+        optimum.cost = scale * std::exp(best_.value);
+        optimum.stopped = stopped_;
+        // The lower bound of Td is a PI, as good as any.
+        for (std::size_t i = 0; i < best_.x.size(); ++i)
+            if ((i < 2 && best_.x[i] < box_.low[i] + kNearBound) || best_.x[i] > box_.high[i] - kNearBound)
+                optimum.at_bound = true;
+        const auto loop = Loop::make(problem_.plant, to_parallel(optimum.controller));
+        if (!loop || !count_unstable_poles(*loop).stable()) return nothing_found();
+        return optimum;
+    }
+
+    const NpidProblem& problem_;
+    const RunControl& control_;
+    double sign_ = 1, time_ = 1;
+    bool with_derivative_ = true, fine_ = false, stopped_ = false;
+    Box box_;
+    LocalMinimum best_{{}, kNoLoop};
+    int evaluations_ = 0;
+};
+
+}  // namespace
+
+Expected<NpidOptimum> find_npid_optimum(const NpidProblem& problem, const RunControl& control) {
+    const LinearPlant& plant = problem.plant;
+    if (plant.dead_time() == 0 && plant.pole_excess() <= 2)
+        return Error{ErrorKind::unbounded_optimum, "plant/L",
+                     "Without a dead time and with a pole excess of " + text(plant.pole_excess()) +
+                         " ever higher gains give ever smaller errors: there is no optimum. Give the loop's true dead "
+                         "time, or use robust, which limits Ms."};
+    const auto ultimate = ultimate_point(plant);
+    if (!ultimate)
+        return Error{ErrorKind::unsupported, "plant",
+                     "The plant has no ultimate gain, in whose units the optimum is searched: no proportional gain "
+                     "brings it to the edge of stability. Use robust."};
+    return Search(problem, *ultimate, control).run();
+}
+
+}  // namespace tunewright

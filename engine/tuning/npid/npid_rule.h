@@ -1,0 +1,17 @@
+// Jin and Son's tuning rules for the nonlinear PID, and its optimum for the plant at hand.
+#pragma once
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+/// K Kp = a1 q^b1, Ti/T = a2 + b2 q, Td/T = a3 q^b3 with q = L/T: fits to optima of ISE, IAE, ITAE after a set-point
+/// step on an FOPDT model, 0.01 <= q <= 3. The source's Table 2 holds up to q = 0.9, Table 3 from 1; in between, which
+/// the source leaves open, Table 3 costs less. No filter, as in the source; the derivative does not act on the set
+/// point. With "optimise": true the plant's own optimum (npid_optimum.h).
+/// Source: Jin & Son, Studies in Informatics and Control 28 (2019) 157-166, Tables 2 and 3.
+TuningMethod npid_ise_method();
+TuningMethod npid_iae_method();
+TuningMethod npid_itae_method();
+
+}  // namespace tunewright

@@ -1,0 +1,73 @@
+#include "engine/tuning/reaction_curve/amigo.h"
+
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/rule.h"
+
+namespace tunewright {
+namespace {
+
+Pid pi(const ReducedModel& model) {
+    const double K = model.K, T = model.T1, L = model.L;
+    if (model.integrators == 1) return {.Kp = 0.35 / (K * L), .Ti = 13.4 * L};
+    return {.Kp = (0.15 + (0.35 - L * T / std::pow(L + T, 2)) * T / L) / K,
+            .Ti = 0.35 * L + 13 * L * T * T / (T * T + 12 * L * T + 7 * L * L)};
+}
+
+Pid pid(const ReducedModel& model) {
+    const double K = model.K, T = model.T1, L = model.L;
+    if (model.integrators == 1) return {.Kp = 0.45 / (K * L), .Ti = 8 * L, .Td = 0.5 * L, .b = 0};
+    return {.Kp = (0.2 + 0.45 * T / L) / K,
+            .Ti = L * (0.4 * L + 0.8 * T) / (L + 0.1 * T),
+            .Td = 0.5 * L * T / (0.3 * L + T),
+            .b = normalised_dead_time(model) <= 0.5 ? 0.0 : 1.0};
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
+    if (!model) return model.error();
+    if (model->L <= 0)
+        return degenerate("plant/L", "AMIGO divides by the dead time, and that of the model is 0.",
+                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
+                          "a fixed filter Tf.");
+
+    const bool wants_PID = chosen_controller(options) == "PID";
+    Pid controller = wants_PID ? pid(*model) : pi(*model);
+    controller.filter = chosen_filter(options, FilterType::measurement_second_order, controller.Td);
+
+    std::vector<Warning> warnings;
+    const double tau = normalised_dead_time(*model);
+    if (wants_PID && tau < 0.3)
+        warnings.push_back(
+            outside_validity("L/(L + T) is " + text(tau) +
+                             ", below 0.3: with so little dead time a first-order model says too little about "
+                             "the plant and AMIGO's PID is conservative. Robust can do better."));
+    return rule_answer(problem, *model, controller, std::move(warnings));
+}
+
+}  // namespace
+
+TuningMethod amigo_method() {
+    TuningMethod method;
+    method.id = "amigo";
+    method.title = "AMIGO";
+    method.formula =
+        "PI: Kp = 0.15/K + (0.35 - L T/(L + T)^2) T/(K L), Ti = 0.35 L + 13 L T^2/(T^2 + 12 L T + 7 L^2); "
+        "PID: Kp = (0.2 + 0.45 T/L)/K, Ti = L (0.4 L + 0.8 T)/(L + 0.1 T), Td = 0.5 L T/(0.3 L + T); "
+        "integrating PI: Kp = 0.35/(K L), Ti = 13.4 L; integrating PID: Kp = 0.45/(K L), Ti = 8 L, Td = 0.5 L. "
+        "PID: b = 0 for L/(L + T) <= 0.5, else 1";
+    method.source =
+        "Hägglund and Åström, J. Process Control 14 (2004) 635-650; PI: Asian J. Control 4 (2002) 364-380; Advanced "
+        "PID Control (2006), chapter 7";
+    method.needs = "fopdt or ipdt with L > 0 (others are reduced)";
+    method.validity =
+        "plants with an essentially monotone step response; the PID rule is conservative for L/(L + T) below 0.3";
+    method.options = {controller_option({"PI", "PID"}),
+                      reduction_option("tangent, as in the source; half_rule where the step response has no tangent."),
+                      filter_option("second order on the measurement, as in the source.")};
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

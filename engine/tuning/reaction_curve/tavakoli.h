@@ -1,0 +1,16 @@
+// Tavakoli and Tavakoli's PID for set-point steps, by dimensional analysis.
+#pragma once
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+/// PID with the least ISE, IAE or ITAE of a set-point step on a first-order model with dead time, in q = L/T. In the
+/// only table that we know (Jin & Son 2019, Table 1) the columns headed Ti/tau and Td/tau hold Ti/L and Td/L: only so
+/// do its nine published settings follow. Those have a pure derivative: filter {"Tf_over_Td": 0}. Source: Tavakoli &
+/// Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946.
+TuningMethod tavakoli_ise_method();
+TuningMethod tavakoli_iae_method();
+TuningMethod tavakoli_itae_method();
+
+}  // namespace tunewright

@@ -1,0 +1,13 @@
+// Wang, Juang and Chan's PID for set-point steps.
+#pragma once
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+/// PID with the least ITAE of a set-point step on a first-order model with dead time, Ti and Td those of an internal
+/// model controller; for L/T from 0.05 to 6. Source: Wang, Juang & Chan, Chem. Eng. Communications 132 (1995)
+/// 15-34.
+TuningMethod wang_juang_chan_method();
+
+}  // namespace tunewright

@@ -1,0 +1,13 @@
+// Ziegler and Nichols' step-response rules: the classic, for comparison.
+#pragma once
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+/// P, PI and PID from the tangent at the steepest point: a = K L/T with T = K/slope (the reaction curve's own
+/// construction, not the 63 % time). Aims at quarter-amplitude damping: Ms is typically above 2. PID filter:
+/// derivative, Tf = Td/10 (the source has none). Source: Ziegler & Nichols, Trans. ASME 64 (1942) 759-768.
+TuningMethod ziegler_nichols_step_method();
+
+}  // namespace tunewright

@@ -1,0 +1,238 @@
+#include "engine/tuning/rimc/rimc.h"
+
+#include <array>
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/rule.h"
+#include "engine/tuning/rimc/rimc_branch.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kNearLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
+constexpr double kSlow = 2;          // L/T up to which the source has results
+constexpr int kCurvePoints = 60;
+constexpr std::array kTargets = {"lambda", "Ms", "disturbance_peak", "dead_time_error"};
+
+RimcFilter filter_of(const MethodOptions& options) {
+    return {.linear_fraction = options.text("approximation").value_or("maclaurin") == "linear_fractional",
+            .Tf_over_Td = options.number("Tf_over_Td").value_or(RimcFilter{}.Tf_over_Td)};
+}
+
+std::optional<Error> contradictory(const MethodOptions& options) {
+    const char* first = nullptr;
+    for (const char* name : kTargets) {
+        if (!options.has(name)) continue;
+        if (first)
+            return Error{ErrorKind::invalid_argument, name,
+                         std::string(first) + " and " + name +
+                             " are both given; lambda follows from one of lambda, Ms, disturbance_peak and "
+                             "dead_time_error. Give one of them."};
+        first = name;
+    }
+    if (options.has("Tf_over_Td") && filter_of(options).linear_fraction)
+        return Error{ErrorKind::invalid_argument, "Tf_over_Td",
+                     "The linear fractional approximation has its own filter time. Leave Tf_over_Td out, or use the "
+                     "approximation maclaurin."};
+    return std::nullopt;
+}
+
+std::optional<Error> unfit(const ReducedModel& model) {
+    if (model.integrators > 0)
+        return degenerate("plant",
+                          "The revised IMC design cancels a slow, stable pole, and this plant integrates: with T going "
+                          "to infinity its filter zero has no meaning.",
+                          "Use simc, amigo, lambda or robust.");
+    if (model.T1 <= 0)
+        return degenerate("plant/T",
+                          "The revised IMC design cancels the model's time constant, and the model is a pure dead time "
+                          "(T = 0).",
+                          "Use imc, amigo or robust.");
+    return std::nullopt;
+}
+
+Error inadmissible(double lambda, const RimcBranch& branch) {
+    const auto [low, high] = branch.admissible();
+    return {ErrorKind::no_feasible_controller, "lambda",
+            "lambda is " + text(lambda) + "; a PID with K Kp > 0 and Td >= 0" +
+                (low > 0 ? " and a filter time > 0" : "") + " comes out for lambda " +
+                (low > 0 ? "from " + text(low) + " to " : "up to ") + text(high) +
+                " on this model. Give one in that range."};
+}
+
+Expected<double> chosen_lambda(const MethodOptions& options, const Fopdt& model, const RimcBranch& branch) {
+    if (const auto Ms = options.number("Ms")) return branch.lambda_for_Ms(*Ms);
+    if (const auto error = options.number("dead_time_error")) return branch.lambda_for_dead_time_error(*error);
+    if (const auto peak = options.number("disturbance_peak")) {
+        if (*peak * model.K > 0 || *peak > 0) return branch.lambda_for_disturbance_peak(*peak);
+        return Error{
+            ErrorKind::invalid_argument, "disturbance_peak",
+            "disturbance_peak is " + text(*peak) +
+                "; it must not be 0, and negative only where the plant's gain is. Give the size of y's largest "
+                "deviation per unit of load."};
+    }
+    const double lambda = options.number("lambda").value_or(model.T);
+    const auto [low, high] = branch.admissible();
+    if (lambda > high || lambda <= low) return inadmissible(lambda, branch);
+    return lambda;
+}
+
+RimcReport report_on(const Fopdt& model, double lambda, const RimcBranch& branch, const MethodOptions& options) {
+    RimcReport report;
+    report.full_controller = rimc_controller(model, lambda);
+    report.Ms = branch.Ms(lambda);
+    report.disturbance_peak = branch.disturbance_peak(lambda);
+    report.dead_time_error = branch.dead_time_error(lambda);
+    report.stability_limit = branch.stability_limit();
+    if (report.dead_time_error && options.has("dead_time_error"))
+        report.dead_time_error = options.number("dead_time_error");
+    for (const char* name : {"Ms", "disturbance_peak", "dead_time_error"})
+        report.why_null[name] = "With this lambda the PID does not stabilise the model that it was designed for.";
+    report.why_null["stability_limit"] = "No lambda that was looked at is at the limit of stability on the model.";
+    if (options.boolean("curve").value_or(false)) report.curve = branch.curve(kCurvePoints);
+    return report;
+}
+
+void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, double lambda, const RimcBranch& branch) {
+    const auto limit = branch.stability_limit();
+    const std::string figures = limit ? "lambda/T is " + text(lambda / model.T) +
+                                            ", and the limit of stability on the model is " + text(*limit / model.T) +
+                                            ". "
+                                      : "";
+    if (!branch.branch())
+        warnings.push_back({"unstable-model-loop", "No lambda gives a PID that stabilises the model with L/T = " +
+                                                       text(model.L / model.T) + ". Use robust."});
+    else if (limit && lambda < *limit)
+        warnings.push_back({"unstable-model-loop",
+                            figures + "The loop is unstable on the model; if it is stable on the plant, that is by the "
+                                      "model's error. Give a larger lambda."});
+    else if (limit && lambda < kNearLimit * *limit)
+        warnings.push_back({"near-stability-limit", figures + "A small error of the model may make the loop unstable. "
+                                                              "Give a larger lambda, or an Ms in its place."});
+    if (branch.branch() && lambda > branch.branch()->high * (1 + 1e-6))
+        warnings.push_back(outside_validity("lambda = " + text(lambda) + " is beyond " + text(branch.branch()->high) +
+                                            ", where Ms is least (" + text(branch.least_Ms()) +
+                                            "): the response is slower without being more robust."));
+}
+
+std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch& branch,
+                             const MethodOptions& options) {
+    std::vector<Warning> warnings;
+    warn_of_stability(warnings, model, lambda, branch);
+    if (model.L > kSlow * model.T)
+        warnings.push_back(outside_validity("L/T is " + text(model.L / model.T) +
+                                            ": the design is for plants with a slow time constant; with a dead time "
+                                            "beyond 2 T it gains little and its PID follows the design badly."));
+    if (options.has("dead_time_error")) {
+        const double asked = *options.number("dead_time_error"), all = branch.dead_time_error(lambda).value_or(0);
+        if (all < asked * (1 - 1e-6))
+            warnings.push_back({"smaller-errors-too",
+                                "Eq. 29 holds for the error " + text(asked) +
+                                    ", but not for all smaller ones: for "
+                                    "every error only up to " +
+                                    text(all) +
+                                    ". It is a sufficient condition; delay_margin is exact for later dead times."});
+    }
+    return warnings;
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    if (const auto error = contradictory(options)) return *error;
+    const auto reduced = rule_model(problem, options, {.preferred = ReductionMethod::half_rule});
+    if (!reduced) return reduced.error();
+    if (const auto error = unfit(*reduced)) return *error;
+
+    const Fopdt model{reduced->K, reduced->T1, reduced->L};
+    const RimcFilter filter = filter_of(options);
+    const RimcBranch branch(model, filter);
+    const auto lambda = chosen_lambda(options, model, branch);
+    if (!lambda) return lambda.error();
+    const auto pid = rimc_pid(model, *lambda, filter);
+    if (!pid) return inadmissible(*lambda, branch);
+
+    auto answer = rule_answer(problem, *reduced, *pid, remarks(model, *lambda, branch, options));
+    if (answer) answer->rimc = report_on(model, *lambda, branch, options);
+    return answer;
+}
+
+OptionDescription lambda_option() {
+    OptionDescription lambda;
+    lambda.name = "lambda";
+    lambda.sentence =
+        "Time constant of the closed loop: larger is slower and more robust. Default, if none of Ms, disturbance_peak "
+        "and "
+        "dead_time_error is given: the model's T.";
+    lambda.unit = "time";
+    lambda.exclusive_minimum = 0;
+    return lambda;
+}
+
+std::vector<OptionDescription> target_options() {
+    OptionDescription Ms;
+    Ms.name = "Ms";
+    Ms.sentence = "In place of lambda: the largest |S| of the loop with the model.";
+    Ms.exclusive_minimum = 1;
+    Ms.maximum = 10;
+    OptionDescription peak;
+    peak.name = "disturbance_peak";
+    peak.sentence = "In place of lambda: the largest deviation of y after a unit load step on the model.";
+    peak.unit = "y/u";
+    OptionDescription error;
+    error.name = "dead_time_error";
+    error.sentence =
+        "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain condition "
+        "of "
+        "Eq. 29 (sufficient only): the smallest lambda above which it holds.";
+    error.unit = "time";
+    error.exclusive_minimum = 0;
+    return {Ms, peak, error};
+}
+
+std::vector<OptionDescription> form_options() {
+    OptionDescription ratio;
+    ratio.name = "Tf_over_Td";
+    ratio.sentence = "Time of the derivative's filter over Td; 0 for none.";
+    ratio.default_value = RimcFilter{}.Tf_over_Td;
+    ratio.minimum = 0;
+    ratio.maximum = 1;
+    OptionDescription approximation;
+    approximation.name = "approximation";
+    approximation.type = OptionType::choice;
+    approximation.sentence =
+        "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
+        "linear_fractional: "
+        "(a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with the filter time b1.";
+    approximation.default_value = std::string("maclaurin");
+    approximation.choices = {"maclaurin", "linear_fractional"};
+    OptionDescription curve;
+    curve.name = "curve";
+    curve.type = OptionType::boolean;
+    curve.sentence = "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).";
+    curve.default_value = false;
+    return {ratio, approximation, curve};
+}
+
+}  // namespace
+
+TuningMethod rimc_method() {
+    TuningMethod method;
+    method.id = "rimc";
+    method.title = "Revised IMC (Liu and Gao)";
+    method.formula =
+        "beta = T (1 - (lambda/T - 1)^2 e^(-L/T)), d0 = 2 lambda + L - beta, d1 = lambda^2 + beta L - L^2/2, "
+        "d2 = L^3/6 - beta L^2/2; k_c = (beta + T - d1/d0)/(K d0), tau_i = K d0, "
+        "tau_d = (beta T - (beta + T) d1/d0 + (d1/d0)^2 - d2/d0)/(K d0); Kp = k_c, Ti = k_c tau_i, Td = tau_d/k_c";
+    method.source = "Liu and Gao, IFAC World Congress (2008), Eqs. 16-29";
+    method.needs = "fopdt with T > 0 (others are reduced)";
+    method.validity =
+        "plants with a slow time constant, L up to about 2 T; lambda between the limit of stability and the least Ms";
+    method.options = {lambda_option()};
+    for (auto& option : target_options()) method.options.push_back(std::move(option));
+    for (auto& option : form_options()) method.options.push_back(std::move(option));
+    method.options.push_back(reduction_option("half_rule; tangent where that does not apply."));
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,349 @@
+#include "engine/tuning/robust/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/number_text.h"
+#include "engine/tuning/reaction_curve/amigo.h"
+#include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/feasibility.h"
+#include "engine/tuning/robust/verified_search.h"
+
+namespace tunewright {
+namespace {
+
+using namespace robust;
+
+constexpr int kMostRounds = 10;  // of adding the worst plant found inside a region
+
+Objective objective_named(const std::string& name) {
+    if (name == "load_ie") return Objective::load_ie;
+    if (name == "setpoint_iae") return Objective::setpoint_iae;
+    if (name == "weighted") return Objective::weighted;
+    return Objective::load_iae;
+}
+
+/// The filter that the options give, if they do.
+Expected<std::optional<FilterRule>> explicit_filter(const MethodOptions& options, bool pid) {
+    if (const auto Tf = options.number("filter/Tf")) return std::optional(FilterRule{.Tf = *Tf, .Tf_over_Td = {}});
+    const auto ratio = options.number("filter/Tf_over_Td");
+    if (!ratio) return std::optional<FilterRule>();
+    if (!pid)
+        return Error{ErrorKind::invalid_argument, "filter/Tf_over_Td",
+                     "A PI controller has no Td; give the filter as Tf."};
+    return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = *ratio});
+}
+
+constexpr double kLeastResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
+
+/// The sum of the lags minus the leads, kept from vanishing where the leads cancel it; 0 without lags.
+double filter_basis(const LinearPlant& plant) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const auto pole : plant.poles())
+        if (pole.real() < 0) shortest = std::min(shortest, (-1.0 / pole).real());
+    return std::isfinite(shortest) ? std::max(plant.lag_sum(), kLeastResidence * shortest) : 0;
+}
+
+/// A plant with neither dead time nor lags has no natural filter time.
+Error no_filter_time(const TuningProblem& problem) {
+    const double L = problem.linear.dead_time();
+    const std::string what =
+        L > 0 ? "This plant has no lags, and its identified dead time of " + text(L) +
+                    " counts as none because its standard error is " + text(problem.dead_time_std.value_or(0)) +
+                    ". Nothing suggests a filter time. "
+              : "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
+                "a filter time. ";
+    return {ErrorKind::unbounded_optimum, "filter",
+            what + "Give filter {\"Tf\": ...}, e.g. the sampling time or the time constant of the sensor."};
+}
+
+/// The contract's filter rule. Error: `no_filter_time`.
+Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptions& options, bool pid) {
+    const auto given = explicit_filter(options, pid);
+    if (!given) return given.error();
+    if (*given) return **given;
+    if (!pid) return FilterRule{};
+    const LinearPlant& plant = problem.linear;
+    const bool dead_time = plant.dead_time() > problem.dead_time_std.value_or(0);
+    if (dead_time || plant.has_right_half_plane_zero() || plant.pole_excess() >= 3)
+        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+    const double basis = filter_basis(plant);
+    if (basis > 0) return FilterRule{.Tf = 0.05 * basis, .Tf_over_Td = std::nullopt};
+    return no_filter_time(problem);
+}
+
+/// Low gain of the right sign must push the output towards the set point: K/T of the plant's first slope decides.
+double first_sign(const LinearPlant& plant) {
+    const double sign = plant.low_frequency_gain() < 0 ? -1 : 1;
+    return plant.unstable_poles() % 2 == 0 ? sign : -sign;
+}
+
+bool pid_wanted(const MethodOptions& options) { return options.text("controller").value_or("PID") == "PID"; }
+
+/// All but the plant and the sign of Kp.
+Problem make_problem(const MethodOptions& options, const FilterRule& filter) {
+    Problem problem;
+    problem.pid = pid_wanted(options);
+    problem.filter = filter;
+    problem.limits.Ms = options.number("Ms").value_or(1.4);
+    problem.limits.Mt = options.number("Mt").value_or(1.4);
+    problem.limits.Mks = options.number("Mks");
+    problem.limits.m_circle = options.text("constraint").value_or("circles") == "m_circle";
+    problem.objective = objective_named(options.text("objective").value_or("load_iae"));
+    problem.rho = options.number("rho").value_or(0.5);
+    return problem;
+}
+
+/// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty where they do not apply.
+PlaneStart amigo_start(const TuningProblem& tuning, bool pid) {
+    MethodOptions options;
+    options.set("controller", std::string(pid ? "PID" : "PI"));
+    const auto tuned = amigo_method().tune(tuning, options, {});
+    if (!tuned) return std::nullopt;
+    return std::pair{tuned->controller.Ti, tuned->controller.Td};
+}
+
+/// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
+std::optional<Error> check_Mks(const Problem& problem) {
+    double least = 0;
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        if (problem.plant_at(i).integrators() == 0)
+            least = std::max(least, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
+    if (!problem.limits.Mks || *problem.limits.Mks > least) return std::nullopt;
+    return Error{ErrorKind::no_feasible_controller, "Mks",
+                 "Mks is " + text(*problem.limits.Mks) +
+                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + text(least) +
+                     " already at rest. Give a limit well above that."};
+}
+
+Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& problem, const Point& x) {
+    double worst = 0;
+    for (const auto& plant : found) worst = std::max(worst, excess_on(plant, problem, x, {}));
+    return {"limit-exceeded-inside",
+            "Between the plants on which the limits hold one was left on which a limit is "
+            "exceeded by " +
+                text(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
+}
+
+void add_warnings(TunedController& result, const Problem& problem, const Point& x) {
+    const double reference = reference_frequency(problem), Ti = std::exp(x[1]);
+    if (Ti * reference < 1e-3 || (problem.pid && std::exp(x[2]) * reference > 1e3))
+        result.warnings.push_back(
+            {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + text(Ti) +
+                                      "): a smaller Ms or a longer filter time gives an ordinary PID."});
+}
+
+/// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
+Expected<Problem> nominal_problem(const TuningProblem& tuning, const MethodOptions& options) {
+    if (tuning.linear.integrators() < 0)
+        return Error{ErrorKind::unstable_plant, "",
+                     "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
+                     "controller without integral action."};
+    const auto filter = filter_rule(tuning, options, pid_wanted(options));
+    if (!filter) return filter.error();
+    Problem problem = make_problem(options, *filter);
+    problem.plant = &tuning.linear;
+    problem.sign = first_sign(tuning.linear);
+    return problem;
+}
+
+std::optional<Error> without_optimum(const Problem& problem) {
+    if (auto error = check_Mks(problem)) return error;
+    if (!has_no_finite_optimum(problem)) return std::nullopt;
+    return Error{ErrorKind::unbounded_optimum, "filter",
+                 "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "
+                 "dead time to stop it. "
+                 "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
+}
+
+Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
+                                      const RunControl& control) {
+    auto posed = nominal_problem(tuning, options);
+    if (!posed) return posed.error();
+    Problem problem = *posed;
+    auto others = other_members(tuning, first_sign);
+    if (!others) return others.error();
+    problem.others = *others;
+    if (auto error = without_optimum(problem)) return *error;
+    CostSurface surface;
+    const std::string kind = options.text("search").value_or("fast");
+    const bool with_surface = options.boolean("surface").value_or(false);
+    const PlaneStart start = kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, problem.pid);
+    TunedController result;
+    auto found = verified_search(kind, problem, start, with_surface ? &surface : nullptr, control, nullptr);
+    for (int round = 0; found && !found->stopped && tuning.family; ++round) {
+        const auto added = worst_inside(*tuning.family, problem, found->x, control.stop);
+        if (added.empty()) break;
+        if (round == kMostRounds) {
+            result.warnings.push_back(exceeded_inside(added, problem, found->x));
+            break;
+        }
+        others->insert(others->end(), added.begin(), added.end());
+        problem.others = *others;
+        const Point before = found->x;
+        found = verified_search(kind, problem, start, nullptr, control, &before);
+    }
+    if (!found) return found.error();
+    result.controller = controller_at(problem, found->x);
+    result.partial = found->stopped;
+    if (with_surface) result.surface = surface;
+    add_warnings(result, problem, found->x);
+    return result;
+}
+
+/// Points have no response over time, so the integrated error Ti/Kp stands for the integral of |e|.
+Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const MethodOptions& options,
+                                         const RunControl& control) {
+    if (!plant.phase_crossover())
+        return Error{ErrorKind::unsupported, "plant/omega",
+                     "The measured band ends at omega " + text(plant.high()) +
+                         ", before the plant's phase has fallen through -180 degrees, so nothing in it bounds the "
+                         "gain. Measure higher frequencies."};
+    const auto filter = explicit_filter(options, pid_wanted(options));
+    if (!filter) return filter.error();
+    const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+    Problem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
+    problem.measured = &plant;
+    problem.sign = plant.gain_sign();
+    problem.objective = Objective::load_ie;
+    CostSurface surface;
+    const bool with_surface = options.boolean("surface").value_or(false);
+    const auto found = verified_search(options.text("search").value_or("fast"), problem, std::nullopt,
+                                       with_surface ? &surface : nullptr, control, nullptr);
+    if (!found) return found.error();
+    TunedController result;
+    result.controller = controller_at(problem, found->x);
+    result.partial = found->stopped;
+    if (with_surface) result.surface = surface;
+    if (options.text("objective").value_or("load_ie") != "load_ie")
+        result.warnings.push_back({"objective-replaced",
+                                   "A frequency response has no response over time: Kp/Ti is maximised instead of the "
+                                   "objective asked for."});
+    add_warnings(result, problem, found->x);
+    return result;
+}
+
+OptionDescription limit_option(const char* name, const char* sentence, std::optional<double> default_value) {
+    OptionDescription option{.name = name, .type = OptionType::number, .sentence = sentence};
+    if (default_value) option.default_value = *default_value;
+    option.exclusive_minimum = default_value ? 1 : 0;
+    if (default_value) option.maximum = 4;
+    return option;
+}
+
+std::vector<OptionDescription> option_descriptions() {
+    const auto choice = [](const char* name, const char* sentence, std::vector<std::string> choices) {
+        OptionDescription option{.name = name, .type = OptionType::choice, .sentence = sentence};
+        option.default_value = choices.front();
+        option.choices = std::move(choices);
+        return option;
+    };
+    OptionDescription Tf{
+        .name = "Tf", .type = OptionType::number, .sentence = "Filter time constant, fixed.", .unit = "time"};
+    Tf.exclusive_minimum = 0;
+    OptionDescription ratio{
+        .name = "Tf_over_Td", .type = OptionType::number, .sentence = "Filter time constant as a fraction of Td."};
+    ratio.exclusive_minimum = 0;
+    ratio.maximum = 10;
+    OptionDescription filter{.name = "filter",
+                             .type = OptionType::object,
+                             .sentence =
+                                 "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a "
+                                 "right-half-plane zero or pole excess >= 3, else "
+                                 "Tf = 0.05 times the sum of the lags minus the leads. PI default: none."};
+    filter.fields = {Tf, ratio};
+    filter.at_most_fields = 1;
+    OptionDescription rho{.name = "rho",
+                          .type = OptionType::number,
+                          .sentence = "Weight of the load in the weighted objective; the set point has 1 - rho."};
+    rho.default_value = 0.5;
+    rho.minimum = 0;
+    rho.maximum = 1;
+    OptionDescription surface{.name = "surface",
+                              .type = OptionType::boolean,
+                              .sentence = "Also return the least cost over the (Ti, Td) plane."};
+    surface.default_value = false;
+    return {choice("controller", "PI or PID.", {"PID", "PI"}),
+            limit_option("Ms", "Largest allowed sensitivity max |S|.", 1.4),
+            limit_option("Mt", "Largest allowed complementary sensitivity max |T|.", 1.4),
+            limit_option("Mks", "Largest allowed max |C S|: how strongly u may react.", std::nullopt),
+            choice("constraint", "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
+                   {"circles", "m_circle"}),
+            choice("objective", "What is minimised.", {"load_iae", "load_ie", "setpoint_iae", "weighted"}),
+            rho,
+            choice("search", "fast: scan and quadratic programming. nelder_mead, grid: the paper's searches.",
+                   {"fast", "nelder_mead", "grid"}),
+            surface,
+            filter};
+}
+
+// Distance between two limits: what matters is how far they lie above 1.
+double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
+
+}  // namespace
+
+bool RobustFront::in_order(double M, double load_IAE) const {
+    constexpr double kSame = 1 + 1e-4;
+    return std::ranges::all_of(known_, [&](const auto& item) {
+        if (!item.second) return true;
+        const double other = item.second->load_IAE;
+        return item.first < M ? load_IAE <= kSame * other : other <= kSame * load_IAE;
+    });
+}
+
+Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& control) {
+    constexpr double kNeighbour = 1;
+    if (const auto same = known_.find(M); same != known_.end()) return same->second;
+    MethodOptions limits;
+    limits.set("Ms", M);
+    limits.set("Mt", M);
+    auto posed = nominal_problem(problem_, limits);
+    if (!posed) return posed.error();
+    if (auto error = without_optimum(*posed)) return *error;
+
+    const Design* nearest = nullptr;
+    double distance = kNeighbour;
+    for (const auto& [other, design] : known_) {
+        if (!design || apart(M, other) >= distance) continue;
+        nearest = &*design;
+        distance = apart(M, other);
+    }
+    std::optional<Point> before;
+    if (nearest != nullptr) {
+        const Pid& pid = nearest->controller;
+        before = Point{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
+    }
+    Problem problem = *posed;
+    auto found = verified_search("fast", problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
+    if (before && (!found || !in_order(M, std::exp(found->log_cost)))) {
+        problem = *posed;
+        found = verified_search("fast", problem, std::nullopt, nullptr, control, nullptr);
+    }
+    Expected<Design> design =
+        found ? Expected<Design>(Design{controller_at(problem, found->x), std::exp(found->log_cost)})
+              : Expected<Design>(found.error());
+    if (found && found->stopped)
+        return Error{ErrorKind::cancelled, "", "The job was stopped before this optimum was found."};
+    return known_.emplace(M, std::move(design)).first->second;
+}
+
+TuningMethod robust_method() {
+    TuningMethod method;
+    method.id = "robust";
+    method.title = "Robust optimum";
+    method.formula =
+        "minimise the integral of |e| after a load step subject to max |S| <= Ms, max |T| <= Mt and a stable loop";
+    method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
+    method.needs = "any linear plant";
+    method.validity =
+        "Ms, Mt in (1, 4]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
+        "on Mks";
+    method.options = option_descriptions();
+    method.tune = tune_robust;
+    method.holds_family = true;
+    method.tune_on_points = tune_on_points;
+    return method;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,34 @@
+// Robust design: the least IAE of a load step under limits on Ms and Mt (Garpinger and Hagglund 2008).
+#pragma once
+
+#include <map>
+
+#include "engine/tuning/method/method.h"
+
+namespace tunewright {
+
+TuningMethod robust_method();
+
+/// The method's default PID on one plant under several limits, Ms = Mt = M: the front of load IAE against robustness. A
+/// new point is searched from its nearest neighbour; where that breaks the front's order (more room never costs more)
+/// the whole search is made.
+class RobustFront {
+public:
+    /// `problem` must outlive this. Its family is not looked at: limits hold on the nominal plant.
+    explicit RobustFront(const TuningProblem& problem) : problem_(problem) {}
+
+    struct Design {
+        Pid controller;
+        double load_IAE = 0;  ///< of a unit step, to infinity; the search's own, to about 1e-4
+    };
+    /// M in (1, 4]. Errors: those of the method robust; cancelled if it was stopped before the search ended.
+    Expected<Design> at(double M, const RunControl& control);
+
+private:
+    bool in_order(double M, double load_IAE) const;
+
+    const TuningProblem& problem_;
+    std::map<double, Expected<Design>> known_;
+};
+
+}  // namespace tunewright

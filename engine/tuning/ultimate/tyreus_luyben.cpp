@@ -1,0 +1,51 @@
+#include "engine/tuning/ultimate/tyreus_luyben.h"
+
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/ultimate_rule.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kDeadTimeDominated = 0.5;  // 1/(K Ku)
+
+// With an integral time of 2.2 Pu a plant of much dead time creeps to its set point.
+std::vector<Warning> sluggishness(const TuningProblem& problem, const UltimatePoint& at) {
+    const double kappa = std::abs(gain_ratio(problem.linear, at));
+    if (kappa <= kDeadTimeDominated) return {};
+    return {outside_validity("1/(K Ku) is " + text(kappa) +
+                             ", above 0.5: much dead time, for which the rule's integral time is far too long. It was "
+                             "made for lag-dominated and integrating plants; use simc or robust.")};
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const auto at = chosen_ultimate_point(problem, options);
+    if (!at) return at.error();
+    Pid answer = chosen_controller(options) == "PI" ? Pid{.Kp = at->Ku / 3.2, .Ti = 2.2 * at->Pu}
+                                                    : Pid{.Kp = at->Ku / 2.2, .Ti = 2.2 * at->Pu, .Td = at->Pu / 6.3};
+    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    std::vector<Warning> warnings = ultimate_warnings(problem);
+    for (const auto& warning : sluggishness(problem, *at)) warnings.push_back(warning);
+    return rule_answer(answer, std::move(warnings));
+}
+
+}  // namespace
+
+TuningMethod tyreus_luyben_method() {
+    TuningMethod method;
+    method.id = "tyreus_luyben";
+    method.title = "Tyreus-Luyben";
+    method.formula = "PI: Kp = Ku/3.2, Ti = 2.2 Pu; PID: Kp = Ku/2.2, Ti = 2.2 Pu, Td = Pu/6.3";
+    method.source =
+        "Tyreus and Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628; PID: Luyben and Luyben, Essentials of Process "
+        "Control (1997)";
+    method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";
+    method.validity = "lag-dominated and integrating plants: 1/(K Ku) up to 0.5";
+    method.options = with_ultimate_options({controller_option({"PI", "PID"})},
+                                           "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

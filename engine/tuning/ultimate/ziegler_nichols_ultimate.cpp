@@ -1,0 +1,82 @@
+#include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
+
+#include <cmath>
+
+#include "engine/number_text.h"
+#include "engine/tuning/method/ultimate_rule.h"
+
+namespace tunewright {
+namespace {
+
+Pid pid(const std::string& variant, double Ku, double Pu) {
+    if (variant == "pessen") return {.Kp = 0.7 * Ku, .Ti = 0.4 * Pu, .Td = 0.15 * Pu};
+    if (variant == "some_overshoot") return {.Kp = Ku / 3, .Ti = Pu / 2, .Td = Pu / 3};
+    if (variant == "no_overshoot") return {.Kp = 0.2 * Ku, .Ti = Pu / 2, .Td = Pu / 3};
+    return {.Kp = 0.6 * Ku, .Ti = Pu / 2, .Td = Pu / 8};
+}
+
+Pid settings(const std::string& controller, const std::string& variant, const UltimatePoint& at) {
+    if (controller == "P") return {.Kp = 0.5 * at.Ku};
+    if (controller == "PI") return {.Kp = 0.45 * at.Ku, .Ti = at.Pu / 1.2};
+    return pid(variant, at.Ku, at.Pu);
+}
+
+// Hang, Astrom and Ho's range of K Ku; an integrating plant's is infinite and the rule is used on it.
+std::vector<Warning> remarks(const TuningProblem& problem, const UltimatePoint& at) {
+    std::vector<Warning> warnings = ultimate_warnings(problem);
+    const double ratio = std::abs(1 / gain_ratio(problem.linear, at));
+    if (!warnings.empty() || problem.linear.integrators() > 0 || (ratio >= 2.25 && ratio <= 15)) return warnings;
+    return {outside_validity("K Ku is " + text(ratio) + ", outside 2.25 to 15, where this rule is usually applied: " +
+                             (ratio < 2.25 ? "with so much dead time it is sluggish, its PID near instability."
+                                           : "it is oscillatory and needs very high gains there."))};
+}
+
+Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+    const std::string controller = chosen_controller(options), variant = options.text("variant").value_or("classic");
+    if (controller != "PID" && variant != "classic")
+        return Error{ErrorKind::invalid_argument, "variant",
+                     "variant is " + variant + ", which exists for PID alone, and controller is " + controller +
+                         ". Leave variant out, or ask for PID."};
+    const auto point = chosen_ultimate_point(problem, options);
+    if (!point) return point.error();
+    Pid answer = settings(controller, variant, *point);
+    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    return rule_answer(answer, remarks(problem, *point));
+}
+
+OptionDescription variant_option() {
+    OptionDescription option;
+    option.name = "variant";
+    option.type = OptionType::choice;
+    option.sentence =
+        "Of PID: classic; pessen (Pessen's integral rule); some_overshoot, no_overshoot: less gain, more damping.";
+    option.default_value = std::string("classic");
+    option.choices = {"classic", "pessen", "some_overshoot", "no_overshoot"};
+    return option;
+}
+
+}  // namespace
+
+TuningMethod ziegler_nichols_ultimate_method() {
+    TuningMethod method;
+    method.id = "ziegler_nichols_ultimate";
+    method.title = "Ziegler-Nichols, ultimate gain";
+    method.formula =
+        "P: Kp = 0.5 Ku; PI: Kp = 0.45 Ku, Ti = Pu/1.2; PID: Kp = 0.6 Ku, Ti = Pu/2, Td = Pu/8; pessen: 0.7 Ku, 0.4 "
+        "Pu, 0.15 Pu; some_overshoot: Ku/3, Pu/2, Pu/3; no_overshoot: 0.2 Ku, Pu/2, Pu/3";
+    method.source =
+        "Ziegler and Nichols, Trans. ASME 64 (1942) 759-768; Pessen, J. Dyn. Syst. Meas. Control 116 (1994)";
+    method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";
+    method.validity =
+        "integrating plants, stable ones with K Ku from 2.25 to 15; aims at quarter-amplitude damping, so expect Ms "
+        "above 2";
+    method.options = with_ultimate_options({controller_option({"P", "PI", "PID"}), variant_option()},
+                                           "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    // Of the variants only the calmest: the others are known for their overshoot.
+    method.variants = {row("PI", {{"controller", "PI"}}), row("PID", {}),
+                       row("PID, no overshoot", {{"variant", "no_overshoot"}})};
+    method.tune = tune;
+    return method;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,160 @@
+#include "server/jobs/work/claims.h"
+
+#include <algorithm>
+
+namespace tunewright::server {
+namespace {
+
+constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
+constexpr std::size_t kMostAhead = 16;
+constexpr double kForgetting = 0.2;
+// Where no worker has come for that long, each is at a long job, whatever the latest took.
+constexpr std::chrono::milliseconds kBusy{25};
+
+}  // namespace
+
+Claims::Claims(JobStore& store, HeldJobs& held, Outage& outage, ClaimSettings settings)
+    : store_(store), held_(held), outage_(outage), settings_(std::move(settings)) {}
+
+std::shared_ptr<HeldJob> Claims::take(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    idle_++;
+    ask(lock);
+    // A single job that has just arrived is fetched before an entry of a batch is begun.
+    const auto there = [this] { return closed_ || (!ready_.empty() && !(urgent() && asking_for_arrivals_)); };
+    const bool found = changed_.wait(lock, stop, there);
+    idle_--;
+    if (!found || closed_ || ready_.empty()) return nullptr;
+    std::shared_ptr<HeldJob> next = std::move(ready_.front());
+    ready_.pop_front();
+    last_take_ = HeldJob::Clock::now();
+    ask(lock);
+    return next;
+}
+
+void Claims::arrived() {
+    std::unique_lock lock(mutex_);
+    arrivals_++;
+    ask(lock);
+}
+
+void Claims::took(double seconds, bool whole) {
+    const std::lock_guard lock(mutex_);
+    // One that was stopped would have taken longer: of its time only a lower bound is known.
+    if (whole || seconds > pace_) pace_ = std::max(seconds, (1 - kForgetting) * pace_ + kForgetting * seconds);
+    streak_ = pace_ < kShortJob ? streak_ + 1 : 0;
+}
+
+void Claims::unsaved(std::size_t bytes) {
+    std::unique_lock lock(mutex_);
+    unsaved_ = bytes;
+    ask(lock);
+}
+
+void Claims::retry() {
+    std::unique_lock lock(mutex_);
+    failed_ = false;
+    ask(lock);
+}
+
+double Claims::pace() const {
+    const std::lock_guard lock(mutex_);
+    return pace_;
+}
+
+bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->job.batch.empty(); }
+
+std::size_t Claims::ahead() const {
+    if (!more_ || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
+    return std::min({kMostAhead, streak_, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4))});
+}
+
+std::size_t Claims::wanted() const {
+    const std::size_t enough = idle_ + ahead();
+    // Half of what is claimed ahead is used up before more is asked for: several at once cost as much as one.
+    if (ready_.size() < idle_ || ready_.size() <= enough / 2) return enough - std::min(enough, ready_.size());
+    const bool overtaking = arrivals_ != seen_ && urgent();
+    return overtaking && enough > 0 ? 1 : 0;
+}
+
+/// Called with the lock, returns with it; asks the store without.
+void Claims::ask(std::unique_lock<std::mutex>& lock) {
+    if (closed_ || asking_ || failed_ || !(more_ || arrivals_ != seen_)) return;
+    const std::size_t held = held_.size();
+    if (held >= settings_.most_held || unsaved_ >= settings_.most_unsaved) return;
+    const std::size_t most = std::min(wanted(), settings_.most_held - held);
+    if (most == 0) return;
+    asking_ = true;
+    asking_for_arrivals_ = arrivals_ != seen_;
+    seen_ = arrivals_;
+    lock.unlock();
+    store_.claim({settings_.worker, settings_.now(), settings_.lease, most},
+                 [this, most](Outcome<std::vector<JobRecord>> outcome) { come(std::move(outcome), most); });
+    lock.lock();
+}
+
+void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
+    auto* jobs = std::get_if<std::vector<JobRecord>>(&outcome);
+    if (jobs != nullptr) {
+        if (!jobs->empty()) {
+            outage_.worked();
+            settings_.claimed(*jobs);
+        }
+    } else {
+        outage_.failed("no job can be claimed", std::get<StoreFault>(outcome));
+    }
+    std::vector<std::shared_ptr<HeldJob>> late;
+    std::unique_lock lock(mutex_);
+    asking_ = asking_for_arrivals_ = false;
+    failed_ = jobs == nullptr;
+    if (failed_) arrivals_++;  // so that retry() asks again
+    if (jobs != nullptr) {
+        more_ = jobs->size() >= asked;
+        // Jobs of another kind may come when these are done.
+        if (!more_) streak_ /= 2;
+        for (JobRecord& job : *jobs) {
+            // Registered on the store's thread: a cancel that the store sees later finds the job here.
+            std::shared_ptr<HeldJob> held = held_.add(std::move(job));
+            closed_ ? late.push_back(std::move(held)) : put(std::move(held));
+        }
+    }
+    ask(lock);
+    lock.unlock();
+    changed_.notify_all();
+    for (auto& held : late) settings_.late(std::move(held));
+}
+
+void Claims::put(std::shared_ptr<HeldJob> held) {
+    const bool single = held->job.batch.empty();
+    const auto place = std::find_if(ready_.begin(), ready_.end(),
+                                    [&](const auto& other) { return single && !other->job.batch.empty(); });
+    ready_.insert(place, std::move(held));
+}
+
+std::vector<std::shared_ptr<HeldJob>> Claims::withdraw(HeldJob::Clock::time_point before) {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::shared_ptr<HeldJob>> taken;
+    std::erase_if(ready_, [&](const auto& held) {
+        const bool old = held->claimed_at < before;
+        if (old) taken.push_back(held);
+        return old;
+    });
+    return taken;
+}
+
+bool Claims::withdraw(const std::shared_ptr<HeldJob>& held) {
+    const std::lock_guard lock(mutex_);
+    return std::erase(ready_, held) > 0;
+}
+
+std::vector<std::shared_ptr<HeldJob>> Claims::close(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    closed_ = true;
+    std::vector<std::shared_ptr<HeldJob>> left(ready_.begin(), ready_.end());
+    ready_.clear();
+    changed_.notify_all();
+    changed_.wait_for(lock, patience, [this] { return !asking_; });
+    return left;
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,89 @@
+// Brings jobs from the store to the workers of this process. One claim is under way at a time, for as many jobs as
+// workers are idle; only where many wait and the latest were short a few more are claimed ahead, so that no worker
+// waits for the store between them, and nobody hoards heavy ones.
+//
+// Arrivals are counted: a worker that finds nothing sleeps only if nothing has arrived since the store was asked. In a
+// store that others use too the count is raised every second as well: hints may be lost, the tables are the truth.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "server/jobs/outage.h"
+#include "server/jobs/work/held.h"
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+struct ClaimSettings {
+    std::string worker;  ///< names this process
+    std::chrono::milliseconds lease{10'000};
+    std::function<UnixMs()> now;
+    std::size_t most_held = 64;                        ///< no claim while so many are held, results not stored included
+    std::size_t most_unsaved = std::size_t{64} << 20;  ///< nor while results of so many bytes wait for the store
+    std::function<void(const std::vector<JobRecord>&)> claimed;  ///< told on the store's thread
+    std::function<void(std::shared_ptr<HeldJob>)> late;          ///< one that came after close(): it is the listener's
+};
+
+class Claims {
+public:
+    /// All of them must outlive the claims.
+    Claims(JobStore& store, HeldJobs& held, Outage& outage, ClaimSettings settings);
+
+    /// The next job, once there is one; nothing after close() or a stop. Jobs come here before any worker has them, so
+    /// they may have been asked to stop already.
+    std::shared_ptr<HeldJob> take(const std::stop_token& stop);
+    /// Something has been queued, perhaps by another process.
+    void arrived();
+    /// A computation took so long; not `whole`: it was stopped then.
+    void took(double seconds, bool whole = true);
+    /// So many bytes of results wait for the store.
+    void unsaved(std::size_t bytes);
+    /// Claims again after a failure.
+    void retry();
+    /// Takes jobs back that no worker has begun: those claimed before `before`, or that one. They are the caller's.
+    std::vector<std::shared_ptr<HeldJob>> withdraw(HeldJob::Clock::time_point before);
+    bool withdraw(const std::shared_ptr<HeldJob>& held);
+    /// No more claims; waits up to `patience` for one that is under way. What no worker has begun is the caller's.
+    std::vector<std::shared_ptr<HeldJob>> close(std::chrono::milliseconds patience);
+
+    /// Typical seconds of the latest jobs; 0 before the first.
+    double pace() const;
+
+private:
+    std::size_t ahead() const;
+    std::size_t wanted() const;
+    bool urgent() const;
+    void ask(std::unique_lock<std::mutex>& lock);
+    void put(std::shared_ptr<HeldJob> held);
+    void come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked);
+
+    JobStore& store_;
+    HeldJobs& held_;
+    Outage& outage_;
+    ClaimSettings settings_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::deque<std::shared_ptr<HeldJob>> ready_;  ///< single jobs first
+    std::size_t idle_ = 0;                        ///< workers waiting in take()
+    bool asking_ = false;
+    bool asking_for_arrivals_ = false;
+    bool failed_ = false;  ///< the last claim: the next one waits for retry()
+    bool closed_ = false;
+    bool more_ = false;           ///< the last claim got all that it asked for
+    std::uint64_t arrivals_ = 0;  ///< so far
+    std::uint64_t seen_ = 0;      ///< when the store was last asked
+    std::size_t unsaved_ = 0;
+    HeldJob::Clock::time_point last_take_{};
+    double pace_ = 0;
+    std::size_t streak_ = 0;  ///< short jobs in a row; counts less each time that the queue has been emptied
+};
+
+}  // namespace tunewright::server

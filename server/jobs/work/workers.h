@@ -1,0 +1,52 @@
+// The threads that compute: each takes a job, has it computed with a deadline, hands over what came out.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "api/service.h"
+#include "server/jobs/timer.h"
+#include "server/jobs/work/claims.h"
+#include "server/jobs/work/ends.h"
+#include "server/jobs/work/held.h"
+
+namespace tunewright::server {
+
+struct WorkerSettings {
+    std::size_t count = 1;
+    std::string version;
+    std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
+    std::function<UnixMs()> now;
+    std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another has it
+};
+
+class Workers {
+public:
+    Workers(Claims& claims, Ends& ends, Timer& timer, WorkerSettings settings);
+
+    void start();
+    /// They take no more jobs.
+    void request_stop();
+    /// Waits until each has ended its job.
+    void join();
+    /// Ends a job that no worker has begun and none will.
+    void end_unbegun(const std::shared_ptr<HeldJob>& held);
+
+private:
+    void work(const std::stop_token& stop);
+    void run(const std::shared_ptr<HeldJob>& held);
+    api::JobOutcome compute(const std::shared_ptr<HeldJob>& held);
+    void end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome, double seconds);
+
+    Claims& claims_;
+    Ends& ends_;
+    Timer& timer_;
+    WorkerSettings settings_;
+    std::vector<std::jthread> threads_;
+};
+
+}  // namespace tunewright::server

@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""Holds the arrows of the house: which part and which room of the engine may include which, read from the includes."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Parts may include themselves and what is named.
+PARTS = {"engine": set(), "api": {"engine"}, "server": {"api", "engine"}}
+
+# Rooms of the engine, each with those that it may include beside itself and the files at the engine's top.
+ROOMS = {
+    "numerics": set(),
+    "plant": {"numerics"},
+    "controller": {"numerics"},
+    "loop": {"plant", "controller", "numerics"},
+    "simulation": {"loop", "plant", "controller", "numerics"},
+    "reduction": {"simulation", "loop", "plant", "numerics"},
+    "identification": {"simulation", "loop", "plant", "numerics"},
+    "tuning": {"reduction", "simulation", "loop", "plant", "controller", "numerics"},
+    "evaluation": {"tuning", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
+    "request": {"evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant", "controller",
+                "numerics"},
+}
+# What stands at the engine's top is for all rooms and uses none, but for the controller that progress shows.
+TOP_MAY_USE = {"controller"}
+
+INCLUDE = re.compile(r'^#include "((?:engine|api|server)/[^"]+)"', re.MULTILINE)
+MOST_ENTRIES = 30
+
+
+def room(path: str) -> str:
+    """The engine's room of a path such as engine/plant/linear/factor.h; "top" for engine/error.h."""
+    names = path.split("/")
+    return names[1] if len(names) > 2 else "top"
+
+
+def wrong_arrows(includes: dict[str, list[str]]) -> list[str]:
+    """One sentence for each include that turns an arrow."""
+    wrong = []
+    for source, headers in sorted(includes.items()):
+        part = source.split("/")[0]
+        for header in headers:
+            other = header.split("/")[0]
+            if other != part:
+                if other not in PARTS[part]:
+                    wrong.append(f"{source} includes {header}: {part} must not use {other}.")
+            elif part == "engine":
+                here, there = room(source), room(header)
+                allowed = TOP_MAY_USE if here == "top" else ROOMS.get(here, set()) | {"top"}
+                if there != here and there not in allowed:
+                    wrong.append(f"{source} includes {header}: room {here} must not use room {there}.")
+    return wrong
+
+
+def sources() -> list[pathlib.Path]:
+    return [path for part in PARTS for path in (ROOT / part).rglob("*") if path.suffix in (".h", ".cpp")]
+
+
+def main() -> int:
+    includes = {str(p.relative_to(ROOT)): INCLUDE.findall(p.read_text(encoding="utf-8")) for p in sources()}
+    faults = wrong_arrows(includes)
+    rooms = {room(name) for name in includes if name.startswith("engine/")} - {"top"}
+    faults += [f"engine/{name} has no line in tests/house/arrows_test.py." for name in sorted(rooms - set(ROOMS))]
+    for part in PARTS:
+        for folder in [ROOT / part, *(p for p in (ROOT / part).rglob("*") if p.is_dir())]:
+            count = sum(1 for _ in folder.iterdir())
+            if count > MOST_ENTRIES:
+                faults.append(f"{folder.relative_to(ROOT)} has {count} entries; part it into rooms of at most {MOST_ENTRIES}.")
+    # The check itself must see a turned arrow.
+    turned = wrong_arrows({"engine/plant/plant.h": ["engine/loop/loop.h"], "engine/error.h": ["api/problem.h"]})
+    if len(turned) != 2:
+        faults.append("The check does not see arrows that are turned on purpose.")
+    print("\n".join(faults) if faults else f"{len(includes)} files keep the arrows.")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -4,7 +4,7 @@ FROM debian:bookworm-slim AS binary
 RUN apt-get update && apt-get install -y --no-install-recommends \
         g++ make cmake ninja-build pkg-config libcpp-httplib-dev nlohmann-json3-dev libeigen3-dev libnlopt-dev \
         libsqlitecpp-dev libsqlite3-dev libpqxx-dev libpq-dev libspdlog-dev libcli11-dev prometheus-cpp-dev \
-        libboost-dev zlib1g-dev \
+        libboost-dev libssl-dev zlib1g-dev \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY CMakeLists.txt CMakePresets.json ./

@@ -1,83 +1,35 @@
 #include "api/json/digest.h"
 
-#include <algorithm>
-#include <bit>
+#include <openssl/evp.h>
+
+#include <array>
+#include <stdexcept>
 
 namespace tunewright::api {
 namespace {
 
-// First 32 bits of the fractional parts of the cube roots of the first 64 primes (FIPS 180-4, section 4.2.2).
-constexpr std::array<std::uint32_t, 64> kRound = {
-    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
-    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
-    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
-    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
-    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
-    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
-    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
-    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
-
-using State = std::array<std::uint32_t, 8>;
-
-void compress(State& state, const unsigned char* block) {
-    std::array<std::uint32_t, 64> w{};
-    for (std::size_t i = 0; i < 16; ++i) {
-        w[i] = std::uint32_t{block[4 * i]} << 24 | std::uint32_t{block[4 * i + 1]} << 16 |
-               std::uint32_t{block[4 * i + 2]} << 8 | block[4 * i + 3];
-    }
-    for (std::size_t i = 16; i < 64; ++i) {
-        const std::uint32_t s0 = std::rotr(w[i - 15], 7) ^ std::rotr(w[i - 15], 18) ^ (w[i - 15] >> 3);
-        const std::uint32_t s1 = std::rotr(w[i - 2], 17) ^ std::rotr(w[i - 2], 19) ^ (w[i - 2] >> 10);
-        w[i] = w[i - 16] + s0 + w[i - 7] + s1;
-    }
-    auto [a, b, c, d, e, f, g, h] = state;
-    for (std::size_t i = 0; i < 64; ++i) {
-        const std::uint32_t t1 =
-            h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) + ((e & f) ^ (~e & g)) + kRound[i] + w[i];
-        const std::uint32_t t2 =
-            (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
-        h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
-    }
-    const State added = {a, b, c, d, e, f, g, h};
-    for (std::size_t i = 0; i < 8; ++i) state[i] += added[i];
+// OpenSSL fails here for want of memory alone.
+void must(int ok) {
+    if (ok != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256 digest.");
 }
 
 }  // namespace
 
-void Sha256::update(std::string_view piece) {
-    std::size_t kept = length_ % rest_.size();
-    length_ += piece.size();
-    while (!piece.empty()) {
-        if (kept == 0 && piece.size() >= rest_.size()) {
-            compress(state_, reinterpret_cast<const unsigned char*>(piece.data()));
-            piece.remove_prefix(rest_.size());
-            continue;
-        }
-        const std::size_t taken = std::min(rest_.size() - kept, piece.size());
-        std::copy_n(piece.data(), taken, rest_.begin() + static_cast<std::ptrdiff_t>(kept));
-        piece.remove_prefix(taken);
-        kept += taken;
-        if (kept < rest_.size()) return;
-        compress(state_, rest_.data());
-        kept = 0;
-    }
-}
+void Sha256::Free::operator()(evp_md_ctx_st* context) const { EVP_MD_CTX_free(context); }
+
+Sha256::Sha256() : context_(EVP_MD_CTX_new()) { must(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr)); }
+
+void Sha256::update(std::string_view piece) { must(EVP_DigestUpdate(context_.get(), piece.data(), piece.size())); }
 
 std::string Sha256::hex() const {
-    std::array<std::uint32_t, 8> state = state_;
-    std::array<unsigned char, 128> tail{};
-    const std::size_t kept = length_ % rest_.size();
-    std::copy_n(rest_.begin(), kept, tail.begin());
-    tail[kept] = 0x80;
-    const std::size_t blocks = kept < 56 ? 1 : 2;
-    const std::uint64_t bits = length_ * 8;
-    for (std::size_t i = 0; i < 8; ++i) tail[64 * blocks - 1 - i] = static_cast<unsigned char>(bits >> (8 * i));
-    for (std::size_t i = 0; i < blocks; ++i) compress(state, tail.data() + 64 * i);
-
-    static const char* kHex = "0123456789abcdef";
+    const Sha256 copy;
+    must(EVP_MD_CTX_copy_ex(copy.context_.get(), context_.get()));
+    std::array<unsigned char, 32> digest{};
+    must(EVP_DigestFinal_ex(copy.context_.get(), digest.data(), nullptr));
     std::string out;
-    for (const std::uint32_t word : state) {
-        for (int shift = 28; shift >= 0; shift -= 4) out += kHex[word >> shift & 15];
+    for (const unsigned char byte : digest) {
+        out += "0123456789abcdef"[byte >> 4];
+        out += "0123456789abcdef"[byte & 15];
     }
     return out;
 }

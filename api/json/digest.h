@@ -1,25 +1,27 @@
-// SHA-256 (FIPS 180-4) of a text: names a request in results.
+// SHA-256 (FIPS 180-4) of a text: names a request in results. By OpenSSL.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+
+struct evp_md_ctx_st;
 
 namespace tunewright::api {
 
 /// Of a text that comes in pieces.
 class Sha256 {
 public:
+    Sha256();
     void update(std::string_view piece);
     /// 64 hexadecimal digits of all pieces together.
     std::string hex() const;
 
 private:
-    std::array<std::uint32_t, 8> state_ = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                                           0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-    std::array<unsigned char, 64> rest_{};
-    std::uint64_t length_ = 0;
+    struct Free {
+        void operator()(evp_md_ctx_st* context) const;
+    };
+    std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
 /// 64 hexadecimal digits.

@@ -115,8 +115,8 @@ struct OpenChoice {
 };
 
 /// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
-/// less than 4 above it (Burnham and Anderson 2002, section 2.6), with a gain that the record determines.
-std::vector<OpenChoice> open_choices(const Search& search, const std::vector<FittedPlant>& plants) {
+/// less than 4 above it (Burnham and Anderson 2002, section 2.6).
+std::vector<OpenChoice> open_choices(const Search& search) {
     constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const double log_n = std::log(search.independent);
@@ -125,17 +125,18 @@ std::vector<OpenChoice> open_choices(const Search& search, const std::vector<Fit
     };
     std::vector<OpenChoice> open;
     if (search.chosen().form.structure == Structure::unstable) return open;
-    for (std::size_t i = 0; i < plants.size(); ++i) {
+    for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
         if (i == chosen || !fit.determined || looks_integrating(fit) || fit.form.structure == Structure::unstable ||
             is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
             continue;
-        const bool known = plants[i].standard_errors.at("K") <= std::abs(plants[i].values.at("K"));
         const double above = akaike(i) - akaike(chosen);
-        if (known && above <= kOpen) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kOpen))});
+        if (above <= kOpen) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kOpen))});
     }
     return open;
 }
+
+bool knows_gain(const FittedPlant& plant) { return plant.standard_errors.at("K") <= std::abs(plant.values.at("K")); }
 
 /// The variance of K with the choice of structure left open, at least the chosen one's own: the mean of own variance
 /// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3).
@@ -169,16 +170,21 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
     // Means over blocks lie on no grid.
     const double grid =
         recorded.samples() == record.samples() ? model.data_quality.quantisation / record.scale.y_scale : 0;
+    const double noise = model.data_quality.noise_std / record.scale.y_scale;
+    const auto chosen = static_cast<std::size_t>(search.choice.index);
+    std::vector<OpenChoice> open = open_choices(search);
+    const auto may_be_answered = [&](std::size_t i) {
+        return i == chosen || std::ranges::find(open, i, &OpenChoice::index) != open.end();
+    };
     std::vector<FittedPlant> plants;
-    for (Fit& fit : search.fits) {
+    for (std::size_t i = 0; i < search.fits.size(); ++i) {
+        Fit& fit = search.fits[i];
         if (fit.determined) jacobian(data, fit);
-        plants.push_back(fit.determined
-                             ? fitted_plant(record, fit, grid, model.data_quality.noise_std / record.scale.y_scale)
-                             : FittedPlant{});
+        const LoadDoubt load = may_be_answered(i) ? LoadDoubt::counted : LoadDoubt::left_out;
+        plants.push_back(fit.determined ? fitted_plant(record, fit, grid, noise, load) : FittedPlant{});
         fit.J.clear();
     }
-    const auto chosen = static_cast<std::size_t>(search.choice.index);
-    const std::vector<OpenChoice> open = open_choices(search, plants);
+    std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
     std::vector<int> order(search.fits.size());

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
@@ -116,15 +117,20 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
     return changes;
 }
 
-/// Sums over `block` entries over the root of their number, of the first n entries; the rest as it is.
-std::vector<double> block_sums(const std::vector<double>& values, std::size_t n, std::size_t block) {
+/// Sums over `block` values over the root of their number.
+std::vector<double> block_sums(std::span<const double> values, std::size_t block) {
     std::vector<double> sums;
-    for (std::size_t i = 0; i < n; i += block) {
-        const std::size_t end = std::min(n, i + block);
-        double sum = 0;
-        for (std::size_t k = i; k < end; ++k) sum += values[k];
-        sums.push_back(sum / std::sqrt(static_cast<double>(end - i)));
+    sums.reserve(values.size() / block + 1);
+    for (std::size_t i = 0; i < values.size(); i += block) {
+        const auto part = values.subspan(i, std::min(block, values.size() - i));
+        sums.push_back(std::reduce(part.begin(), part.end()) / std::sqrt(static_cast<double>(part.size())));
     }
+    return sums;
+}
+
+/// The same of the first n entries; the rest as it is.
+std::vector<double> block_sums(const std::vector<double>& values, std::size_t n, std::size_t block) {
+    std::vector<double> sums = block_sums(std::span(values).first(n), block);
     sums.insert(sums.end(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
     return sums;
 }
@@ -150,16 +156,15 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
 /// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
     constexpr std::size_t kFew = 64;
-    const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew),
-                      count = (n + block - 1) / block;
-    const auto rows = static_cast<Eigen::Index>(count);
+    const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew);
+    const auto rows = static_cast<Eigen::Index>((n + block - 1) / block);
     const auto sums = [&](std::span<const double> values) {
-        const std::vector<double> means =
-            block_sums({values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n)}, n, block);
-        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(means.data(), rows));
+        const std::vector<double> blocks = block_sums(values.first(n), block);
+        return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(blocks.data(), rows));
     };
-    FittedRows few{sums(times), sums(std::vector<double>(n, 1)), sums(fit.residual),
-                   Eigen::MatrixXd(rows, length.size())};
+    FittedRows few{sums(times), Eigen::VectorXd::Constant(rows, std::sqrt(static_cast<double>(block))),
+                   sums(fit.residual), Eigen::MatrixXd(rows, length.size())};
+    few.weight[rows - 1] = std::sqrt(static_cast<double>(n - block * static_cast<std::size_t>(rows - 1)));
     few.time.array() /= few.weight.array();
     for (Eigen::Index k = 0; k < length.size(); ++k)
         few.J.col(k) = sums(fit.J[static_cast<std::size_t>(k)]) / length[k];
@@ -200,14 +205,14 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
 }
 
 /// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
-/// section 4.2). What the residual shows may be slow noise or, unless `rounded`, a load that walks: the explanation
-/// that leaves the gain more open counts.
+/// section 4.2). What the residual shows may be slow noise or a load that walks: with `load` the explanation that
+/// leaves the gain more open counts.
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
-                                std::span<const double> times, bool rounded) {
+                                std::span<const double> times, bool load) {
     const Eigen::MatrixXd others = p.beside_samples();
     const Eigen::MatrixXd prior = left.long_run_variance() * others.transpose() * others;
     Eigen::MatrixXd covariance = p.inverse * (left.weighed(p.of_samples()) + prior) * p.inverse;
-    if (rounded) return covariance;
+    if (!load) return covariance;
     for (const Eigen::MatrixXd& spread : weighed_with_load(whole, few_rows(whole, times, p.length))) {
         const Eigen::MatrixXd with_load = p.inverse * (spread + prior) * p.inverse;
         if (with_load(p.shape, p.shape) > covariance(p.shape, p.shape)) covariance = with_load;
@@ -217,7 +222,8 @@ Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& lef
 
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
 /// covariance, and one per plateau of a rounded y, or what drifts too small to be found would do.
-Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise) {
+Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise,
+                              LoadDoubt load) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
     const bool on_plateaus = common > 0.02 * grid;
     std::vector<double> t(times.begin(), times.end());
@@ -225,7 +231,8 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     const int m = fit.form.parameters();
     const ResidualNoise left(fit.residual, m, grid * grid / 12);
     const ScaledProblem p = scaled_problem(fit, left.long_run_variance());
-    const Eigen::MatrixXd covariance = open_covariance(p, left, whole, times, on_plateaus);
+    const Eigen::MatrixXd covariance =
+        open_covariance(p, left, whole, times, load == LoadDoubt::counted && !on_plateaus);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
     // Rounding that is the same over a plateau is no noise of which few samples are known.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
@@ -308,7 +315,7 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
     return plant_of(fit.form, parameters_of(scale, fit.form, fit.shape, fit.linear, lags), lags);
 }
 
-FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise) {
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise, LoadDoubt load) {
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
     FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
@@ -316,7 +323,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
     const Eigen::MatrixXd deviations =
-        fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise) : given_deviations(fit);
+        fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise, load) : given_deviations(fit);
     const std::vector<int> places = fit.form.searched();
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

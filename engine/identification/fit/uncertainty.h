@@ -31,6 +31,9 @@ struct FittedPlant {
 /// The plant alone.
 Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 
+/// Whether the errors count a load that walks unseen (load_doubt.h): the work of a fit, for those that may be answered.
+enum class LoadDoubt { counted, left_out };
+
 /// Needs `fit.J`. The covariance counts what the residual says of its own noise (residual_noise.h), never less than the
 /// variance of the rounding, quantisation^2/12, and is widened by Student's t so that 1.96 standard errors hold 95 %;
 /// to it are added the errors that rounding makes in common over a plateau, and what drifts too small to be found would
@@ -38,6 +41,7 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit);
 /// plant's parameters by differences along the principal axes of the covariance. Two lags give `Sopdt` (T1 >= T2), an
 /// oscillation `OscillatorySopdt`; sopdt_zero a `TransferFunction` with num [K b, K], den [a2, a1, 1], third one with
 /// num [K], den [a3, a2, a1, 1], ipdt_second one with num [K], den [a2, a1, 1, 0].
-FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise);
+FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise,
+                         LoadDoubt load = LoadDoubt::counted);
 
 }  // namespace tunewright

@@ -65,7 +65,7 @@ Answer identified(const ReadRecord& read, const IdentifyQuestion& question, cons
     return {200, out.take()};
 }
 
-Problem too_patient(double timeout_s, const JobLimits& limits) {
+Problem timeout_too_long(double timeout_s, const JobLimits& limits) {
     Reader reader;
     reader.fault_at("timeout_s", "timeout_s is " + shown(timeout_s) + "; this service allows at most " +
                                      shown(limits.longest_timeout_s) + " s.");
@@ -79,7 +79,7 @@ std::variant<PreparedJob, Problem> prepared(const Json& value, const JobLimits& 
     if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
     const auto& request = std::get<JobRequest>(decoded);
     const bool given = value.contains("timeout_s");
-    if (given && request.timeout_s > limits.longest_timeout_s) return too_patient(request.timeout_s, limits);
+    if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
     return PreparedJob{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, text(),
                        sha256_hex(canonical(value))};
 }
@@ -99,7 +99,7 @@ Json number_or_word(const std::string& word) {
 }
 
 /// The record that the words stand for, of no text yet.
-Json record_json(const CsvQuestion& question) {
+Json record_json(const CsvRequest& question) {
     Json columns = Json::object();
     for (const auto& [name, choice] :
          {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
@@ -115,7 +115,7 @@ Json record_json(const CsvQuestion& question) {
     return record;
 }
 
-Json identify_json(const CsvQuestion& question) {
+Json identify_json(const CsvRequest& question) {
     Json options{{"traces", question.traces}};
     if (!question.model.empty()) options["model"] = question.model;
     return options;
@@ -232,7 +232,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
         if (!evaluation) return refusal(at_controller(evaluation.error(), i));
         TuningEntry& entry = answer.controllers.emplace_back();
         if (tradeoffs) entry.tradeoff = tradeoffs->of(request.controllers[i], std::nullopt);
-        if (optima) entry.optimum_at_Ms = optima->beside(*evaluation, control);
+        if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
         evaluation->compute_ms = now(control) - start;
         entry.evaluation = std::move(*evaluation);
     }
@@ -265,7 +265,7 @@ Answer relay_call(std::string_view body, const RunControl& control) {
     return {200, out.take()};
 }
 
-Answer identify_csv(std::string csv, const CsvQuestion& question, const RunControl& control) {
+Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control) {
     Reader reader;
     GivenRecord given;
     Units units;

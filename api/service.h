@@ -55,7 +55,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control);  ///< PO
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
 
 /// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
-struct CsvQuestion {
+struct CsvRequest {
     std::string t, u, y, r;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
     std::vector<std::string> u_limits;  ///< low and high; empty: not given
@@ -63,7 +63,7 @@ struct CsvQuestion {
 };
 
 /// The same for a CSV file as it is, in any encoding, without a request around it.
-Answer identify_csv(std::string csv, const CsvQuestion& question, const RunControl& control);
+Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
 Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
 
 std::string methods_json();               ///< GET /v1/methods

@@ -7,9 +7,9 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kDeepest = 1000;                   // brackets that are told apart; a request may have 32
-constexpr std::size_t kLongestName = 200;                // of the batch, in bytes
-constexpr std::size_t kLongestQuote = 6 * kLongestName;  // as escapes
+constexpr std::size_t kDeepest = 1000;                       // brackets that are told apart; a request may have 32
+constexpr std::size_t kMaxNameLength = 200;                  // of the batch, in bytes
+constexpr std::size_t kMaxQuoteLength = 6 * kMaxNameLength;  // as escapes
 constexpr std::string_view kCure = "Send {\"jobs\": [request, request, ...]}.";
 
 Problem not_json(std::string detail) { return {400, "not-json", "The body is not JSON", std::move(detail), {}, {}}; }
@@ -112,8 +112,8 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
             at_ = text_ == "jobs" ? At::array : At::name_value;
             return std::nullopt;
         case At::name_value:
-            if (c == 'n') return not_valid("/name", "name is not a text; leave it out where the batch has none.");
-            if (c != '"') return not_valid("/name", "name is not a text; it must be one of at most 200 characters.");
+            if (c == 'n') return not_valid("/name", "name is not a string; leave it out where the batch has none.");
+            if (c != '"') return not_valid("/name", "name is not a string; it must be one of at most 200 characters.");
             return text_.clear(), at_ = At::name_text, std::nullopt;
         case At::name_text: return c == '"' && !escaped_ ? end_name() : collect(c);
         case At::array:
@@ -152,7 +152,7 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
 std::optional<Problem> JobsArray::collect(char c) {
     escaped_ = !escaped_ && c == '\\';
     text_ += c;
-    if (text_.size() <= kLongestQuote) return std::nullopt;
+    if (text_.size() <= kMaxQuoteLength) return std::nullopt;
     if (at_ == At::name_text) return not_valid("/name", "name is longer than 200 characters; a shorter one is needed.");
     return not_valid("", "A member's name at " + place() + " is longer than any of a batch. " + std::string(kCure));
 }
@@ -176,7 +176,7 @@ std::optional<Problem> JobsArray::end_member_name() {
 std::optional<Problem> JobsArray::end_name() {
     const auto name = spelled(text_);
     if (!name) return not_json("The body is not JSON: the text that ends at " + place() + " cannot be read.");
-    if (name->size() > kLongestName)
+    if (name->size() > kMaxNameLength)
         return not_valid("/name",
                          "name has " + std::to_string(name->size()) + " characters; at most 200 are accepted.");
     name_ = *name;

@@ -170,9 +170,10 @@ void Loops::finish(std::vector<RawEntry>& entries) {
 }
 
 std::optional<Problem> Loops::read_headings(long number, std::string_view line) {
-    constexpr std::string_view kTold = "sep=";
+    constexpr std::string_view kReportedIntervals = "sep=";
     const std::string_view content = trimmed(line);
-    if (!told_ && lower_case(content.substr(0, kTold.size())) == kTold && line.find('=') + 1 < line.size()) {
+    if (!told_ && lower_case(content.substr(0, kReportedIntervals.size())) == kReportedIntervals &&
+        line.find('=') + 1 < line.size()) {
         separator_ = line[line.find('=') + 1];
         told_ = true;
         return std::nullopt;
@@ -226,8 +227,8 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
         return refused(where + "T is in " + in_quotes(units[kLag]) + " and L in " + in_quotes(units[kDelay]) +
                        "; both must be in the same unit.");
     time_unit_ = units[kLag].empty() ? units[kDelay] : units[kLag];
-    constexpr std::size_t kLongestUnit = 40;
-    if (time_unit_.size() > kLongestUnit) return refused(where + "the unit of T is longer than 40 characters.");
+    constexpr std::size_t kMaxUnitLength = 40;
+    if (time_unit_.size() > kMaxUnitLength) return refused(where + "the unit of T is longer than 40 characters.");
     headed_ = true;
     return std::nullopt;
 }

@@ -9,8 +9,8 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestName = 200;
-constexpr std::size_t kLongestLoop = 64 * 1024;
+constexpr std::size_t kMaxNameLength = 200;
+constexpr std::size_t kMaxLoop = 64 * 1024;
 
 Problem not_valid(std::string pointer, std::string detail) {
     Problem problem{422, "invalid-request", "The batch is not valid", detail, {}, {}};
@@ -26,7 +26,7 @@ std::string name_in(const std::string& text) {
     const auto* value = std::get_if<Json>(&parsed);
     if (value == nullptr || !value->is_object() || !value->contains("name")) return {};
     const Json& name = (*value)["name"];
-    if (!name.is_string() || name.get_ref<const std::string&>().size() > kLongestName) return {};
+    if (!name.is_string() || name.get_ref<const std::string&>().size() > kMaxNameLength) return {};
     return name.get<std::string>();
 }
 
@@ -95,7 +95,7 @@ private:
 
 class BatchReader::LoopsCutter : public Cutter {
 public:
-    explicit LoopsCutter(const LoopOptions& options) : loops_(options), lines_(Lines::Ends::any, kLongestLoop) {}
+    explicit LoopsCutter(const LoopOptions& options) : loops_(options), lines_(Lines::Ends::any, kMaxLoop) {}
 
     std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
         std::optional<Problem> problem;
@@ -116,7 +116,7 @@ public:
 private:
     Lines::Take taker(std::vector<RawEntry>& entries, std::optional<Problem>& problem) {
         return [&](long number, std::string_view text, std::size_t bytes) {
-            if (bytes > kLongestLoop)
+            if (bytes > kMaxLoop)
                 problem = not_valid("", "Line " + std::to_string(number) +
                                             " has more than 65536 bytes; it is no line of a CSV of loops.");
             else
@@ -139,7 +139,7 @@ public:
     std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
         if (chosen_) return chosen_->feed(bytes, entries);
         // What is decided depends on the text alone, not on how it was cut.
-        const std::size_t looked = std::min(bytes.size(), kLongestHead - head_.size());
+        const std::size_t looked = std::min(bytes.size(), kMaxHeadLength - head_.size());
         head_ += bytes.substr(0, looked);
         if (auto problem = find(bytes.substr(0, looked), entries)) return problem;
         if (looked == bytes.size()) return std::nullopt;
@@ -159,7 +159,7 @@ public:
     bool takes_options() const override { return !chosen_ || chosen_->takes_options(); }
 
 private:
-    static constexpr std::size_t kLongestHead = 64 * 1024;
+    static constexpr std::size_t kMaxHeadLength = 64 * 1024;
 
     /// `fresh` is the end of the head.
     std::optional<Problem> find(std::string_view fresh, std::vector<RawEntry>& entries) {
@@ -248,7 +248,7 @@ std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<
         ++count_;
         BatchEntry& made = entries.emplace_back();
         if (entry.fault) {
-            made.name = entry.name.size() <= kLongestName ? std::move(entry.name) : std::string();
+            made.name = entry.name.size() <= kMaxNameLength ? std::move(entry.name) : std::string();
             made.job = std::move(*entry.fault);
         } else {
             made.job = prepare_entry(entry.text, question_.limits);

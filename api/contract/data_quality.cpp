@@ -48,8 +48,8 @@ const Description<MissingPart>& missing_contract() {
 const Description<Saturation>& saturation_contract() {
     static const auto description = [] {
         Description<Saturation> d("Saturation", "A level at which y is cut off flat.");
-        d.field("level", &Saturation::level, size(), "Where.", {.unit = "y"})
-            .field("fraction", &Saturation::fraction, size(), "Of the samples, 0 to 1.");
+        d.field("level", &Saturation::level, size(), "The level at which y is cut off.", {.unit = "y"})
+            .field("fraction", &Saturation::fraction, size(), "Fraction of the samples at this level, 0 to 1.");
         return d;
     }();
     return description;

@@ -6,7 +6,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestText = 100;
+constexpr std::size_t kMaxTextLength = 100;
 
 NumberRule rule_of(const OptionDescription& option) {
     return {.minimum = option.minimum, .exclusive_minimum = option.exclusive_minimum, .maximum = option.maximum};
@@ -104,7 +104,7 @@ void read_list(const Json& value, const OptionDescription& option, const std::st
 
 bool is_name(const std::string& text) {
     const auto in_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-    return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 && text.size() <= kLongestText &&
+    return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 && text.size() <= kMaxTextLength &&
            std::all_of(text.begin(), text.end(), in_name);
 }
 
@@ -180,7 +180,7 @@ Json bare_schema(const OptionDescription& option) {
         }
         case OptionType::boolean: return {{"type", "boolean"}};
         case OptionType::choice: return {{"type", "string"}, {"enum", option.choices}};
-        case OptionType::text: return {{"type", "string"}, {"maxLength", kLongestText}};
+        case OptionType::text: return {{"type", "string"}, {"maxLength", kMaxTextLength}};
         case OptionType::number_or_word:
             return {{"oneOf", Json::array({plain, Json{{"type", "string"}, {"enum", option.choices}}})}};
         case OptionType::range: return pair_schema(option);
@@ -225,7 +225,7 @@ void read_option(const Json& value, const OptionDescription& option, const std::
         case OptionType::integer: return read_plain_number(value, option, path, target, reader);
         case OptionType::boolean: return read_through(boolean(), value, path, target, reader);
         case OptionType::choice: return read_word(value, option, path, target, reader);
-        case OptionType::text: return read_through(text(kLongestText), value, path, target, reader);
+        case OptionType::text: return read_through(text(kMaxTextLength), value, path, target, reader);
         case OptionType::number_or_word: return read_number_or_word(value, option, path, target, reader);
         case OptionType::range: return read_pair(value, option, path, "[low, high]", target, reader);
         case OptionType::number_or_range:

@@ -125,8 +125,8 @@ Codec<MethodRequest> method_request() {
 }
 
 Codec<std::vector<MethodRequest>> tune_list() {
-    constexpr std::size_t kMost = 50;
-    auto codec = list_of(method_request(), 1, kMost);
+    constexpr std::size_t kMax = 50;
+    auto codec = list_of(method_request(), 1, kMax);
     codec.read = [list = codec.read](const Json& value, std::vector<MethodRequest>& target, Reader& reader) {
         if (value == kAll) {
             target = {{kAll, {}}};

@@ -8,15 +8,15 @@
 namespace tunewright::api {
 namespace {
 
-constexpr int kMostColumns = 1000;
-constexpr std::size_t kLongestHeading = 200;
+constexpr int kMaxColumns = 1000;
+constexpr std::size_t kMaxHeadingLength = 200;
 
 Codec<ColumnChoice> column_choice() {
     return {
         [](const Json& value, ColumnChoice& target, Reader& reader) {
             if (value.is_string()) {
                 target = value.get<std::string>();
-            } else if (value.is_number_integer() && value.get<double>() >= 1 && value.get<double>() <= kMostColumns) {
+            } else if (value.is_number_integer() && value.get<double>() >= 1 && value.get<double>() <= kMaxColumns) {
                 target = value.get<int>();
             } else {
                 reader.fault(reader.name() + " is " + shown(value) +
@@ -28,8 +28,8 @@ Codec<ColumnChoice> column_choice() {
                                                 : out.text(std::get<std::string>(choice));
         },
         [](SchemaBook&) {
-            return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"maxLength", kLongestHeading}},
-                                               Json{{"type", "integer"}, {"minimum", 1}, {"maximum", kMostColumns}}})}};
+            return Json{{"oneOf", Json::array({Json{{"type", "string"}, {"maxLength", kMaxHeadingLength}},
+                                               Json{{"type", "integer"}, {"minimum", 1}, {"maximum", kMaxColumns}}})}};
         }};
 }
 
@@ -178,7 +178,7 @@ const Description<GivenRecord>& record_contract() {
                                    "point, may stand beside them.");
         const auto column = [] {
             return maybe(
-                numbers(2, kMostSamples, {.cure = "Thin the record out: a few thousand samples identify as well."}));
+                numbers(2, kMaxSamples, {.cure = "Thin the record out: a few thousand samples identify as well."}));
         };
         d.field("t", &GivenRecord::t, column(), "Times, any start, any spacing.", {.unit = "time"})
             .field("dt", &GivenRecord::dt, maybe(number({.exclusive_minimum = 0})), "Spacing, instead of t.",
@@ -186,7 +186,7 @@ const Description<GivenRecord>& record_contract() {
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
             .field("r", &GivenRecord::r, column(), "Set point, where the record has one.", {.unit = "y"})
-            .field("csv", &GivenRecord::csv, maybe(text(kLongestCsv)),
+            .field("csv", &GivenRecord::csv, maybe(text(kMaxCsvLength)),
                    "CSV text instead of the arrays: separated by , ; tab | or blanks, decimal point or comma, times as "
                    "numbers "
                    "or stamps, with or without headings and units. A blank u is held, a line without y counts for u.")
@@ -259,7 +259,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     options.dt = given.dt;
     options.unit_u = units.u.value_or("");
     options.unit_y = units.y.value_or("");
-    options.most_samples = kMostSamples;
+    options.most_samples = kMaxSamples;
     auto read = read_csv_record(*given.csv, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
         for (const CsvFault& fault : *faults) {

@@ -7,8 +7,8 @@
 
 namespace tunewright::api {
 
-constexpr std::size_t kMostSamples = 2'000'000;
-constexpr std::size_t kLongestCsv = std::size_t{256} << 20;  ///< bytes; the limit on a request's body comes first
+constexpr std::size_t kMaxSamples = 2'000'000;
+constexpr std::size_t kMaxCsvLength = std::size_t{256} << 20;  ///< bytes; the limit on a request's body comes first
 
 struct Units {
     std::optional<std::string> time, u, y;

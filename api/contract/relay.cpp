@@ -8,7 +8,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kMaxNameLength = 200;
 
 const Description<RelaySettings>& relay_settings_contract() {
     static const auto description = [] {
@@ -31,7 +31,7 @@ const Description<RelaySettings>& relay_settings_contract() {
                 "Spacing of the record's rows, a whole multiple of relay_sample_time; Pu/200 or relay_sample_time if "
                 "not given. Every switch is a row, too.",
                 {.unit = "time"})
-            .field("cycles", &RelaySettings::cycles, integer(1, kMostRelayCycles), "Cycles recorded from t = 0.")
+            .field("cycles", &RelaySettings::cycles, integer(1, kMaxRelayCycles), "Cycles recorded from t = 0.")
             .field("seed", &RelaySettings::seed, integer(0, 2147483647), "Of the noise: equal seeds, equal records.")
             .field("shift", &RelaySettings::shift, maybe(number({.exclusive_minimum = 0})),
                    "Shift of limit_cycle.shift; 1/Pu if not given.", {.unit = "1/time"});
@@ -46,7 +46,7 @@ void check_relay(const Json&, RelayRequest& request, Reader& reader) {
     if (const auto error = refuse_settings(request.relay)) reader.fault_below(error->where, 0, error->message);
 }
 
-Codec<std::vector<double>> column() { return only_answered(numbers(0, kMostRelayRows)); }
+Codec<std::vector<double>> column() { return only_answered(numbers(0, kMaxRelayRows)); }
 
 const Description<RelayRecord>& relay_record_contract() {
     static const auto description = [] {
@@ -77,7 +77,7 @@ const Description<RelayPlan>& relay_plan_contract() {
                    {.unit = "y"})
             .field("expected_period", &RelayPlan::expected_period, only_answered(number()), "Period to expect.",
                    {.unit = "time"})
-            .field("cycles", &RelayPlan::cycles, only_answered(integer(1, kMostRelayCycles)),
+            .field("cycles", &RelayPlan::cycles, only_answered(integer(1, kMaxRelayCycles)),
                    "Cycles to run, those to settle included.")
             .field("duration", &RelayPlan::duration, only_answered(number()), "How long that takes, about.",
                    {.unit = "time"})
@@ -94,7 +94,7 @@ const Description<RelayPlan>& relay_plan_contract() {
 const Description<RelayRequest>& relay_request_contract() {
     static const auto description = [] {
         Description<RelayRequest> d("RelayRequest", "A plant and the relay test to simulate on it.");
-        d.field("name", &RelayRequest::name, maybe(text(kLongestName)), "A label, such as the loop's tag.")
+        d.field("name", &RelayRequest::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
             .field("units", &RelayRequest::units, maybe(object(units_contract())), "Labels of the units.")
             .field("plant", &RelayRequest::plant, maybe(one_of(plant_contract())), "The plant.", {.required = true})
             .field("relay", &RelayRequest::relay, object(relay_settings_contract()), "The relay and the record.")

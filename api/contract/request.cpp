@@ -10,22 +10,22 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestName = 200;
-constexpr int kMostPoints = 20'000;
+constexpr std::size_t kMaxNameLength = 200;
+constexpr int kMaxPoints = 20'000;
 
 Codec<int> points() {
-    Codec<int> codec = integer(0, kMostPoints);
+    Codec<int> codec = integer(0, kMaxPoints);
     codec.read = [](const Json& value, int& target, Reader& reader) {
         const auto read = read_number(value, {}, reader);
         if (!read) return;
-        if (*read != 0 && !(*read >= 2 && *read <= kMostPoints && *read == static_cast<int>(*read))) {
+        if (*read != 0 && !(*read >= 2 && *read <= kMaxPoints && *read == static_cast<int>(*read))) {
             return reader.fault("points is " + shown(value) +
                                 "; it must be 0 (no traces) or a whole number from 2 to 20000.");
         }
         target = static_cast<int>(*read);
     };
     codec.schema = [](SchemaBook&) {
-        return Json{{"type", "integer"}, {"minimum", 0}, {"maximum", kMostPoints}, {"not", {{"const", 1}}}};
+        return Json{{"type", "integer"}, {"minimum", 0}, {"maximum", kMaxPoints}, {"not", {{"const", 1}}}};
     };
     return codec;
 }
@@ -167,7 +167,7 @@ void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
 
 template <class Request>
 void add_labels(Description<Request>& d) {
-    d.field("name", &Request::name, maybe(text(kLongestName)), "A label, such as the loop's tag.")
+    d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
         .field("units", &Request::units, maybe(object(units_contract())), "Labels of the units, echoed.");
 }
 
@@ -258,14 +258,14 @@ const Description<JobRequest>& job_contract() {
 }
 
 const Description<EvaluateRequest>& evaluate_request_contract() {
-    constexpr std::size_t kMostControllers = 50;
+    constexpr std::size_t kMaxControllers = 50;
     static const auto description = [] {
         Description<EvaluateRequest> d("EvaluateRequest", "A plant and controllers for it.");
         add_labels(d);
         d.field("plant", &EvaluateRequest::plant, maybe(one_of(plant_model_contract())), "The plant.",
                 {.required = true})
             .field("controllers", &EvaluateRequest::controllers,
-                   list_of(one_of(controller_contract()), 1, kMostControllers), "The controllers.", {.required = true})
+                   list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
             .check(check_controllers)

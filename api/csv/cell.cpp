@@ -9,7 +9,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kLongestNumber = 64;
+constexpr std::size_t kMaxNumberLength = 64;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -113,7 +113,7 @@ bool read_cell_number(std::string_view cell, double& value, DecimalSign sign, st
         return false;
     const bool comma = cell.find(',') != cell.npos;
     if (!comma && sign != DecimalSign::comma && parse(cell, value)) return true;
-    if (cell.size() > kLongestNumber) return false;
+    if (cell.size() > kMaxNumberLength) return false;
     if (!comma && cell.find_first_of(". '\xC2\xE2") == cell.npos) return parse(cell, value);
     return parse_signs(without_blanks_between_digits(cell), sign, value);
 }

@@ -12,7 +12,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMostPairs = 200, kLongestKey = 60, kLongestLine = 20'000;
+constexpr std::size_t kMaxPairs = 200, kMaxKeyLength = 60, kMaxLineLength = 20'000;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -121,7 +121,7 @@ std::string key_of(std::string_view between) {
     while (!between.empty() && strip(between.back())) between.remove_suffix(1);
     if (const std::size_t blank = between.find(' '); blank != between.npos && is_unit(between.substr(0, blank)))
         between = trimmed(between.substr(blank));
-    if (between.size() > kLongestKey || between.find_first_of("/\\:=#") != between.npos) {
+    if (between.size() > kMaxKeyLength || between.find_first_of("/\\:=#") != between.npos) {
         const std::size_t blank = between.find_last_of(' ');
         between = blank == between.npos ? std::string_view() : between.substr(blank + 1);
     }
@@ -132,7 +132,7 @@ std::string key_of(std::string_view between) {
         const std::size_t blank = between.find(' ');
         between = blank == between.npos ? std::string_view() : trimmed(between.substr(blank));
     }
-    if (between.empty() || between.size() > kLongestKey || !may_begin_key(between.front())) return {};
+    if (between.empty() || between.size() > kMaxKeyLength || !may_begin_key(between.front())) return {};
     return std::string(between);
 }
 
@@ -142,8 +142,8 @@ std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
     skip_blanks(line, at);
     const bool bracket = at < line.size() && line[at] == '[';
     if (bracket) ++at;
-    constexpr std::size_t kLongestStamp = 36;
-    for (std::size_t end = std::min(line.size(), at + kLongestStamp); end > at + 4; --end) {
+    constexpr std::size_t kMaxStampLength = 36;
+    for (std::size_t end = std::min(line.size(), at + kMaxStampLength); end > at + 4; --end) {
         const bool whole =
             end == line.size() || is_blank(line[end]) || std::string_view(",;]|").find(line[end]) != line.npos;
         if (!whole || is_blank(line[end - 1]) || !is_digit(line[at])) continue;
@@ -209,10 +209,10 @@ void tell_printer_words(std::vector<Pair>& out) {
 
 void split_pairs(std::string_view line, std::vector<Pair>& out) {
     out.clear();
-    if (line.size() > kLongestLine) return;
+    if (line.size() > kMaxLineLength) return;
     std::size_t consumed = take_time(line, out);
     std::string group;
-    for (std::size_t at = consumed; at < line.size() && out.size() < kMostPairs;) {
+    for (std::size_t at = consumed; at < line.size() && out.size() < kMaxPairs;) {
         const std::size_t sign = line.find_first_of("=:", at);
         if (sign == line.npos) break;
         const std::string key = key_of(line.substr(consumed, sign - consumed));

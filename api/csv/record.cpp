@@ -13,7 +13,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMostFaults = 10;
+constexpr std::size_t kMaxFaults = 10;
 constexpr double kLargest = 1e30;  // as in every number of the contract
 
 class RecordReader {
@@ -36,7 +36,7 @@ public:
 
 private:
     void fault(std::string where, std::string message) {
-        if (faults_.size() < kMostFaults) faults_.push_back({std::move(where), std::move(message)});
+        if (faults_.size() < kMaxFaults) faults_.push_back({std::move(where), std::move(message)});
     }
 
     std::string no_data() const {
@@ -93,7 +93,7 @@ private:
             else
                 read_line(line, times);
             ++index_;
-            if (faults_.size() >= kMostFaults) return;
+            if (faults_.size() >= kMaxFaults) return;
             if (record_.t.size() > options_.most_samples) {
                 return fault("csv", "csv has more than " + std::to_string(options_.most_samples) +
                                         " samples; thin it out: a few thousand identify as well.");
@@ -115,8 +115,8 @@ private:
     }
 
     void reserve() {
-        constexpr std::size_t kShortestLine = 6;
-        const std::size_t typical = layout_.width * 4 + kShortestLine;
+        constexpr std::size_t kMinLineLength = 6;
+        const std::size_t typical = layout_.width * 4 + kMinLineLength;
         const std::size_t most = std::min(options_.most_samples, text_.size() / typical + 1);
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(most);
         if (columns_.at[kReferenceRole]) record_.r.reserve(most);

@@ -163,11 +163,11 @@ double TimeColumn::continued(const TimeStamp& stamp, int line) {
     double seconds = stamp.seconds + set_back_;
     if (last_ && seconds < *last_) {
         const double back = *last_ - seconds;
-        constexpr double kMost = 120;
+        constexpr double kMax = 120;
         if (!stamp.has_date && back > kDay / 2) {
             set_back_ += kDay;
             seconds += kDay;
-        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMost) {
+        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMax) {
             set_back_ += kHour;
             seconds += kHour;
             notes_.push_back("The clock goes back by an hour at line " + std::to_string(line) +

@@ -118,7 +118,7 @@ Codec<bool> boolean() {
 
 Codec<std::string> text(std::size_t longest) {
     return {[longest](const Json& value, std::string& target, Reader& reader) {
-                if (!value.is_string()) return reader.fault(wrong_kind(value, "a text", reader));
+                if (!value.is_string()) return reader.fault(wrong_kind(value, "a string", reader));
                 const auto& content = value.get_ref<const std::string&>();
                 if (content.size() > longest) {
                     return reader.fault(reader.name() + " has " + std::to_string(content.size()) +
@@ -210,7 +210,7 @@ Codec<std::optional<double>> figure() {
             [](const std::optional<double>& value) { return !value || !std::isfinite(*value); }};
 }
 
-Codec<std::optional<bool>> truth_figure() {
+Codec<std::optional<bool>> nullable_bool() {
     return {{},
             [](const std::optional<bool>& value, Writer& out) { value ? out.boolean(*value) : out.null(); },
             [](SchemaBook&) {

@@ -68,7 +68,7 @@ Codec<std::vector<double>> times_trace();
 
 /// Only in answers: null where undefined or infinite.
 Codec<std::optional<double>> figure();
-Codec<std::optional<bool>> truth_figure();
+Codec<std::optional<bool>> nullable_bool();
 
 /// Only in answers: numbers by name.
 Codec<std::map<std::string, double>> numbers_by_name(std::string keys);

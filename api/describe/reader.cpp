@@ -70,7 +70,7 @@ std::string kind_of(const Json& value) {
         case Json::value_t::null: return "null";
         case Json::value_t::object: return "an object";
         case Json::value_t::array: return "an array";
-        case Json::value_t::string: return "a text";
+        case Json::value_t::string: return "a string";
         case Json::value_t::boolean: return "a truth value";
         default: return "a number";
     }

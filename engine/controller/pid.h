@@ -95,8 +95,8 @@ Expected<Pid> to_ideal(const SeriesPid& pid);
 /// Of any form; of the nonlinear PID its linear part. Errors: as above.
 Expected<Pid> to_ideal(const Controller& controller);
 
-/// The series form of the same loop, with the larger root as Ti' (api.md, Definitions). With a derivative filter it
-/// exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
+/// The series form of the same loop, with the larger root as Ti' (SeriesPid states its law). With a derivative filter
+/// it exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
 /// which rule fails.
 Expected<SeriesPid> to_series(const Pid& pid);
 

@@ -26,7 +26,7 @@ constexpr const char* kNoTime =
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
 constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
 constexpr double kSettledForFigures = 3e-7;
-constexpr int kMostNonlinearSteps = 20000;  // a stalled integral may need any number
+constexpr int kMaxNonlinearSteps = 20000;  // a stalled integral may need any number
 
 Error at_field(Error error, const char* prefix) {
     if (error.where.empty()) error.where = prefix;
@@ -58,7 +58,7 @@ Verification verify(const Loop& loop, const Peaks& peaks) {
 }
 
 /// The load's error against its integral to infinity, which theory knows.
-void verify_integral(Verification& v, const LinearResponse& load, const std::optional<double>& IAE, bool linear) {
+void verify_integral(Verification& v, const StepResponse& load, const std::optional<double>& IAE, bool linear) {
     if (!IAE || !load.error_integral_final) return;
     const double exact = *load.error_integral_final;
     if (exact == 0) return;
@@ -74,7 +74,7 @@ MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::option
     options.horizon = o.horizon;
     if (delta_r) {
         options.tolerance = kNonlinearTolerance;
-        options.max_steps = kMostNonlinearSteps;
+        options.max_steps = kMaxNonlinearSteps;
     }
     const auto run = [&](const ResponseOptions& how) {
         if (delta_r) return simulate_npid(plant, loop.gains(), *delta_r, inputs, how);
@@ -85,7 +85,7 @@ MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::option
 }
 
 /// What the limits did, where they did something.
-void warn_of_limits(Evaluation& evaluation, const LinearResponse& response, const ActuatorLimits& limits,
+void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const ActuatorLimits& limits,
                     const char* step) {
     for (const auto& node : response.nodes) {
         if (node.u < limits.max && node.u > limits.min) continue;
@@ -103,7 +103,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
     const MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
                            of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
-    const LinearResponse &setpoint = of_setpoint.response, &load = of_load.response;
+    const StepResponse &setpoint = of_setpoint.response, &load = of_load.response;
     const bool to_infinity = !o.horizon.has_value();
     evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
     evaluation.performance.load = load_figures(load, to_infinity);

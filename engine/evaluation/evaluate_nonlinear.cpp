@@ -18,7 +18,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostSteps = 20000;
+constexpr int kMaxSteps = 20000;
 constexpr double kUnstableHorizon = 10;  // of the plant's dead time and lags: what an unstable loop shows
 constexpr double kFarIntegral = 0.2;     // relative difference of an IAE
 constexpr double kFarOvershoot = 10;     // difference of an overshoot, percent of the step
@@ -37,7 +37,7 @@ Runs simulate(const NonlinearSystem& system, const Controller& controller, const
               std::optional<double> horizon) {
     NonlinearOptions options;
     options.horizon = horizon;
-    options.max_steps = kMostSteps;
+    options.max_steps = kMaxSteps;
     options.actuator = actuator_of(o);
     if (const auto* npid = std::get_if<Npid>(&controller)) options.delta_r = npid->delta_r;
     const ParallelPid law = gains(controller);

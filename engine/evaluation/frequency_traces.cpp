@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/numerics/quick_complex.h"
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {

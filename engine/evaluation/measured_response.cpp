@@ -9,19 +9,19 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostRefinements = 5;
+constexpr int kMaxRefinements = 5;
 constexpr double kHalvedSteps = 1.0 / 16;  // of a tolerance, where the error is of order 4
 constexpr double kTail = 1e-6;             // of the integral of t |e|, left after the run's end
-constexpr std::size_t kMostNodes = 1000000;
+constexpr std::size_t kMaxNodes = 1000000;
 constexpr double kMoreNodes = 1.4;
-constexpr int kMostTightenings = 3;
+constexpr int kMaxTightenings = 3;
 
 struct Indices {
     std::optional<ErrorIntegrals> error;  // where they exist
     double TV = 0;
 };
 
-Indices indices_of(const LinearResponse& response, const ResponseOptions& options, double target) {
+Indices indices_of(const StepResponse& response, const ResponseOptions& options, double target) {
     Indices indices{std::nullopt, total_variation(response.nodes)};
     if (why_no_integral(response, target, !options.horizon) == nullptr)
         indices.error =
@@ -51,10 +51,10 @@ bool within_promise(const IndexErrors& errors) {
 
 /// On the halved schedule; without one with tolerances that fall until there are more steps indeed: lengths that go by
 /// powers of two may meet a smaller one as they are.
-LinearResponse refined(const Simulate& simulate, ResponseOptions& options, const LinearResponse& response) {
+StepResponse refined(const Simulate& simulate, ResponseOptions& options, const StepResponse& response) {
     if (response.schedule.level.empty() && response.schedule.to_horizon == 0) {
-        LinearResponse finer;
-        for (int i = 0; i < kMostTightenings; ++i) {
+        StepResponse finer;
+        for (int i = 0; i < kMaxTightenings; ++i) {
             options.tolerance *= kHalvedSteps;
             finer = simulate(options);
             if (static_cast<double>(finer.nodes.size()) > kMoreNodes * static_cast<double>(response.nodes.size()))
@@ -79,8 +79,8 @@ MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, doub
     MeasuredResponse measured{simulate(options), {}};
     if (!measured.response.settles) return measured;
     Indices last = indices_of(measured.response, options, target);
-    for (int i = 0; i < kMostRefinements && measured.response.nodes.size() < kMostNodes; ++i) {
-        LinearResponse finer = refined(simulate, options, measured.response);
+    for (int i = 0; i < kMaxRefinements && measured.response.nodes.size() < kMaxNodes; ++i) {
+        StepResponse finer = refined(simulate, options, measured.response);
         if (!finer.settles) break;
         const Indices now = indices_of(finer, options, target);
         measured = {std::move(finer), moved(last, now)};

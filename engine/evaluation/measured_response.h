@@ -17,11 +17,11 @@ namespace tunewright {
 inline constexpr double kPromisedIae = 1e-5, kPromisedIse = 1e-5, kPromisedItae = 2e-5, kPromisedTv = 5e-5;
 
 struct MeasuredResponse {
-    LinearResponse response;
+    StepResponse response;
     IndexErrors errors;  ///< of the indices that exist
 };
 
-using Simulate = std::function<LinearResponse(const ResponseOptions&)>;
+using Simulate = std::function<StepResponse(const ResponseOptions&)>;
 
 /// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of
 /// the tolerance (which halves steps of order 4) or less. `target` is what y is to reach. Without a horizon the

@@ -74,7 +74,7 @@ void warn_of_linear_part(Evaluation& evaluation) {
          "nonlinear PID, which rules where the error is far below delta_r."});
 }
 
-void warn_of_nonlinearity(Evaluation& evaluation, const LinearResponse& setpoint, const LinearResponse& load,
+void warn_of_nonlinearity(Evaluation& evaluation, const StepResponse& setpoint, const StepResponse& load,
                           const EvaluateOptions& options) {
     const double delta_r = evaluation.nonlinear->delta_r;
     warn_of_linear_part(evaluation);

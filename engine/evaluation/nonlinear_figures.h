@@ -14,7 +14,7 @@ NonlinearFigures nonlinear_figures(const Loop& linear_part, double delta_r);
 void warn_of_linear_part(Evaluation& evaluation);
 
 /// Adds the same, how the responses depend on the step sizes, where the integral stalls and what is not applied.
-void warn_of_nonlinearity(Evaluation& evaluation, const LinearResponse& setpoint, const LinearResponse& load,
+void warn_of_nonlinearity(Evaluation& evaluation, const StepResponse& setpoint, const StepResponse& load,
                           const EvaluateOptions& options);
 
 }  // namespace tunewright

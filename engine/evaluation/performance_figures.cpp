@@ -21,7 +21,7 @@ void all_null(Figures& figures, std::initializer_list<const char*> names, const 
 }  // namespace
 
 // Where the error comes to rest decides.
-const char* why_no_integral(const LinearResponse& response, double target, bool to_infinity) {
+const char* why_no_integral(const StepResponse& response, double target, bool to_infinity) {
     if (!to_infinity) return nullptr;
     if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
     double scale = std::abs(target);
@@ -41,7 +41,7 @@ Performance no_performance(const std::string& reason) {
     return performance;
 }
 
-SetpointPerformance setpoint_figures(const LinearResponse& response, double step, bool to_infinity) {
+SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity) {
     SetpointPerformance p;
     const auto& nodes = response.nodes;
     if (const char* reason = why_no_integral(response, step, to_infinity)) {
@@ -72,7 +72,7 @@ SetpointPerformance setpoint_figures(const LinearResponse& response, double step
     return p;
 }
 
-LoadPerformance load_figures(const LinearResponse& response, bool to_infinity) {
+LoadPerformance load_figures(const StepResponse& response, bool to_infinity) {
     LoadPerformance p;
     const auto& nodes = response.nodes;
     if (const char* reason = why_no_integral(response, 0, to_infinity)) {
@@ -106,9 +106,9 @@ NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise) {
     return figures;
 }
 
-double covering_horizon(const LinearResponse& setpoint, const LinearResponse& load) {
+double covering_horizon(const StepResponse& setpoint, const StepResponse& load) {
     double t = 0;
-    for (const LinearResponse* response : {&setpoint, &load}) {
+    for (const StepResponse* response : {&setpoint, &load}) {
         double largest = 0;
         for (const auto& node : response->nodes) largest = std::max(largest, std::abs(node.y - response->y_final));
         t = std::max(
@@ -119,7 +119,7 @@ double covering_horizon(const LinearResponse& setpoint, const LinearResponse& lo
     return std::ceil(wanted / unit) * unit;
 }
 
-Trace trace_of(const LinearResponse& response, double horizon, int points) {
+Trace trace_of(const StepResponse& response, double horizon, int points) {
     Trace trace;
     const auto values = sampled(response.nodes, horizon, points);
     for (int i = 0; i < points; ++i) {

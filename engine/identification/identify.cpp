@@ -186,12 +186,12 @@ Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const Identif
 
 /// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
 /// gain where the test shows it.
-std::vector<Anchor> anchors_of(const Search& search, const RecordedCycle& cycle) {
+std::vector<FrequencyConstraint> anchors_of(const Search& search, const RecordedCycle& cycle) {
     constexpr double kHeldWithin = 3e-4;
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
     const std::complex<double> G = cycle.harmonics.front().G;
-    std::vector<Anchor> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
+    std::vector<FrequencyConstraint> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
     const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > 0.01 * cycle.v_half &&
                             cycle.drift == 0 && search.disturbances.slope == false &&
@@ -254,9 +254,9 @@ RecordKind kind_of(const CleanRecord& record) {
 
 /// The models of a record, its false readings left out of it.
 Search searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
-    constexpr int kMostFitted = 100'000;
+    constexpr int kMaxFitted = 100'000;
     Search search =
-        search_models(block_means(record, kMostFitted), model, kind_of(record) == RecordKind::relay, control);
+        search_models(block_means(record, kMaxFitted), model, kind_of(record) == RecordKind::relay, control);
     if (search.choice.index < 0 || control.stop.stop_requested()) return search;
     return without_false_readings(std::move(search), record, model, control);
 }
@@ -280,8 +280,8 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     // Where the rows show u late, the phase that they show at the oscillation is late too.
     const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
     if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
-        const std::vector<Anchor> anchors = anchors_of(search, *cycle);
-        hold_to(search, anchors, options.model, control);
+        const std::vector<FrequencyConstraint> anchors = anchors_of(search, *cycle);
+        constrain(search, anchors, options.model, control);
         if (control.stop.stop_requested()) return cancelled();
         warn_mismatch(*cycle, anchors.size() > 1, left, warnings);
     }

@@ -9,8 +9,8 @@
 namespace tunewright {
 namespace {
 
-constexpr double kLongestTurn = 0.25;  // rad of d between two frequencies that are looked at
-constexpr double kNoGain = 0.5;        // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
+constexpr double kMaxTurn = 0.25;  // rad of d between two frequencies that are looked at
+constexpr double kNoGain = 0.5;    // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
 
 /// 1/d at one frequency: 0 where |T| is too small to matter.
 double inverse_tolerance(double omega, double gain) { return gain < kNoGain ? 0 : omega / (2 * std::asin(0.5 / gain)); }
@@ -64,7 +64,7 @@ double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d) {
         const double last_gain = i > 0 ? std::abs(grid.point[i - 1].T) : 1;
         if (std::max(gain, last_gain) < 0.45 * largest) continue;  // 2 |T| cannot come near what was found
         const double turn = i > 0 ? (omega - grid.omega[i - 1]) * d : 0;
-        const int parts = static_cast<int>(std::min(200.0, std::ceil(turn / kLongestTurn)));
+        const int parts = static_cast<int>(std::min(200.0, std::ceil(turn / kMaxTurn)));
         for (int k = 1; k < parts; ++k) {
             const double between = grid.omega[i - 1] + (omega - grid.omega[i - 1]) * k / parts;
             visit(between, f(between));

@@ -7,7 +7,7 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/quick_complex.h"
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGridStep = 0.1;  // minima between points are refined
 constexpr int kGridDensity = 20;
-constexpr int kMostBeyond = 400;
+constexpr int kMaxBeyond = 400;
 constexpr double kStrideBeyond = 1.1;
 
 /// Popov's plane: x = Re G, y = omega Im G.
@@ -84,7 +84,7 @@ private:
     /// Above the grid G falls, and the bound with it; without dead time the condition itself is followed until then.
     bool holds_beyond(double q) const {
         double omega = points_.back().omega;
-        for (int i = 0; i < kMostBeyond; ++i, omega *= kStrideBeyond) {
+        for (int i = 0; i < kMaxBeyond; ++i, omega *= kStrideBeyond) {
             if (bound(omega, q) < 1) return true;
             const PopovPoint p = at(omega);
             if (pd_.plant().dead_time() > 0 || p.x - q * p.y <= -1) return false;

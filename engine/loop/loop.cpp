@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/numerics/quick_complex.h"
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {

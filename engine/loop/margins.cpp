@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/numerics/fast_complex.h"
 #include "engine/numerics/log_root.h"
-#include "engine/numerics/quick_complex.h"
 
 namespace tunewright {
 namespace {

@@ -15,7 +15,7 @@ struct Margins {
                              ///< crossing
     double delay_margin;  ///< smallest extra dead time that loses stability; infinity if none; 0 where L(infinity) > 1
                           ///< without dead time
-    double gain_crossover;   ///< omega of the phase margin; NaN-free: 0 without crossing
+    double gain_crossover;   ///< omega of the phase margin; 0 if there is none
     double phase_crossover;  ///< omega of the gain margin (of the lower one if only that exists); 0 without crossing
 };
 

@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kLargestStep = 0.06;  // between neighbours, of S
 constexpr double kLargestRatio = 1.2;  // of neighbouring frequencies
-constexpr std::size_t kMostPoints = 20000;
+constexpr std::size_t kMaxPoints = 20000;
 constexpr double kBoundary = 1e-9;
 
 }  // namespace
@@ -30,7 +30,7 @@ MeasuredLoop::MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains)
             const Complex a = at(left).S, b = at(right).S;
             const bool far = right > left * kLargestRatio ||
                              std::abs(a - b) > kLargestStep * std::max(1.0, std::min(std::abs(a), std::abs(b)));
-            if (far && right > left * (1 + 1e-6) && omega_.size() + pending.size() < kMostPoints) {
+            if (far && right > left * (1 + 1e-6) && omega_.size() + pending.size() < kMaxPoints) {
                 pending.push_back(std::sqrt(left * right));
                 continue;
             }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/numerics/quick_complex.h"
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {

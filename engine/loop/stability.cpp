@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/loop/frequency_grid.h"
-#include "engine/numerics/quick_complex.h"
+#include "engine/numerics/fast_complex.h"
 
 namespace tunewright {
 namespace {

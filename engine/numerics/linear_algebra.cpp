@@ -22,10 +22,10 @@ Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<cons
 // Diagonal similarity by powers of two that makes row and column norms alike (Osborne 1960; Parlett and Reinsch 1969).
 // A few sweeps do in practice; numbers at the ends of the range may go on for ever.
 void balance(Matrix& A) {
-    constexpr int kMostSweeps = 100;
+    constexpr int kMaxSweeps = 100;
     const auto n = A.rows();
     bool changed = true;
-    for (int sweep = 0; changed && sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; changed && sweep < kMaxSweeps; ++sweep) {
         changed = false;
         for (Eigen::Index i = 0; i < n; ++i) {
             double row = A.row(i).cwiseAbs().sum() - std::abs(A(i, i));

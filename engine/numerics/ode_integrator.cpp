@@ -20,7 +20,7 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kShortest = 16 * kEpsilon;  // step, relative to the time
 constexpr double kFirstStep = 0.02;          // in units of the fastest time constant
-constexpr double kSafety = 0.9, kMostGrowth = 5, kMostShrinking = 0.2;
+constexpr double kSafety = 0.9, kMaxGrowth = 5, kMaxShrinking = 0.2;
 constexpr double kExplicitPower = 1.0 / 5, kImplicitPower = 1.0 / 4;
 constexpr double kRounding = 20 * kEpsilon;      // of a state: errors below it are none
 constexpr double kExpected = 1e-2;               // of the movement expected: errors are relative to at least that
@@ -188,11 +188,11 @@ struct OdeIntegrator::Work {
                 length = 0.5 * left;  // two even steps rather than a long one and a sliver
             const double worst = attempt(length);
             const double power = implicit ? kImplicitPower : kExplicitPower;
-            double factor = std::isfinite(worst) ? kSafety * std::pow(std::max(worst, 1e-12), -power) : kMostShrinking;
-            if (!(factor >= kMostShrinking)) factor = kMostShrinking;
+            double factor = std::isfinite(worst) ? kSafety * std::pow(std::max(worst, 1e-12), -power) : kMaxShrinking;
+            if (!(factor >= kMaxShrinking)) factor = kMaxShrinking;
             if (worst <= 1) {
-                factor = std::min(factor, rejected ? 1.0 : kMostGrowth);
-                h = length < h && std::isfinite(h) ? std::max(length * factor, std::min(h, kMostGrowth * length))
+                factor = std::min(factor, rejected ? 1.0 : kMaxGrowth);
+                h = length < h && std::isfinite(h) ? std::max(length * factor, std::min(h, kMaxGrowth * length))
                                                    : length * factor;
                 accept(onto_stop ? t_stop : t + length);
                 look_for_stiffness();

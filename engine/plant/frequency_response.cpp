@@ -10,7 +10,7 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kFewestPoints = 8;
+constexpr std::size_t kMinPoints = 8;
 constexpr double kPi = std::numbers::pi;
 constexpr double kLargestTurn = 2;  // rad between neighbours: beyond it the next turn could be meant as well
 
@@ -40,9 +40,9 @@ std::optional<Error> check(const FrequencyResponse& points) {
         if (size != n)
             return at_field(name, std::string(name) + " has " + std::to_string(size) + " numbers and omega " +
                                       std::to_string(n) + "; they must be equally many.");
-    if (n < kFewestPoints)
-        return at_field("omega", "omega has " + std::to_string(n) + " points; at least " +
-                                     std::to_string(kFewestPoints) + " are needed.");
+    if (n < kMinPoints)
+        return at_field("omega", "omega has " + std::to_string(n) + " points; at least " + std::to_string(kMinPoints) +
+                                     " are needed.");
     if (points.unstable_poles < 0) return at_field("unstable_poles", "unstable_poles must be >= 0.");
     if (points.integrators < 0) return at_field("integrators", "integrators must be >= 0.");
     for (std::size_t i = 0; i < n; ++i)
@@ -96,7 +96,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
         plant.phase_.push_back(phase);
     }
     const std::size_t kept = plant.omega_.size();
-    if (kept < points.omega.size() && (kept < kFewestPoints || !plant.phase_crossover()))
+    if (kept < points.omega.size() && (kept < kMinPoints || !plant.phase_crossover()))
         return at_field("omega/" + std::to_string(kept),
                         "Between omega " + text(points.omega[kept - 1]) + " and " + text(points.omega[kept]) +
                             " the phase turns by more than 115 degrees, so it cannot be followed. Measure more points "

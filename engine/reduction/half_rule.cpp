@@ -12,7 +12,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kLeastDamping = 0.5;    // below it a pair rings: no lags stand for it
+constexpr double kMinDamping = 0.5;      // below it a pair rings: no lags stand for it
 constexpr double kCloseTo = 1.6 - 1e-9;  // the source's own example has a ratio of 1.6 and does not count it
 constexpr double kNearlyReal = 0.99;     // repeated real poles of a polynomial come out as such pairs
 
@@ -28,7 +28,7 @@ Expected<TimeConstants> time_constants(const LinearPlant& plant) {
     found.delay = plant.dead_time();
     for (const auto pole : plant.poles()) {
         const double zeta = -pole.real() / std::abs(pole);
-        if (zeta < kLeastDamping)
+        if (zeta < kMinDamping)
             return reduction_fails("the plant has poles with damping " + text(zeta) + " (below 0.5).");
         if (zeta < kNearlyReal && pole.imag() > 0)
             found.warnings.push_back({"complex-poles-as-lags", "A pole pair with damping " + text(zeta) + " at " +

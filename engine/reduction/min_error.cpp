@@ -15,7 +15,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kLeastLag = 1e-6;   // of the time scale
+constexpr double kMinLag = 1e-6;     // of the time scale
 constexpr double kLargestLag = 1e4;  // of the time scale
 
 double criterion(ReductionMethod method, const StepDifference& difference, const ReducedModel& model) {
@@ -57,7 +57,7 @@ private:
 ReducedModel Search::model(const std::vector<double>& x) const {
     ReducedModel model{.integrators = integrators_, .K = K_};
     model.L = std::max(0.0, x[0]) * scale_;
-    if (fits_T_) model.T1 = std::clamp(std::exp(x[1]), kLeastLag, kLargestLag) * scale_;
+    if (fits_T_) model.T1 = std::clamp(std::exp(x[1]), kMinLag, kLargestLag) * scale_;
     if (ramp_delay_) {
         model.L = std::min(model.L, *ramp_delay_);
         model.T1 = *ramp_delay_ - model.L;
@@ -68,7 +68,7 @@ ReducedModel Search::model(const std::vector<double>& x) const {
 
 std::vector<double> Search::unknowns(const ReducedModel& model) const {
     std::vector<double> x{model.L / scale_};
-    if (fits_T_) x.push_back(std::log(std::max(model.T1 / scale_, kLeastLag)));
+    if (fits_T_) x.push_back(std::log(std::max(model.T1 / scale_, kMinLag)));
     if (fits_K_) x.push_back(model.K / K_);
     return x;
 }

@@ -1,4 +1,4 @@
-// What a pencil reads off an exact step response: when it passes a level, how monotone it is, where its ramp starts.
+// Level crossings and monotonicity of an exact step response, and where the ramp of an integrating plant starts.
 #pragma once
 
 #include <functional>

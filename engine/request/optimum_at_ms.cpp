@@ -35,7 +35,7 @@ Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control)
                  why == load.why_null.end() ? "The optimum's load IAE is not finite." : why->second};
 }
 
-OptimumAtMs RobustOptima::beside(const Evaluation& evaluation, const RunControl& control) {
+OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunControl& control) {
     const auto& Ms = evaluation.robustness.Ms;
     if (!Ms) return none("The loop has no Ms, so there is nothing to compare at.");
     if (*Ms <= 1 || *Ms > kGreatestMs)

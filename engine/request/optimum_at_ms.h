@@ -27,7 +27,7 @@ public:
     RobustOptima(const RobustOptima&) = delete;  // the front looks at the problem kept here
     RobustOptima& operator=(const RobustOptima&) = delete;
 
-    OptimumAtMs beside(const Evaluation& evaluation, const RunControl& control);
+    OptimumAtMs compare_at_Ms(const Evaluation& evaluation, const RunControl& control);
 
 private:
     Expected<double> load_IAE_at(double Ms, const RunControl& control);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSettledForFigures = 1e-6;
 
-Responses traces_of(const LinearResponse& setpoint, const LinearResponse& load, const EvaluateOptions& options) {
+Responses traces_of(const StepResponse& setpoint, const StepResponse& load, const EvaluateOptions& options) {
     const double horizon = options.horizon.value_or(covering_horizon(setpoint, load));
     return {trace_of(setpoint, horizon, options.points), trace_of(load, horizon, options.points),
             setpoint.settles && load.settles};
@@ -35,7 +35,7 @@ FullController evaluated(const ImcController& controller, const LinearPlant& pla
         const auto run = [&](const ResponseOptions& finer) { return simulate_imc(plant, controller, in, finer); };
         return measure(run, how, in.r).response;
     };
-    const LinearResponse load = simulate({0, options.load_step});
+    const StepResponse load = simulate({0, options.load_step});
     full.load = load_figures(load, !options.horizon);
     if (options.points < 2) return full;
     full.responses = traces_of(simulate({options.setpoint_step, 0}), load, options);
@@ -68,7 +68,8 @@ RimcEntry rimc_entry(const RimcReport& report, const Plant& plant, const LinearP
         entry.full_controller = evaluated(report.full_controller, linear, options);
     if (!entry.full_controller)
         entry.why_null["full_controller"] =
-            "The plant answers at once (as many zeros as poles), which the full controller's loop is not computed for.";
+            "The plant is biproper (as many zeros as poles); the full controller's loop is not computed for such "
+            "plants.";
     return entry;
 }
 

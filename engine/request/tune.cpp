@@ -7,12 +7,12 @@
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/request/identified_region.h"
 #include "engine/request/league.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kNoticeable = 1.01;    // of a limit, before a warning
 constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
 constexpr double kRowsShare = 0.3;      // of what then remains, where optima are computed for every row
 
@@ -29,75 +29,6 @@ std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms
                         rank_Ms);
     });
     return order;
-}
-
-// What a method lets itself be asked for as Ms, if it does.
-std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& options) {
-    if (const auto given = options.number("Ms")) return given;
-    const auto at = std::ranges::find(method.options, "Ms", &OptionDescription::name);
-    if (at == method.options.end() || !at->default_value) return std::nullopt;
-    const double* value = std::get_if<double>(&*at->default_value);
-    return value ? std::optional(*value) : std::nullopt;
-}
-
-// Whether some plant of the region is unstable, or beyond the limit that the method was asked for.
-bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned) {
-    if (!evaluation.region) return false;
-    const auto limit = Ms_limit(*planned.method, planned.options);
-    return !evaluation.region->worst_Ms || (limit && *evaluation.region->worst_Ms > kNoticeable * *limit);
-}
-
-// With a model from a record what the region shows is the answer's own doubt, not only the user's.
-void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified) {
-    constexpr double kFar = 2;  // times the limit
-    if (identified)
-        for (Warning& warning : evaluation.warnings)
-            if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
-    const auto limit = Ms_limit(*planned.method, planned.options);
-    if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
-    const double worst = *evaluation.region->worst_Ms;
-    if (worst <= kNoticeable * *limit) return;
-    evaluation.warnings.push_back(
-        {"above-limit-in-region",
-         "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*limit) + " asked for.",
-         identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
-}
-
-// "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
-std::string with_variant(const std::string& title, const std::string& variant) {
-    if (title.ends_with(')')) return title.substr(0, title.size() - 1) + ", " + variant + ")";
-    return title + " (" + variant + ")";
-}
-
-// The design that holds on the region stands before the one on the model alone, and says why.
-void say_choice(Evaluation& held, const Evaluation& nominal) {
-    const std::string there = nominal.region->worst_Ms ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
-                                                       : std::string("the loop may be unstable");
-    held.warnings.insert(held.warnings.begin(),
-                         {"held-on-region",
-                          "The limits hold on every plant that the record leaves possible (95 %). With the design for "
-                          "the model alone, the next entry, " +
-                              there + " on them. uncertainty \"none\" gives that one alone."});
-}
-
-void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {
-    const auto& crossover = evaluation.robustness.phase_crossover;
-    if (!band || !crossover || *crossover <= band->omega_high) return;
-    evaluation.warnings.push_back(
-        {"beyond-excited-band",
-         "The loop's phase crossover, omega " + text(*crossover) +
-             ", lies beyond the band that the record excited (up to omega " + text(band->omega_high) +
-             "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
-}
-
-// The 95 % confidence region of the chosen model, and beside it the best of every structure that the record does not
-// tell from its own.
-Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
-    auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
-    if (!region) return region.error();
-    PlantFamily family{{std::move(*region)}};
-    for (const Plant& other : model.alternatives) family.regions.push_back(PlantRegion::of_ranges(other));
-    return family;
 }
 
 // One run of tune(): what its steps share.
@@ -295,7 +226,7 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     if (entry.emulation && request_.evaluate.points == 0) entry.emulation->drop_traces();
     if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
     result_.partial = result_.partial || tuned->partial;
-    evaluate_into(entry, answered(*tuned), tuned->warnings);
+    evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_tradeoff(entry, tuned->arrieta);
     if (entry.evaluation) {
         warn_of_region(*entry.evaluation, planned, result_.model.has_value());
@@ -403,7 +334,7 @@ void Run::compare_with_optima(double from) {
             return;
         }
         report(from, "tune", "Looking for the optimum at the same Ms as " + entry.title + ".");
-        if (entry.evaluation) entry.optimum_at_Ms = optima.beside(*entry.evaluation, control_);
+        if (entry.evaluation) entry.optimum_at_Ms = optima.compare_at_Ms(*entry.evaluation, control_);
         from += share_of_one;
     }
 }

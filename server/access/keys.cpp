@@ -14,7 +14,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMaxNameLength = 64;
 constexpr std::string_view kPrefix = "sha256:";
 constexpr std::chrono::seconds kLookInterval{1};
 
@@ -60,7 +60,7 @@ std::vector<KeyLine> read_file(const std::string& path) {
 }  // namespace
 
 bool is_key_name(std::string_view name) {
-    return !name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, [](char c) {
+    return !name.empty() && name.size() <= kMaxNameLength && std::ranges::all_of(name, [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' ||
                c == '-';
     });

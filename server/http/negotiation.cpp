@@ -10,7 +10,7 @@
 namespace tunewright::server::http {
 namespace {
 
-constexpr std::chrono::seconds kLongestWait{60};
+constexpr std::chrono::seconds kMaxWait{60};
 
 std::string_view trim(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -104,9 +104,9 @@ std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
             const std::string_view digits = trim(word.substr(equals + 1));
             int seconds = 0;
             const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);
-            if (error == std::errc::result_out_of_range && digits.front() != '-') return kLongestWait;
+            if (error == std::errc::result_out_of_range && digits.front() != '-') return kMaxWait;
             if (error != std::errc{} || end != digits.data() + digits.size() || seconds < 0) continue;
-            return std::min(std::chrono::seconds(seconds), kLongestWait);
+            return std::min(std::chrono::seconds(seconds), kMaxWait);
         }
     }
     return std::nullopt;

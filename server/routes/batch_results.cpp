@@ -9,7 +9,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMostRows = 200, kFirstRows = 20;
+constexpr std::size_t kMaxRows = 200, kFirstRows = 20;
 constexpr std::size_t kPageBytes = 512 * 1024;
 constexpr std::chrono::seconds kPatience{20};  // for one job; then the row is looked at again
 constexpr std::chrono::milliseconds kPause{500};
@@ -81,7 +81,7 @@ private:
         }
         if (taken > 0) {
             next_ = rows[taken - 1].index + 1;
-            rows_ = std::clamp<std::size_t>(kPageBytes * taken / (text.size() + 1), 1, kMostRows);
+            rows_ = std::clamp<std::size_t>(kPageBytes * taken / (text.size() + 1), 1, kMaxRows);
             stream_->write(std::move(text));
         }
         if (taken < rows.size()) return wait_for(rows[taken].id);

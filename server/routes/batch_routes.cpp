@@ -22,8 +22,8 @@ using http::problem_response;
 using http::Reply;
 using http::Response;
 
-constexpr std::size_t kLongestKey = 200;
-constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kMaxKeyLength = 200;
+constexpr std::size_t kMaxNameLength = 200;
 
 Response no_such_batch(const std::string& id) {
     return problem_response(404, "There is no batch " + id.substr(0, 64) + "; it may have been deleted.");
@@ -81,7 +81,7 @@ std::optional<Response> read_order(const http::Request& request, const BatchLimi
     if (auto refusal = refuse_form(request)) return refusal;
     if (auto refusal = read_form(request, order.question.form)) return refusal;
     order.idempotency_key = request.header("Idempotency-Key");
-    if (order.idempotency_key.size() > kLongestKey)
+    if (order.idempotency_key.size() > kMaxKeyLength)
         return problem_response(422, "The Idempotency-Key has " + std::to_string(order.idempotency_key.size()) +
                                          " characters; at most 200 are accepted.");
     for (const auto& [name, value] : request.query) {
@@ -93,7 +93,7 @@ std::optional<Response> read_order(const http::Request& request, const BatchLimi
         else
             order.question.options.emplace_back(name, value);
     }
-    if (order.question.name.size() > kLongestName)
+    if (order.question.name.size() > kMaxNameLength)
         return problem_response(
             422, "name has " + std::to_string(order.question.name.size()) + " characters; at most 200 are accepted.");
     order.owner = request.owner.value_or("");

@@ -17,7 +17,7 @@ using http::problem_response;
 using http::Reply;
 using http::Response;
 
-constexpr std::size_t kLongestKey = 200;
+constexpr std::size_t kMaxKeyLength = 200;
 
 Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
     return guarded([&] {
@@ -75,7 +75,7 @@ void wait_for(JobService& jobs, const std::string& id, std::chrono::seconds wait
 void post_job(JobService& jobs, Executor& pool, const api::JobLimits& limits, const Call& call, const Reply& reply) {
     if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
     const std::string key(call.request.header("Idempotency-Key"));
-    if (key.size() > kLongestKey)
+    if (key.size() > kMaxKeyLength)
         return reply(problem_response(
             422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted."));
     auto prepared = api::prepare_job(call.request.body, limits);

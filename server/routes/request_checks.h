@@ -7,7 +7,8 @@
 
 namespace tunewright::server {
 
-/// The refusal of a call that changes or computes something: 415 where the body is not JSON, 406 where the client takes no JSON. Nothing where all is well.
+/// The refusal of a call that changes or computes something: 415 where the body is not JSON, 406 where the client takes
+/// no JSON. Nothing where all is well.
 std::optional<http::Response> refuse_call(const http::Request& request);
 
 /// 406 where the client takes no JSON.

@@ -19,7 +19,7 @@ using http::Reply;
 using http::Response;
 using SyncCall = api::Answer (*)(std::string_view, const RunControl&);
 
-constexpr std::size_t kMostWaiting = 64;
+constexpr std::size_t kMaxWaiting = 64;
 constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
@@ -74,7 +74,7 @@ http::AsyncHandler synchronous(SyncCall work, std::chrono::seconds limit, Execut
     return [=, &lane, &timer](Call call, const Reply& reply) {
         if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
         if (closing.stop_requested()) return reply(closing_down());
-        const bool taken = lane.post_within(kMostWaiting, [=, body = std::move(call.request.body), &timer] {
+        const bool taken = lane.post_within(kMaxWaiting, [=, body = std::move(call.request.body), &timer] {
             reply(compute(work, body, limit, timer, closing));
         });
         if (!taken) reply(problem_response(429, "Too many computations are waiting. Try again after a moment."));

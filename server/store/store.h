@@ -1,6 +1,6 @@
-// Where jobs live. One interface for every store; one suite of tests (tests/server/store_conformance.h) holds each of
-// them to it. Reads answer at once; writes are queued, made durable in groups and reported by a callback, so that
-// nobody waits for a disk.
+// Where jobs live. One interface for every store; one suite of tests (tests/server/store/store_conformance.h) holds
+// each of them to it. Reads answer at once; writes are queued, made durable in groups and reported by a callback, so
+// that nobody waits for a disk.
 //
 // A job that a worker has is held by a lease: the store knows who has it and until when. `attempts` is the fencing
 // token: it counts one more with each claim, and whoever comes with an older number is told that the job is no longer

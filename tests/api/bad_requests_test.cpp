@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
     Plants, Refuses,
     testing::Values(
         BadRequest{"TextForNumber", with_plant(R"({"type": "fopdt", "K": "2", "T": 1, "L": 1})"), 422, "/plant/K",
-                   "K is \"2\", a text; it must be a number. Write 2 without quotes."},
+                   "K is \"2\", a string; it must be a number. Write 2 without quotes."},
         BadRequest{"NaNAsText", with_plant(R"({"type": "fopdt", "K": "NaN", "T": 1, "L": 1})"), 422, "/plant/K",
                    "NaN and Infinity are not accepted"},
         BadRequest{"DecimalComma", with_plant(R"({"type": "fopdt", "K": "2,5", "T": 1, "L": 1})"), 422, "/plant/K",

@@ -168,7 +168,7 @@ TEST(BatchReader, RefusesAnotherShapeWithTheCure) {
     EXPECT_THAT(refusal(json, "{\"plant\": 1}"), HasSubstr("422 plant is not a member of a batch"));
     EXPECT_THAT(refusal(json, "{\"plant\": 1}"), HasSubstr("application/x-ndjson"));
     EXPECT_THAT(refusal(json, "{\"jobs\": [{}], \"jobs\": [{}]}"), HasSubstr("422 jobs is given twice"));
-    EXPECT_THAT(refusal(json, "{\"name\": 5, \"jobs\": [{}]}"), HasSubstr("422 name is not a text"));
+    EXPECT_THAT(refusal(json, "{\"name\": 5, \"jobs\": [{}]}"), HasSubstr("422 name is not a string"));
     EXPECT_THAT(refusal(json, "{\"name\": \"" + std::string(201, 'x') + "\", \"jobs\": [{}]}"),
                 HasSubstr("201 characters"));
     EXPECT_THAT(refusal(json, "{\"" + std::string(5000, 'x')), HasSubstr("422 A member's name"));

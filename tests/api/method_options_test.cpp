@@ -97,7 +97,7 @@ TEST(MethodOptions, FaultsStandAtTheirPlaceWithTheRule) {
                 testing::ElementsAre("/bounds/Kp: Kp has 1 elements; it must be [low, high]."));
     EXPECT_THAT(read(R"({"Tf": [0, 1]})").faults, testing::ElementsAre("/Tf/0: Tf[0] is 0; it must be > 0."));
     EXPECT_THAT(read(R"({"Tf": "fast"})").faults,
-                testing::ElementsAre("/Tf: Tf is \"fast\", a text; it must be a number or [low, high]."));
+                testing::ElementsAre("/Tf: Tf is \"fast\", a string; it must be a number or [low, high]."));
     EXPECT_THAT(read(R"({"poles": [-1, -2, -3, -4]})").faults,
                 testing::ElementsAre("/poles: poles has 4 elements; it must have 1 to 3."));
     EXPECT_THAT(read(R"({"scenarios": [{"initial": {"T": 1}}]})").faults,
@@ -107,7 +107,7 @@ TEST(MethodOptions, FaultsStandAtTheirPlaceWithTheRule) {
     EXPECT_THAT(read(R"({"scenarios": [{"setpoint_step": 1, "load": 2}]})").faults,
                 testing::ElementsAre(testing::HasSubstr("load is not an option of scenarios[0]")));
     EXPECT_THAT(read(R"({"methods": [1]})").faults,
-                testing::ElementsAre("/methods/0: methods[0] is 1, a number; it must be a text."));
+                testing::ElementsAre("/methods/0: methods[0] is 1, a number; it must be a string."));
 }
 
 TEST(MethodOptions, SchemasSayWhatReadingTakes) {

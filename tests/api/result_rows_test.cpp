@@ -63,8 +63,9 @@ TEST(ResultRows, AsNdjsonHoldResultAndErrorAsTheyAre) {
 TEST(ResultRows, AsNdjsonFitTheDocument) {
     const std::string result = result_of(R"("tune": [{"method": "simc"}], "evaluate": {"points": 0})");
     const std::string error = to_json({422, "invalid-request", "Not valid", "K is 0.", {}, {}});
-    for (const ResultRow& row : {ResultRow{0, "id", "a", "succeeded", result, ""},
-                                 ResultRow{1, "id", "", "failed", "", error}, ResultRow{2, "id", "", "queued", "", ""}}) {
+    for (const ResultRow& row :
+         {ResultRow{0, "id", "a", "succeeded", result, ""}, ResultRow{1, "id", "", "failed", "", error},
+          ResultRow{2, "id", "", "queued", "", ""}}) {
         std::string line;
         append_ndjson(row, line);
         EXPECT_EQ(schema_faults(Json::parse(line), "BatchRow"), std::vector<std::string>{}) << line;

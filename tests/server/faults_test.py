@@ -57,18 +57,22 @@ class ReplicaTest(unittest.TestCase):
         with OwnPostgres() as place:
             replicas = [Service("--workers", "1", "--lease", str(LEASE), store=place.store) for _ in range(3)]
             self.addCleanup(lambda: [replica.__exit__() for replica in replicas])
-            poster = Poster(replicas[0], SOME_WORK, 300, threads=4)
             victim = replicas[2]
-            poster.wait_for(100)
-            self.wait_until_it_computes(victim)
-            victim.kill()
-            killed = time.time()
-            poster.join()
-            jobs = all_end(replicas[1], poster.ids)
-            victim.start()
-            self.assertEqual(sorted(jobs), sorted(poster.ids))
-            self.assertEqual({job["status"] for job in jobs.values()}, {"succeeded"})
-            again = [job for job in jobs.values() if job["attempts"] > 1]
+            # A job may end between the look at the victim and its kill: then once more.
+            for _ in range(5):
+                poster = Poster(replicas[0], SOME_WORK, 300, threads=4)
+                poster.wait_for(100)
+                self.wait_until_it_computes(victim)
+                victim.kill()
+                killed = time.time()
+                poster.join()
+                jobs = all_end(replicas[1], poster.ids)
+                victim.start()
+                self.assertEqual(sorted(jobs), sorted(poster.ids))
+                self.assertEqual({job["status"] for job in jobs.values()}, {"succeeded"})
+                again = [job for job in jobs.values() if job["attempts"] > 1]
+                if again:
+                    break
             self.assertEqual(len(again), 1, "the one that the victim computed")
             late = self.seconds(again[0]["finished_at"]) - killed
             print("the killed replica's job had ended %.1f s after it, with a lease of %d s" % (late, LEASE))

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <vector>
 
-#include "loopback.h"
+#include "tests/server/http/loopback.h"
 
 namespace tunewright::server::http {
 namespace {

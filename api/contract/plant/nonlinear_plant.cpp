@@ -3,15 +3,15 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMostStates = 20, kMostParameters = 200;
-constexpr std::size_t kLongestName = 60, kLongestExpression = 10'000;
+constexpr std::size_t kMaxStates = 20, kMaxParameters = 200;
+constexpr std::size_t kMaxNameLength = 60, kMaxExpressionLength = 10'000;
 
-Json expression_schema() { return {{"type", "string"}, {"maxLength", kLongestExpression}}; }
+Json expression_schema() { return {{"type", "string"}, {"maxLength", kMaxExpressionLength}}; }
 
 Json by_name_schema(Json value, std::size_t least, std::size_t most) {
     return {{"type", "object"},
             {"additionalProperties", std::move(value)},
-            {"propertyNames", {{"maxLength", kLongestName}}},
+            {"propertyNames", {{"maxLength", kMaxNameLength}}},
             {"minProperties", least},
             {"maxProperties", most}};
 }
@@ -30,9 +30,9 @@ auto members_by_name(std::size_t least, std::size_t most, const char* sample, Re
         if (value.size() < least || value.size() > most) return reader.fault(count_fault(value, least, most, reader));
         for (const auto& [name, content] : value.items()) {
             const Reader::At at(reader, name);
-            if (name.size() > kLongestName) {
+            if (name.size() > kMaxNameLength) {
                 reader.fault("A name has " + std::to_string(name.size()) + " characters; it may have " +
-                             std::to_string(kLongestName) + ".");
+                             std::to_string(kMaxNameLength) + ".");
             } else if (const auto member = read_member(content, reader)) {
                 target.push_back({name, *member});
             }
@@ -45,7 +45,7 @@ std::optional<double> read_value(const Json& value, Reader& reader) { return rea
 std::optional<std::string> read_expression(const Json& value, Reader& reader) {
     const std::size_t before = reader.count();
     std::string content;
-    text(kLongestExpression).read(value, content, reader);
+    text(kMaxExpressionLength).read(value, content, reader);
     return reader.clean_since(before) ? std::optional(content) : std::nullopt;
 }
 
@@ -67,17 +67,17 @@ auto write_by_name(WriteMember write_member) {
 }
 
 Codec<std::vector<NamedValue>> states() {
-    return {members_by_name<NamedValue>(1, kMostStates, "{\"h\": 2.5}", read_value),
+    return {members_by_name<NamedValue>(1, kMaxStates, "{\"h\": 2.5}", read_value),
             write_by_name<NamedValue>([](const NamedValue& state, Writer& out) { out.number(state.value); }),
             [](SchemaBook&) {
-                return by_name_schema({{"type", "number"}}, 1, kMostStates);
+                return by_name_schema({{"type", "number"}}, 1, kMaxStates);
             }};
 }
 
 Codec<std::vector<NamedExpression>> equations() {
-    return {members_by_name<NamedExpression>(1, kMostStates, "{\"h\": \"(q - k*sqrt(h))/A\"}", read_expression),
+    return {members_by_name<NamedExpression>(1, kMaxStates, "{\"h\": \"(q - k*sqrt(h))/A\"}", read_expression),
             write_by_name<NamedExpression>([](const NamedExpression& e, Writer& out) { out.text(e.text); }),
-            [](SchemaBook&) { return by_name_schema(expression_schema(), 1, kMostStates); }};
+            [](SchemaBook&) { return by_name_schema(expression_schema(), 1, kMaxStates); }};
 }
 
 Codec<std::vector<Parameter>> parameters() {
@@ -85,11 +85,11 @@ Codec<std::vector<Parameter>> parameters() {
         if (const double* number = std::get_if<double>(&parameter.value)) return out.number(*number);
         out.text(std::get<std::string>(parameter.value));
     };
-    return {members_by_name<Parameter>(0, kMostParameters, "{\"A\": 0.5, \"k\": \"2*A\"}", read_parameter),
+    return {members_by_name<Parameter>(0, kMaxParameters, "{\"A\": 0.5, \"k\": \"2*A\"}", read_parameter),
             write_by_name<Parameter>(write),
             [](SchemaBook&) {
                 return by_name_schema({{"oneOf", Json::array({Json{{"type", "number"}}, expression_schema()})}}, 0,
-                                      kMostParameters);
+                                      kMaxParameters);
             },
             [](const std::vector<Parameter>& given) { return given.empty(); }};
 }
@@ -98,7 +98,7 @@ const Description<ManipulatedInput>& input_contract() {
     static const auto description = [] {
         Description<ManipulatedInput> d("ManipulatedInput",
                                         "The input that the controller moves; all values are absolute.");
-        d.field("name", &ManipulatedInput::name, text(kLongestName), "Its name in the equations.")
+        d.field("name", &ManipulatedInput::name, text(kMaxNameLength), "Its name in the equations.")
             .field("nominal", &ManipulatedInput::nominal, number(), "Its value at the operating point.",
                    {.required = true, .unit = "u"})
             .field("min", &ManipulatedInput::min, maybe(number()), "Its lower limit, <= nominal.", {.unit = "u"})
@@ -127,7 +127,7 @@ const Description<NonlinearPlant>& nonlinear_plant_contract() {
             .field("equations", &P::equations, equations(),
                    "The derivative of each state over time, in states, parameters and the input.", {.required = true})
             .field("input", &P::input, object(input_contract()), "The manipulated input.", {.required = true})
-            .field("output", &P::output, text(kLongestExpression),
+            .field("output", &P::output, text(kMaxExpressionLength),
                    "The controlled quantity, in states and parameters; not in the input.",
                    {.required = true, .unit = "y"})
             .field("L", &P::L, number({.minimum = 0, .cure = "A dead time cannot be negative."}),

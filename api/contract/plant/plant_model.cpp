@@ -5,11 +5,11 @@ namespace tunewright::api {
 namespace {
 
 const Description<PlantSet>& plant_set() {
-    constexpr std::size_t kMostPlants = 50;
+    constexpr std::size_t kMaxPlants = 50;
     static const auto description = [] {
         Description<PlantSet> d("PlantSet", "Plants that one controller must serve: limits hold on all of them.");
         d.tag("type", "set")
-            .field("plants", &PlantSet::plants, list_of(one_of(plant_contract()), 1, kMostPlants),
+            .field("plants", &PlantSet::plants, list_of(one_of(plant_contract()), 1, kMaxPlants),
                    "Linear plants; the first is nominal: the objective and all figures are its own.",
                    {.required = true})
             .example({{"type", "set"},
@@ -27,23 +27,22 @@ void check_points(const Json&, FrequencyResponse& points, Reader& reader) {
 }
 
 const Description<FrequencyResponse>& frequency_response() {
-    constexpr std::size_t kFewest = 8, kMost = 10'000;
-    constexpr int kMostPoles = 20;
+    constexpr std::size_t kMin = 8, kMax = 10'000;
+    constexpr int kMaxPoles = 20;
     static const auto description = [] {
         using F = FrequencyResponse;
         Description<F> d("FrequencyResponse",
                          "Measured points of P(j omega). Figures over time are null, and robust maximises Kp/Ti.");
         d.tag("type", "frequency_response")
-            .field("omega", &F::omega, numbers(kFewest, kMost, {.exclusive_minimum = 0}),
+            .field("omega", &F::omega, numbers(kMin, kMax, {.exclusive_minimum = 0}),
                    "Angular frequencies, ascending; they must reach beyond the phase crossover.",
                    {.required = true, .unit = "rad/time"})
-            .field("re", &F::re, numbers(kFewest, kMost), "Real parts, one a frequency.",
+            .field("re", &F::re, numbers(kMin, kMax), "Real parts, one a frequency.", {.required = true, .unit = "y/u"})
+            .field("im", &F::im, numbers(kMin, kMax), "Imaginary parts, one a frequency.",
                    {.required = true, .unit = "y/u"})
-            .field("im", &F::im, numbers(kFewest, kMost), "Imaginary parts, one a frequency.",
-                   {.required = true, .unit = "y/u"})
-            .field("unstable_poles", &F::unstable_poles, integer(0, kMostPoles),
+            .field("unstable_poles", &F::unstable_poles, integer(0, kMaxPoles),
                    "Poles of the plant in the open right half-plane, which the points cannot tell.")
-            .field("integrators", &F::integrators, integer(0, kMostPoles), "Poles of the plant at s = 0.")
+            .field("integrators", &F::integrators, integer(0, kMaxPoles), "Poles of the plant at s = 0.")
             .check(check_points)
             .example(
                 {{"type", "frequency_response"},

@@ -133,15 +133,19 @@ const Description<Robustness>& robustness_contract() {
         Description<R> d("Robustness", "Suprema over 0 <= omega <= infinity, and margins over all crossings.");
         d.field("stable", &R::stable, boolean(), "Whether the closed loop is stable.")
             .field("Ms", &R::Ms, figure(), "Largest |S|, S = 1/(1 + P C).")
-            .field("omega_Ms", &R::omega_Ms, figure(), "Where.", {.unit = "rad/time"})
+            .field("omega_Ms", &R::omega_Ms, figure(), "Frequency at which |S| is largest.", {.unit = "rad/time"})
             .field("Mt", &R::Mt, figure(), "Largest |T|, T = P C/(1 + P C).")
-            .field("omega_Mt", &R::omega_Mt, figure(), "Where.", {.unit = "rad/time"})
+            .field("omega_Mt", &R::omega_Mt, figure(), "Frequency at which |T| is largest.", {.unit = "rad/time"})
             .field("Mks", &R::Mks, figure(), "Largest |C S|.", {.unit = "u/y"})
             .field("gain_margin", &R::gain_margin, figure(), "Smallest factor > 1 of the gain that loses stability.")
-            .field("gain_margin_low", &R::gain_margin_low, figure(), "Largest factor < 1 that does.")
-            .field("phase_margin_deg", &R::phase_margin_deg, figure(), "Smallest over all crossings.", {.unit = "deg"})
-            .field("delay_margin", &R::delay_margin, figure(), "Smallest over all crossings.", {.unit = "time"})
-            .field("gain_crossover", &R::gain_crossover, figure(), "Where |P C| = 1.", {.unit = "rad/time"})
+            .field("gain_margin_low", &R::gain_margin_low, figure(),
+                   "Largest factor < 1 of the gain that loses stability.")
+            .field("phase_margin_deg", &R::phase_margin_deg, figure(),
+                   "Smallest phase margin over all gain crossovers.", {.unit = "deg"})
+            .field("delay_margin", &R::delay_margin, figure(), "Smallest delay margin over all gain crossovers.",
+                   {.unit = "time"})
+            .field("gain_crossover", &R::gain_crossover, figure(), "Frequency at which |P C| = 1.",
+                   {.unit = "rad/time"})
             .field("phase_crossover", &R::phase_crossover, figure(), "Where P C crosses -180 degrees.",
                    {.unit = "rad/time"})
             .field(
@@ -202,7 +206,7 @@ const Description<LinearisedResponse>& linear_contract() {
     static const auto description = [] {
         using R = LinearisedResponse;
         Description<R> d(
-            "LinearResponse",
+            "StepResponse",
             "What the linearisation of a nonlinear plant does with the same controller, steps and limits.");
         d.field("performance", &R::performance, answer(performance_contract()), "Figures of its responses.")
             .field("responses", &R::responses, maybe(answer(responses_contract())),
@@ -302,13 +306,13 @@ const Description<Verification>& verification_contract() {
                    "How exact the indices of the load response are.")
             .field("iae_step_halving", &V::iae_step_halving, figure(),
                    "Relative change of the load IAE when every time step is halved.")
-            .field("load_error_keeps_sign", &V::load_error_keeps_sign, truth_figure(),
+            .field("load_error_keeps_sign", &V::load_error_keeps_sign, nullable_bool(),
                    "Whether the error after the load step keeps its sign: then its IAE is exactly d Ti/Kp (in "
                    "magnitude), however slow the tail.")
             .field("ie_identity", &V::ie_identity, figure(), "Relative difference of the integral of y and d Ti/Kp.")
             .field("ms_grid_difference", &V::ms_grid_difference, figure(),
                    "Relative difference of Ms on an independent grid.")
-            .field("stability_methods_agree", &V::stability_methods_agree, truth_figure(),
+            .field("stability_methods_agree", &V::stability_methods_agree, nullable_bool(),
                    "Whether two independent stability tests agree.")
             .why_null("This check does not apply to this loop.");
         return d;

@@ -37,7 +37,7 @@ std::vector<DataSet> data_sets(const ColumnFacts& facts) {
 /// Another column whose very name is y's: input and output are then something else.
 bool has_plain_output(const ColumnFacts& facts, std::size_t input, std::size_t output) {
     for (std::size_t i = 0; i < facts.size(); ++i) {
-        if (i == input || i == output || !facts.holds_numbers(i) || is_beside_the_point(facts.heading(i))) continue;
+        if (i == input || i == output || !facts.holds_numbers(i) || is_auxiliary(facts.heading(i))) continue;
         const auto plain = match(facts.heading(i), kOutputRole);
         if (plain && plain->level == 1) return true;
     }

@@ -120,8 +120,8 @@ private:
         if (is_term(column)) return false;
         if (role == kInputRole && facts_.switches(column))
             return !match(facts_.heading(column), kReferenceRole) &&
-                   (!is_beside_the_point(facts_.heading(column)) || is_state(facts_.heading(column)));
-        return numeric && !is_beside_the_point(facts_.heading(column));
+                   (!is_auxiliary(facts_.heading(column)) || is_state(facts_.heading(column)));
+        return numeric && !is_auxiliary(facts_.heading(column));
     }
 
     void take(std::size_t role, std::size_t column, const std::string& why = "") {

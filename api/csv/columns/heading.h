@@ -45,7 +45,7 @@ bool is_index(std::string_view heading);
 bool is_spacing(const Heading& heading);
 
 /// Set points, qualities, modes, alarms, the weather: never y or u unless chosen.
-bool is_beside_the_point(const Heading& heading);
+bool is_auxiliary(const Heading& heading);
 
 /// "heater state", "pump status": u where it switches.
 bool is_state(const Heading& heading);

@@ -16,7 +16,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostFitted = 20'000;
+constexpr int kMaxFitted = 20'000;
 
 /// r at the record's samples, dimensionless as y; empty where the record has none, or it only tracks y.
 std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record& record) {
@@ -44,8 +44,8 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
 
 /// Feedback shows from row to row: of a long record the beginning is looked at, and every so many rows are fitted.
 CleanRecord beginning(const CleanRecord& record) {
-    return record.samples() <= kMostFitted ? record
-                                           : first_part(record, record.t[static_cast<std::size_t>(kMostFitted - 1)]);
+    return record.samples() <= kMaxFitted ? record
+                                          : first_part(record, record.t[static_cast<std::size_t>(kMaxFitted - 1)]);
 }
 
 /// A set point of which only the moves are known; `length` is that of the part of the record in which they were seen.
@@ -125,10 +125,10 @@ std::optional<Refined> refined(Search search, const CleanRecord& record, const S
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kKnownGain = 0.3, kMostLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;
+    constexpr double kKnownGain = 0.3, kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;
     const double least = *std::ranges::min_element(r.left);
     return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain &&
-           r.left[i] < std::min(kMostLeft, kBesideBest + kTimesBest * least);
+           r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * least);
 }
 
 /// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
@@ -192,7 +192,7 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     }
     const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
     if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
-    const CleanRecord seen = beginning(full), record = every_few(full, kMostFitted);
+    const CleanRecord seen = beginning(full), record = every_few(full, kMaxFitted);
     const std::optional<Feedback> feedback = find_feedback(seen);
     const std::vector<double> r = set_point_at_samples(record, as_given);
     LoopRecord loop;
@@ -221,7 +221,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
         return nothing_outside(
             full, loop,
             "and moves of the set point explain too little of u (" + number_text(100 * loop.part->share, 2) + " %)");
-    const CleanRecord record = every_few(full, kMostFitted);
+    const CleanRecord record = every_few(full, kMaxFitted);
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
     auto direct = refined(search_models(record, model, false, control), record, *loop.part, control.stop);
     if (control.stop.stop_requested()) return cancelled();
@@ -255,7 +255,7 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     constexpr double kHardly = 0.005, kPlainly = 0.15, kUnknown = 0.33, kLess = 0.8, kNearly = 0.95, kSomewhat = 0.05;
     const double restless = restlessness(beginning(full));
     if (restless < kHardly) return;
-    const CleanRecord record = every_few(full, kMostFitted);
+    const CleanRecord record = every_few(full, kMaxFitted);
     const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y);
     const double left = 1 - model.fit_percent / 100, unexplained = left * left;
     if (!law) return;

@@ -10,7 +10,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kFewestMoves = 12;
+constexpr int kMinMoves = 12;
 
 /// Least squares that a few outliers, the set point's moves, do not bend.
 struct Regression {
@@ -124,14 +124,14 @@ double bent_on(const Moves& m, int j) {
 
 /// Ramps and slewing valves: most moves go on at the rate of the move before.
 bool on_ramps(const Moves& m) {
-    constexpr double kSame = 1e-3, kMost = 0.6;
+    constexpr double kSame = 1e-3, kMax = 0.6;
     int same = 0, moved = 0;
     for (int j = 2; j < m.size(); ++j) {
         if (m.du[j] == 0) continue;
         ++moved;
         same += std::abs(rate(m, j) - rate(m, j - 1)) <= kSame * std::abs(rate(m, j)) ? 1 : 0;
     }
-    return same > kMost * moved;
+    return same > kMax * moved;
 }
 
 Predictions predict_every_row(const Moves& m) {
@@ -284,13 +284,13 @@ bool unevenly_spaced(const Moves& m) {
 
 /// The record's moves, where they could be a controller's.
 std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<double>& u) {
-    if (r.changes() < kFewestMoves || r.samples() < 3 * kFewestMoves) return std::nullopt;
+    if (r.changes() < kMinMoves || r.samples() < 3 * kMinMoves) return std::nullopt;
     const RecordKind kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
     if (kind == RecordKind::relay || on_few_levels(u) || switches_between_two(r)) return std::nullopt;
     int moved = 0;
     for (int i = 1; i < r.samples(); ++i) moved += u[i] != u[i - 1] ? 1 : 0;
     Moves moves = moves_of(r, u, moved);
-    if (moves.size() < 2 * kFewestMoves || on_ramps(moves)) return std::nullopt;
+    if (moves.size() < 2 * kMinMoves || on_ramps(moves)) return std::nullopt;
     return moves;
 }
 

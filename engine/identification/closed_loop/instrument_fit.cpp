@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 
 /// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
 VectorXd whitening(const VectorXd& e) {
-    constexpr int kMost = 8;
+    constexpr int kMax = 8;
     const Index n = e.size();
-    const int most = static_cast<int>(std::min<Index>(kMost, n / 10));
+    const int most = static_cast<int>(std::min<Index>(kMax, n / 10));
     VectorXd covariance(most + 1);
     for (int k = 0; k <= most; ++k) covariance[k] = e.head(n - k).dot(e.tail(n - k)) / static_cast<double>(n);
     VectorXd best = VectorXd::Ones(1), a = VectorXd::Ones(1);

@@ -236,9 +236,9 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
-    constexpr double kPoint = 1, kMostByNoise = 3;
+    constexpr double kPoint = 1, kMaxByNoise = 3;
     const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
-    return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMostByNoise, taken_up);
+    return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMaxByNoise, taken_up);
 }
 
 std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,

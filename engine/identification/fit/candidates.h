@@ -19,7 +19,7 @@ struct FitContext {
     double grid = 0;     ///< step that y is rounded to, 0 if none
     bool relay = false;  ///< a relay test
     Start start = Start::at_rest;
-    std::vector<Anchor> anchors;  ///< that every model is held to
+    std::vector<FrequencyConstraint> anchors;  ///< that every model is held to
     std::stop_token stop;
 
     FitData all() const { return {&record, anchors}; }

@@ -64,8 +64,8 @@ Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
     // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
-    constexpr double kMostNoise = 0.03;
-    const double noise = std::min(search.context.noise, kMostNoise), least = 0.8 * noise * noise;
+    constexpr double kMaxNoise = 0.03;
+    const double noise = std::min(search.context.noise, kMaxNoise), least = 0.8 * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
@@ -163,12 +163,12 @@ void try_between_rows(Search& search, ModelChoice model, const RunControl& contr
 /// that leaves a third of the sum of squares or less.
 void try_gap_moves(Search& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3;
-    constexpr int kMost = 200;
+    constexpr int kMax = 200;
     // Misses of a few rows here and there are no pattern, and look like noise.
     constexpr double kWorthLooking = 95;  // per cent
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const std::vector<int> moves = gap_moves(search.context.record);
-    if (moves.empty() || static_cast<int>(moves.size()) > kMost) return;
+    if (moves.empty() || static_cast<int>(moves.size()) > kMax) return;
     Search other = search;
     for (int round = 0; round < 2; ++round) {
         CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
@@ -291,7 +291,7 @@ void try_beginning(Search& search, const CleanRecord& record, ModelChoice model,
 
 bool at_shortest_lag(const Fit& fit) {
     constexpr double kNear = 0.2;
-    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kShortestUnstable + kNear;
+    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
 }
 
 double misfit(const FitContext& context, const Fit& fit) {
@@ -326,7 +326,7 @@ Search search_models(const CleanRecord& record, ModelChoice model, bool relay, c
     return search;
 }
 
-void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, const RunControl& control) {
+void constrain(Search& search, std::vector<FrequencyConstraint> anchors, ModelChoice model, const RunControl& control) {
     const Plan plan = plan_for(model, search.context.record);
     FitContext context = search.context;
     context.anchors = std::move(anchors);

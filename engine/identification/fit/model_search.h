@@ -33,7 +33,7 @@ struct Search {
 Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
 /// The same structures once more, held to measured values of the frequency response.
-void hold_to(Search& search, std::vector<Anchor> anchors, ModelChoice model, const RunControl& control);
+void constrain(Search& search, std::vector<FrequencyConstraint> anchors, ModelChoice model, const RunControl& control);
 
 /// Whether an unstable model's time constant is about the least that a record can show.
 bool at_shortest_lag(const Fit& fit);

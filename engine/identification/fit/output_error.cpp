@@ -8,15 +8,15 @@
 namespace tunewright {
 namespace {
 
-/// y0 is an average of many readings in the user's eyes: it counts as ten samples.
+/// A given y0 is assumed to be an average of many readings: it counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
 /// A column whose part outside the others' span is relatively below this is no independent one.
 constexpr double kDependent = 1e-9;
 constexpr double kStep = 1e-4;
 
-int anchor_rows(std::span<const Anchor> anchors) {
+int anchor_rows(std::span<const FrequencyConstraint> anchors) {
     int rows = 0;
-    for (const Anchor& anchor : anchors) rows += anchor.omega > 0 ? 2 : 1;
+    for (const FrequencyConstraint& anchor : anchors) rows += anchor.omega > 0 ? 2 : 1;
     return rows;
 }
 
@@ -42,7 +42,7 @@ public:
         for (int i = 0; i < n_; ++i) y_[i] = record_.y[i];
         if (record_.y_rest) y_[n_] = kRestWeight * *record_.y_rest;
         int row = first_anchor_;
-        for (const Anchor& anchor : anchors_) {
+        for (const FrequencyConstraint& anchor : anchors_) {
             y_[row++] = anchor.weight * anchor.value.real();
             if (anchor.omega > 0) y_[row++] = anchor.weight * anchor.value.imag();
         }
@@ -60,7 +60,7 @@ public:
         if (form_.load) fill(form_.load_index(), load_, zero);
         if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
         int row = first_anchor_;
-        for (const Anchor& anchor : anchors_) {
+        for (const FrequencyConstraint& anchor : anchors_) {
             const std::complex<double> s(0, anchor.omega), g = anchor.weight * unit_transfer(shape, s);
             for (int k = 0; k < form_.gains(); ++k) {
                 const std::complex<double> value = k == 0 ? g : s * g;
@@ -155,20 +155,21 @@ private:
         if (form_.gains() == 2) target += sign * linear[index + 1] * column(response.x2);
     }
 
-    std::complex<double> anchored(const Anchor& anchor, const Shape& shape, const Eigen::VectorXd& linear) const {
+    std::complex<double> anchored(const FrequencyConstraint& anchor, const Shape& shape,
+                                  const Eigen::VectorXd& linear) const {
         const std::complex<double> s(0, anchor.omega);
         const std::complex<double> gain = form_.gains() == 2 ? linear[0] + linear[1] * s : linear[0];
         return anchor.weight * gain * unit_transfer(shape, s);
     }
 
-    void add_at_anchor(int row, int place, const Anchor& anchor, std::complex<double> value) {
+    void add_at_anchor(int row, int place, const FrequencyConstraint& anchor, std::complex<double> value) {
         D_(row, place) += value.real();
         if (anchor.omega > 0) D_(row + 1, place) += value.imag();
     }
 
     void add_anchor_slopes(const Shape& shape, const Eigen::VectorXd& linear) {
         int row = first_anchor_;
-        for (const Anchor& anchor : anchors_) {
+        for (const FrequencyConstraint& anchor : anchors_) {
             add_at_anchor(row, 0, anchor, -std::complex<double>(0, anchor.omega) * anchored(anchor, shape, linear));
             row += anchor.omega > 0 ? 2 : 1;
         }
@@ -187,7 +188,7 @@ private:
         if (form_.other_level) add(form_.level_index(), level_);
         if (form_.load) add(form_.load_index(), load_);
         int row = first_anchor_;
-        for (const Anchor& anchor : anchors_) {
+        for (const FrequencyConstraint& anchor : anchors_) {
             add_at_anchor(row, place, anchor, weight * anchored(anchor, shape, linear));
             row += anchor.omega > 0 ? 2 : 1;
         }
@@ -231,7 +232,7 @@ private:
     }
 
     const CleanRecord& record_;
-    std::span<const Anchor> anchors_;
+    std::span<const FrequencyConstraint> anchors_;
     ModelForm form_;
     int n_, first_anchor_, rows_;
     Eigen::VectorXd y_;
@@ -309,7 +310,7 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
                    std::log(100.0)};
     if (structure == Structure::ipdt_second) bounds.high[1] = std::log(10.0);
     if (structure == Structure::ipdt_lag) bounds.high[1] = std::log(10.0);
-    if (structure == Structure::unstable) bounds.low[1] = kShortestUnstable, bounds.high[1] = std::log(10.0);
+    if (structure == Structure::unstable) bounds.low[1] = kMinUnstable, bounds.high[1] = std::log(10.0);
     return bounds;
 }
 

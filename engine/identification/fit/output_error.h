@@ -35,12 +35,12 @@ struct ShapeBounds {
     std::array<double, 5> low{}, high{};
 };
 /// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
-inline constexpr double kShortestUnstable = -2.995732273553991;
+inline constexpr double kMinUnstable = -2.995732273553991;
 ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
 
 /// A value of the frequency response that the model is held to: a row of the least-squares problem with this weight
 /// (the inverse of its standard deviation relative to that of y's samples).
-struct Anchor {
+struct FrequencyConstraint {
     double omega = 0;  ///< dimensionless; 0: the static gain
     std::complex<double> value;
     double weight = 0;
@@ -67,7 +67,7 @@ struct Fit {
 /// The data of a least-squares problem. The referred record and anchors must outlive it.
 struct FitData {
     const CleanRecord* record = nullptr;
-    std::span<const Anchor> anchors = {};
+    std::span<const FrequencyConstraint> anchors = {};
 };
 
 /// The linear coefficients for a fixed shape by orthogonal projection (variable projection: Golub and Pereyra 1973),

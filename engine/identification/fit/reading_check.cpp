@@ -8,7 +8,7 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kLongestRun = 3;
+constexpr std::size_t kMaxRun = 3;
 constexpr double kOfRange = 0.05;
 
 /// The size of a usual value of the series: its median magnitude, as a standard deviation.
@@ -45,7 +45,7 @@ void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
     const double least = std::max(kOfRangeAtOnce, kTimesUsual * usual_size(moves));
     for (std::size_t i = 0; i < moves.size(); ++i) {
         if (std::abs(moves[i]) < least) continue;
-        for (std::size_t k = i + 1; k < moves.size() && k <= i + kLongestRun; ++k) {
+        for (std::size_t k = i + 1; k < moves.size() && k <= i + kMaxRun; ++k) {
             if (moves[k] * moves[i] >= 0 || std::abs(moves[k]) < least) continue;
             std::fill(marked.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                       marked.begin() + static_cast<std::ptrdiff_t>(k) + 1, true);

@@ -72,13 +72,13 @@ Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
 
 /// Stretches of samples that the model puts into one step of y's grid: [first, last).
 std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
-    constexpr int kFewest = 8;
+    constexpr int kMin = 8;
     std::vector<std::pair<int, int>> runs;
     const int n = static_cast<int>(fit.model.size());
     int first = 0;
     for (int i = 1; i <= n; ++i) {
         if (i < n && std::abs(fit.model[i] - fit.model[first]) < 0.5 * grid) continue;
-        if (i - first >= kFewest) runs.emplace_back(first, i);
+        if (i - first >= kMin) runs.emplace_back(first, i);
         first = i;
     }
     return runs;
@@ -285,10 +285,10 @@ double summed_correlation_time(std::span<const double> series) {
 }  // namespace
 
 double correlation_time(std::span<const double> series) {
-    constexpr std::size_t kMostSummed = 3000;
-    if (series.size() <= kMostSummed) return summed_correlation_time(series);
+    constexpr std::size_t kMaxSummed = 3000;
+    if (series.size() <= kMaxSummed) return summed_correlation_time(series);
     // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
-    const std::size_t batch = (series.size() + kMostSummed - 1) / kMostSummed;
+    const std::size_t batch = (series.size() + kMaxSummed - 1) / kMaxSummed;
     std::vector<double> means;
     double squares = 0;
     for (std::size_t i = 0; i + batch <= series.size(); i += batch) {

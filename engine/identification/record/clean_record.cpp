@@ -36,13 +36,13 @@ std::optional<Error> check_rows(const Record& r, const Rows& rows, const Cleanin
                          " rows (first at " + row_text(done, done.first_backward) +
                          "); sort the record by time or give one test alone."};
     }
-    if (n < kFewestSamples) {
+    if (n < kMinSamples) {
         return not_identifiable(
             "record", "The record has " + std::to_string(n) + " usable samples" +
                           (r.t.size() > static_cast<std::size_t>(n)
                                ? " in " + std::to_string(r.t.size()) + " rows (the others have no y, no u or no time)"
                                : std::string()) +
-                          "; at least " + std::to_string(kFewestSamples) +
+                          "; at least " + std::to_string(kMinSamples) +
                           " are needed, and 50 or more over the response are better.");
     }
     if (rows.t.back() <= rows.t.front())
@@ -109,11 +109,11 @@ void average_input(const CleanRecord& from, int blocks, CleanRecord& to) {
 
 /// The sample indices nearest in time after the few largest changes of v, spaced geometrically.
 void add_transients(const CleanRecord& r, int each, std::vector<int>& chosen) {
-    constexpr int kMostChanges = 4;
+    constexpr int kMaxChanges = 4;
     std::vector<int> order(r.v_time.size());
     std::iota(order.begin(), order.end(), 0);
     auto size = [&](int j) { return std::abs(r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0)); };
-    const int kept = std::min<int>(kMostChanges, static_cast<int>(order.size()));
+    const int kept = std::min<int>(kMaxChanges, static_cast<int>(order.size()));
     std::partial_sort(order.begin(), order.begin() + kept, order.end(),
                       [&](int a, int b) { return size(a) > size(b) || (size(a) == size(b) && a < b); });
     for (int k = 0; k < kept; ++k) {
@@ -176,9 +176,9 @@ CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& 
 }
 
 CleanRecord thin_out(const CleanRecord& record, int most) {
-    constexpr int kMostBlocks = 400;
+    constexpr int kMaxBlocks = 400;
     CleanRecord thin = record;
-    if (record.changes() > kMostBlocks) average_input(record, kMostBlocks, thin);
+    if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
     const int n = record.samples();
     if (n <= most) return thin;
     // Where u keeps moving, all of the record is transient.

@@ -62,7 +62,7 @@ struct CleanRecord {
     double response_time() const { return v_time.empty() ? 0 : t.back() - v_time.front(); }
 };
 
-inline constexpr int kFewestSamples = 8;
+inline constexpr int kMinSamples = 8;
 
 /// Puts rows in order: a record from newest to oldest is turned round, a row whose time is before the rows above or far
 /// ahead of those below is left out, rows of equal time are kept (the last u counts, every y is data) or, where a third

@@ -11,7 +11,7 @@ namespace tunewright {
 /// Everything but `settled`, in the record's units. The notes say the same in sentences, and what was done about each.
 DataQuality describe_record(const CleanRecord& record);
 
-/// What of that threatens a model, for whoever answers. Codes: saturated-output, gaps, missing-samples,
+/// Warnings that affect the model. Codes: saturated-output, gaps, missing-samples,
 /// removed-outliers, reversed-time, misplaced-times, few-samples, columns-look-swapped.
 std::vector<Warning> record_warnings(const CleanRecord& record, const DataQuality& quality);
 

@@ -7,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kFewest = 12;
+constexpr std::size_t kMin = 12;
 
 double median_of_five(std::span<const double> y, std::size_t middle) {
     double v[5] = {y[middle - 2], y[middle - 1], y[middle], y[middle + 1], y[middle + 2]};
@@ -70,7 +70,7 @@ std::vector<std::size_t> spikes(std::span<const double> y) {
 }  // namespace
 
 std::vector<std::size_t> false_readings(std::span<const double> y) {
-    if (y.size() < kFewest) return {};
+    if (y.size() < kMin) return {};
     const double apart = number_apart(y);
     if (std::isnan(apart)) return spikes(y);
     std::vector<std::size_t> found;

@@ -7,7 +7,7 @@ namespace tunewright {
 std::vector<InputLimits> plain_limits(const Record& record) {
     static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
                                              {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
-    constexpr double kBeyond = 0.05, kLeastOutside = 0.02, kLeastInside = 0.1;
+    constexpr double kBeyond = 0.05, kMinOutside = 0.02, kMinInside = 0.1;
     std::vector<InputLimits> found;
     for (const InputLimits& limits : kUsual) {
         const auto [low, high] = limits;
@@ -19,7 +19,7 @@ std::vector<InputLimits> plain_limits(const Record& record) {
             inside += u > low && u < high ? 1 : 0;
             outside += u < low - margin || u > high + margin ? 1 : 0;
         }
-        if (inside > kLeastInside * all && outside > kLeastOutside * all) found.push_back(limits);
+        if (inside > kMinInside * all && outside > kMinOutside * all) found.push_back(limits);
     }
     return found;
 }

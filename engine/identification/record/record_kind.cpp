@@ -9,8 +9,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kFewestSwitches = 3;
-constexpr int kMostSteps = 20;
+constexpr int kMinSwitches = 3;
+constexpr int kMaxSteps = 20;
 
 double spread(const std::vector<double>& x) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -79,7 +79,7 @@ bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
 }
 
 bool is_relay(const CleanRecord& r, const TwoLevels& u) {
-    if (static_cast<int>(u.switch_time.size()) < kFewestSwitches) return false;
+    if (static_cast<int>(u.switch_time.size()) < kMinSwitches) return false;
     const HalfPeriods halves = half_periods(u);
     const bool repeats = u.switch_time.size() >= 5 && regular(halves, 0.1);
     const bool follows_y = regular(halves, 0.5) && switched_by_y(r, u);
@@ -159,7 +159,7 @@ RecordKind found_kind(const CleanRecord& record) {
     const InputLevels levels = input_levels(record);
     if (levels.moves() <= 1) return RecordKind::step;
     if (is_relay(record, two_levels(levels))) return RecordKind::relay;
-    return levels.moves() < kMostSteps ? RecordKind::several_steps : RecordKind::general;
+    return levels.moves() < kMaxSteps ? RecordKind::several_steps : RecordKind::general;
 }
 
 const char* name_of(RecordKind kind) {

@@ -19,11 +19,11 @@ bool comes_back(const CleanRecord& r) {
 }  // namespace
 
 Start start_of(const CleanRecord& r, bool relay, double noise) {
-    constexpr std::size_t kFewest = 5;
+    constexpr std::size_t kMin = 5;
     constexpr double kErrors = 5, kVisible = 0.03, kTimesScatter = 4, kInTheEnd = 0.05;
     if (r.u0_given) return Start::at_rest;
     const auto n = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    if (n < kFewest || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? Start::at_rest : Start::unseen;
+    if (n < kMin || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? Start::at_rest : Start::unseen;
     const std::span t(r.t.data(), n), y(r.y.data(), n);
     if (relay && comes_back(r)) {
         constexpr double kStill = 0.01, kTimesNoise = 6;

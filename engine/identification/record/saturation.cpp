@@ -6,8 +6,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kShortestRun = 5;
-constexpr double kLeastShare = 0.01;
+constexpr int kMinRun = 5;
+constexpr double kMinShare = 0.01;
 
 /// Movement of y over the few samples that end at i, per sample.
 double speed(const CleanRecord& r, int i, int samples) {
@@ -47,7 +47,7 @@ int samples_at(const CleanRecord& r, double level, double same, bool noisy, doub
     for (int i = 0; i < r.samples();) {
         int end = i;
         while (end < r.samples() && std::abs(r.y[end] - level) <= same) ++end;
-        if (end - i >= kShortestRun && i > 0 && (noisy || arrives_fast(r, i, window, least_speed))) count += end - i;
+        if (end - i >= kMinRun && i > 0 && (noisy || arrives_fast(r, i, window, least_speed))) count += end - i;
         i = std::max(end, i + 1);
     }
     return count;
@@ -56,15 +56,15 @@ int samples_at(const CleanRecord& r, double level, double same, bool noisy, doub
 }  // namespace
 
 std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
-    constexpr double kSame = 1e-9, kCoarse = 1.0 / 30, kNoisy = 2, kLeastNoise = 1e-3, kPart = 1.0 / 6;
+    constexpr double kSame = 1e-9, kCoarse = 1.0 / 30, kNoisy = 2, kMinNoise = 1e-3, kPart = 1.0 / 6;
     if (grid > kCoarse) return {};
     const int window = std::clamp(r.samples() / 200, 3, 50);
     const double least_speed = kPart * fastest(r, window);
-    const bool noisy = noise > kNoisy * grid && noise > kLeastNoise && alternates(r);
+    const bool noisy = noise > kNoisy * grid && noise > kMinNoise && alternates(r);
     std::vector<Saturation> found;
     for (const double level : {0.0, 1.0}) {
         const int count = samples_at(r, level, kSame, noisy, least_speed, window);
-        if (count < kLeastShare * r.samples() || count < kShortestRun) continue;
+        if (count < kMinShare * r.samples() || count < kMinRun) continue;
         found.push_back({r.scale.y_origin + r.scale.y_scale * level, static_cast<double>(count) / r.samples()});
     }
     return found;

@@ -6,7 +6,7 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kLongestQuote = 24;
+constexpr std::size_t kMaxQuoteLength = 24;
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -39,7 +39,7 @@ Error syntax_error(int position, const std::string& what) {
 std::string quoted(std::string_view piece) {
     std::string result = "\"";
     for (std::size_t i = 0; i < piece.size();) {
-        if (i >= kLongestQuote) {
+        if (i >= kMaxQuoteLength) {
             result += "...";
             break;
         }

@@ -11,9 +11,9 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostIterations = 100, kMostHalvings = 40;
+constexpr int kMaxIterations = 100, kMaxHalvings = 40;
 constexpr double kRounding = 1e-16;  // of the largest state: what a state at 0 may be off by
-constexpr double kSingularCutoff = 1e-11, kLongestStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
+constexpr double kSingularCutoff = 1e-11, kMaxStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 
 std::string precise(double x) {
     char buffer[32];
@@ -37,7 +37,7 @@ public:
         Point now{start_, std::vector<double>(n_)};
         if (!system_.rates(now.x, u_, now.rates)) return fault_at_start();
         double step_size = std::numeric_limits<double>::infinity();
-        for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+        for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
             std::vector<double> A(n_ * n_), B(n_);
             if (!system_.jacobian(now.x, u_, A, B)) return iteration == 0 ? fault_at_start() : none_near(now);
             measure(now.x, A, B);
@@ -109,8 +109,8 @@ private:
     // Along the step as far as the rates fall; false where they do not.
     bool advance(Point& now, const std::vector<double>& step, double step_size) const {
         const double before = norm(now.rates);
-        double length = std::min(1.0, kLongestStep / step_size);
-        for (int halving = 0; halving < kMostHalvings; ++halving, length /= 2) {
+        double length = std::min(1.0, kMaxStep / step_size);
+        for (int halving = 0; halving < kMaxHalvings; ++halving, length /= 2) {
             Point next{now.x, std::vector<double>(n_)};
             for (std::size_t i = 0; i < n_; ++i) next.x[i] += length * step[i] * state_size_[i];
             if (next.x == now.x) return false;

@@ -11,11 +11,11 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostVariables = 21;  // 20 states and the input
+constexpr int kMaxVariables = 21;  // 20 states and the input
 
 template <class T>
 struct Variables {
-    std::array<T, kMostVariables> values;
+    std::array<T, kMaxVariables> values;
     std::size_t count;
     operator std::span<const T>() const { return {values.data(), count}; }  // NOLINT(google-explicit-constructor)
 };
@@ -44,7 +44,7 @@ Variables<Dual<N>> dual_variables(std::span<const double> x, double u, std::size
 template <int N>
 bool derivatives(const Program& program, std::span<const double> x, double u, std::size_t outputs,
                  std::size_t directions, double* rows) {
-    std::array<Dual<N>, kMostVariables> out;
+    std::array<Dual<N>, kMaxVariables> out;
     bool finite = true;
     for (std::size_t first = 0; first < directions; first += N) {
         program.evaluate<Dual<N>>(dual_variables<N>(x, u, first), std::span(out.data(), outputs));
@@ -120,7 +120,7 @@ double NonlinearSystem::output(std::span<const double> x) const {
 
 bool NonlinearSystem::jacobian(std::span<const double> x, double u, std::span<double> A, std::span<double> B) const {
     const std::size_t n = x.size();
-    std::array<double, kMostVariables * kMostVariables> rows;
+    std::array<double, kMaxVariables * kMaxVariables> rows;
     const bool finite = n < 3 ? derivatives<3>(program_->joint, x, u, n, n + 1, rows.data())
                               : derivatives<4>(program_->joint, x, u, n, n + 1, rows.data());
     for (std::size_t i = 0; i < n; ++i) {

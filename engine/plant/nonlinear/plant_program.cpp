@@ -14,7 +14,7 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kMostStates = 20, kMostParameters = 200;
+constexpr std::size_t kMaxStates = 20, kMaxParameters = 200;
 
 Error invalid(const std::string& where, const std::string& message) {
     return {ErrorKind::invalid_argument, "plant/" + where, message};
@@ -46,12 +46,12 @@ std::optional<Error> check_input(const ManipulatedInput& input) {
 
 std::optional<Error> check_numbers_and_names(const NonlinearPlant& plant) {
     if (plant.states.empty()) return invalid("states", "A nonlinear plant has at least one state.");
-    if (plant.states.size() > kMostStates)
+    if (plant.states.size() > kMaxStates)
         return invalid("states", std::to_string(plant.states.size()) + " states; at most " +
-                                     std::to_string(kMostStates) + " are possible.");
-    if (plant.parameters.size() > kMostParameters)
+                                     std::to_string(kMaxStates) + " are possible.");
+    if (plant.parameters.size() > kMaxParameters)
         return invalid("parameters", std::to_string(plant.parameters.size()) + " parameters; at most " +
-                                         std::to_string(kMostParameters) + " are possible.");
+                                         std::to_string(kMaxParameters) + " are possible.");
     std::set<std::string> taken;
     for (const auto& state : plant.states) {
         if (auto error = check_name(state.name, "states", taken)) return error;

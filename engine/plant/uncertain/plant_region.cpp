@@ -14,7 +14,7 @@ using Point = PlantRegion::Point;
 // The 95 % point of chi-square with 1 to 8 degrees of freedom (Abramowitz and Stegun 1964, table 26.8).
 constexpr std::array<double, 8> kChiSquare95 = {3.841459, 5.991465, 7.814728, 9.487729,
                                                 11.07050, 12.59159, 14.06714, 15.50731};
-constexpr double kLeastShare = 0.05;  // of a time constant, before its sign would change
+constexpr double kMinShare = 0.05;  // of a time constant, before its sign would change
 
 /// The members that a plant type has, by name; transfer functions and state spaces answer to K and L alone here.
 template <class T>
@@ -186,7 +186,7 @@ Plant PlantRegion::at(const Point& z) const {
     double share = 1;
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < axes_.size(); ++k) moved[i] += axes_[k][i] * z[k];
-        const double least = kLeastShare * centre_[i];
+        const double least = kMinShare * centre_[i];
         if (!ball_ || !keeps_sign(names_[i]) || centre_[i] == 0) continue;
         if ((centre_[i] + moved[i] - least) * centre_[i] < 0) share = std::min(share, (least - centre_[i]) / moved[i]);
     }

@@ -13,8 +13,8 @@ namespace tunewright {
 namespace {
 
 constexpr double kTolerance = 1e-9;
-constexpr int kMostSteps = 60000;
-constexpr int kFewestCycles = 6, kMostCycles = 40, kSteadyCycles = 2;
+constexpr int kMaxSteps = 60000;
+constexpr int kMinCycles = 6, kMaxCycles = 40, kSteadyCycles = 2;
 constexpr double kSteady = 1e-6;        // relative change of period and swing from one cycle to the next
 constexpr double kNearlySteady = 1e-2;  // after the most cycles
 constexpr int kRows = 1600;
@@ -45,16 +45,16 @@ public:
     std::optional<Error> oscillate(const RunControl& control) {
         run_.give(levels_.u_plus);
         inputs_.push_back({0, levels_.u_plus});
-        for (int steps = 0; steps < kMostSteps; ++steps) {
+        for (int steps = 0; steps < kMaxSteps; ++steps) {
             if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The relay test was stopped."};
             if (run_.t() - inputs_.back().t > patience_) return latched();
             if (!run_.step(HUGE_VAL)) return unsupported("The relay test ends early. " + run_.why());
             if (!look()) return unsupported("The relay test ends early. " + run_.why());
-            if (cycles() >= kFewestCycles && steady(kSteady)) return std::nullopt;
-            if (cycles() >= kMostCycles)
+            if (cycles() >= kMinCycles && steady(kSteady)) return std::nullopt;
+            if (cycles() >= kMaxCycles)
                 return steady(kNearlySteady)
                            ? std::nullopt
-                           : std::optional(unsupported("After " + std::to_string(kMostCycles) +
+                           : std::optional(unsupported("After " + std::to_string(kMaxCycles) +
                                                        " cycles the relay and the plant have not found a steady "
                                                        "oscillation. Try another hysteresis or amplitude."));
         }

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kTolerance = 1e-9;
 constexpr int kRows = 1001, kRowsAtRest = 100;  // before the step: they tell where y was
-constexpr int kMostSteps = 60000;
+constexpr int kMaxSteps = 60000;
 constexpr double kSettled = 1e-3;  // of y's movement, over the last quarter of the time
 constexpr double kQuarter = 0.75;
 constexpr double kAtRest = 0.02;     // times the slowest mode: what the states still move
-constexpr double kMostTimes = 60;    // of the plant's own time, until a stable plant must have settled
+constexpr double kMaxTimes = 60;     // of the plant's own time, until a stable plant must have settled
 constexpr double kRampTimes = 12;    // of the dead time and the lags: an integrating plant's test
 constexpr double kGrowthTimes = 3;   // of an unstable mode's time
 constexpr double kOnTheAxis = 1e-7;  // of the fastest pole: an integrator
@@ -102,7 +102,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
                          " cannot be made: the input's limits leave no room on that side of its nominal value. Step to "
                          "the other side."};
     const Modes modes = modes_of(system);
-    const double longest = modes.settles      ? kMostTimes * std::max(modes.lags, system.dead_time())
+    const double longest = modes.settles      ? kMaxTimes * std::max(modes.lags, system.dead_time())
                            : modes.growth > 0 ? system.dead_time() + kGrowthTimes * (modes.growth + modes.lags)
                            : modes.lags > 0   ? kRampTimes * modes.lags
                                               : 1;
@@ -112,7 +112,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
     bool settled = false;
     for (int steps = 0; !settled && run.t() < longest; ++steps) {
         if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The step test was stopped."};
-        if (steps == kMostSteps)
+        if (steps == kMaxSteps)
             return Error{ErrorKind::unsupported, "plant",
                          "A step test needs more steps than are allowed: the plant's "
                          "dead time and modes are too far apart."};

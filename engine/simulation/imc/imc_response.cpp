@@ -133,7 +133,7 @@ public:
         slack_ = 1e-9 * step_;
     }
 
-    LinearResponse run() {
+    StepResponse run() {
         std::vector<double> x(Index(system_.n), 0.0);
         remember(0, x, seen(0, true));
         push(0, x, seen(0, true));
@@ -261,14 +261,14 @@ private:
     std::vector<double> events_;
     std::map<double, ExactStep> steps_;
     std::vector<Memory> memory_;
-    LinearResponse response_;
+    StepResponse response_;
     double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
 };
 
 }  // namespace
 
-LinearResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
-                            const ResponseOptions& options) {
+StepResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
+                          const ResponseOptions& options) {
     return ImcRun(plant, controller, inputs, options).run();
 }
 

@@ -14,7 +14,7 @@ namespace tunewright {
 /// Between the instants at which dead times bring kinks, steps are exact for a cubic through values and slopes of what
 /// comes delayed (order 4); their lengths go with the fourth root of the tolerance. The plant is stable and strictly
 /// proper, the loop stable, the model's dead time > 0.
-LinearResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
-                            const ResponseOptions& options);
+StepResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
+                          const ResponseOptions& options);
 
 }  // namespace tunewright

@@ -163,7 +163,7 @@ public:
                                                                               std::log(std::min(q, 0.999))));
     }
 
-    LinearResponse run() {
+    StepResponse run() {
         now_.x.assign(Index(loop_.states()), 0.0);
         enter(loop_.region(now_.x, {}), {});
         add_break(loop_.dead_time(), 0);
@@ -255,7 +255,7 @@ private:
         return *rest_.linear.error_integral - error_integral_in_states(loop_.system(), filter_, now_.x);
     }
 
-    LinearResponse ended(bool by_rule) {
+    StepResponse ended(bool by_rule) {
         const ResponseNode& last = response_.nodes.back();
         response_.settles = by_rule;
         const bool at_rest = by_rule && rest_.exists;
@@ -441,7 +441,7 @@ private:
     const ResponseOptions& options_;
     Rest rest_;
     double scale_y_;
-    LinearResponse response_;
+    StepResponse response_;
     History history_;
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
     std::map<double, int> breaks_;
@@ -457,8 +457,8 @@ private:
 
 }  // namespace
 
-LinearResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                                const OutputLimits& limits, const ResponseOptions& options) {
+StepResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                              const OutputLimits& limits, const ResponseOptions& options) {
     return Run(plant, controller, inputs, limits, options).run();
 }
 

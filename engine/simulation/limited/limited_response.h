@@ -44,7 +44,7 @@ std::optional<double> tracking_time(const ParallelPid& controller);
 /// - `error_integral_final` only where y settles at r by integral action.
 /// - `options.repeat` is not used and `schedule` stays empty; with a horizon the last node lies exactly on it.
 /// The loop must be well posed (Loop::make); it need not be stable. All values are finite.
-LinearResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                                const OutputLimits& limits, const ResponseOptions& options);
+StepResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                              const OutputLimits& limits, const ResponseOptions& options);
 
 }  // namespace tunewright

@@ -11,8 +11,8 @@ StepSchedule halved(const StepSchedule& schedule) {
     return finer;
 }
 
-LinearResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                               const ResponseOptions& options) {
+StepResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                             const ResponseOptions& options) {
     return run_response(plant, controller, nullptr, inputs, options);
 }
 

@@ -46,7 +46,7 @@ struct ResponseOptions {
     const StepSchedule* repeat = nullptr;
 };
 
-struct LinearResponse {
+struct StepResponse {
     std::vector<ResponseNode> nodes;
     double y_final = 0, u_final = 0;             ///< steady state
     std::optional<double> error_integral_final;  ///< integral of r - y to infinity, exact; with integral action only
@@ -55,7 +55,7 @@ struct LinearResponse {
 };
 
 /// The loop must be stable and well posed (Loop::make, count_unstable_poles).
-LinearResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                               const ResponseOptions& options);
+StepResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
+                             const ResponseOptions& options);
 
 }  // namespace tunewright

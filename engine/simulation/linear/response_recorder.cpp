@@ -7,7 +7,7 @@ namespace tunewright {
 namespace {
 
 constexpr double kNodeTolerance = 1e-7;  // of the cubic between nodes, relative to the largest value so far
-constexpr int kMostPieces = 16;
+constexpr int kMaxPieces = 16;
 
 /// How far the cubic through both ends of a piece misses its middle.
 double miss(const StepPolynomial& p, double from, double to) {
@@ -40,7 +40,7 @@ void ResponseRecorder::push_node(const StepPolynomial& y, const StepPolynomial& 
 }
 
 int ResponseRecorder::pieces(const StepPolynomial& y, const StepPolynomial& u) const {
-    for (int n = 1; n < kMostPieces; n *= 2) {
+    for (int n = 1; n < kMaxPieces; n *= 2) {
         bool close = true;
         for (int i = 0; i < n && close; ++i) {
             const double from = double(i) / n, to = double(i + 1) / n;
@@ -49,7 +49,7 @@ int ResponseRecorder::pieces(const StepPolynomial& y, const StepPolynomial& u) c
         }
         if (close) return n;
     }
-    return kMostPieces;
+    return kMaxPieces;
 }
 
 void ResponseRecorder::add(const StepPolynomial& y, const StepPolynomial& u) {

@@ -62,7 +62,7 @@ public:
         response_.error_integral_final = steady_.error_integral;
     }
 
-    LinearResponse run() {
+    StepResponse run() {
         x_.assign(Index(system_.n), 0.0);
         scratch_ = x_;
         ResponseNode first = node_at(system_, 0, x_, {});
@@ -165,7 +165,7 @@ private:
         return *steady_.error_integral - response_.nodes.back().error_integral;
     }
 
-    LinearResponse ended() {
+    StepResponse ended() {
         if (scaling_ != nullptr && steady_.error_integral)
             response_.error_integral_final = response_.nodes.back().error_integral + error_integral_left();
         return std::move(response_);
@@ -403,7 +403,7 @@ private:
     SteadyState steady_;
     int level_of_L_ = 0;
     Propagator propagator_;
-    LinearResponse response_;
+    StepResponse response_;
     DelayedSignal history_;
     std::vector<LongStep> long_steps_;
     LongStep::Start start_;
@@ -424,8 +424,8 @@ private:
 
 }  // namespace
 
-LinearResponse run_response(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling,
-                            const StepInputs& inputs, const ResponseOptions& options) {
+StepResponse run_response(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling,
+                          const StepInputs& inputs, const ResponseOptions& options) {
     return Run(plant, controller, scaling, inputs, options).run();
 }
 

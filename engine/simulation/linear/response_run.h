@@ -7,7 +7,7 @@
 namespace tunewright {
 
 /// `scaling` null: the linear loop. See linear_response.h and npid_response.h.
-LinearResponse run_response(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling,
-                            const StepInputs& inputs, const ResponseOptions& options);
+StepResponse run_response(const LinearPlant& plant, const ParallelPid& controller, const ErrorScaling* scaling,
+                          const StepInputs& inputs, const ResponseOptions& options);
 
 }  // namespace tunewright

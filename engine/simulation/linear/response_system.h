@@ -9,7 +9,8 @@
 
 namespace tunewright {
 
-/// The delay system with one more state, the integral of y - r, and without the constant inputs.
+/// The delay system with one more state, the integral of y - r, and without the constant inputs: x' = F x + G v + b,
+/// row by row, for n states x and the delayed signal v.
 struct ResponseSystem {
     DelaySystem s;
     int n = 0;

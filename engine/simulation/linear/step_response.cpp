@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostSamples = 20'000;
+constexpr int kMaxSamples = 20'000;
 constexpr double kSamplesPerUnit = 10;    // per time constant or radian of a mode that is alive
 constexpr double kSamplesPerDouble = 24;  // spacing at most t/24
 constexpr double kDecay = 14;             // e^-14 = 8e-7
@@ -86,7 +86,7 @@ std::vector<StepSample> step_response(const LinearPlant& plant) {
 
     const double shortest = 1 / (2 * kSamplesPerUnit * fastest);
     std::vector<std::vector<double>> doublings;  // propagators over shortest 2^k
-    while (samples.back().t < t_end && static_cast<int>(samples.size()) < kMostSamples) {
+    while (samples.back().t < t_end && static_cast<int>(samples.size()) < kMaxSamples) {
         const double t = samples.back().t;
         const auto k =
             static_cast<size_t>(std::max(0.0, std::floor(std::log2(spacing(plant, t, shortest) / shortest))));

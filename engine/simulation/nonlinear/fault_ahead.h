@@ -1,4 +1,4 @@
-// Why a plant's states cannot go on.
+// Locates the operation of a plant's equations that leaves its domain.
 #pragma once
 
 #include <span>

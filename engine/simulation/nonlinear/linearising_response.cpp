@@ -10,7 +10,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMostSteps = 200000;
+constexpr int kMaxSteps = 200000;
 constexpr double kSide = 1e-10;      // of the input's scale: how far beyond a limit the law is before that counts
 constexpr double kEscaped = 1e6;     // of the input's scale
 constexpr double kStrongest = 1e12;  // of the input's effect at the start
@@ -73,8 +73,8 @@ public:
         sample_step();
         for (int steps = 0; integrator_.t() < options_.horizon; ++steps) {
             if (stop_.stop_requested()) return ended("The simulation was stopped.");
-            if (steps == kMostSteps)
-                return ended("At t = " + text(now()) + " the run has taken the " + std::to_string(kMostSteps) +
+            if (steps == kMaxSteps)
+                return ended("At t = " + text(now()) + " the run has taken the " + std::to_string(kMaxSteps) +
                              " steps that it may.");
             OdeStep outcome = integrator_.step(options_.horizon);
             if (outcome != OdeStep::made) return ended(reason(outcome));
@@ -243,7 +243,7 @@ FreeMotion free_motion(const NonlinearSystem& system, const LinearisingOptions& 
     motion.x = options.initial;
     bool inside = run.start(0, motion.x);
     for (int steps = 0; inside && run.t() < L; ++steps) {
-        inside = steps < kMostSteps && !stop.stop_requested() && run.step(L) == OdeStep::made;
+        inside = steps < kMaxSteps && !stop.stop_requested() && run.step(L) == OdeStep::made;
         while (inside && waits(motion.y.size()) && sample_time(motion.y.size(), options) <= run.t()) {
             run.at(sample_time(motion.y.size(), options), motion.x);
             motion.y.push_back(system.output(motion.x) - system.y_steady());

@@ -12,8 +12,8 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kEchoes = 6;  // of a jump: smoothed by the plant at each passage, to the method's order
-constexpr int kMostEchoes = 2000;
-constexpr int kMostSecants = 30;
+constexpr int kMaxEchoes = 2000;
+constexpr int kMaxSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
 }  // namespace
@@ -53,7 +53,7 @@ int passages_that_count(const NonlinearSystem& system, const ParallelPid& contro
     double q = 0;
     for (Index i = 0; i < Index(system.order()); ++i) q += system.linearised().C[i] * system.linearised().B[i];
     q = std::min(std::abs(controller.Kd * q), 0.999);
-    return q > 0 ? std::min(kMostEchoes, kEchoes + int(std::log(1e-3 * tolerance) / std::log(q))) : kEchoes;
+    return q > 0 ? std::min(kMaxEchoes, kEchoes + int(std::log(1e-3 * tolerance) / std::log(q))) : kEchoes;
 }
 
 NonlinearLoop::NonlinearLoop(const NonlinearSystem& system, const PidLaw& law, const StepInputs& inputs,
@@ -94,7 +94,7 @@ NonlinearLoop::Output NonlinearLoop::output_of_pure_derivative(Region region, st
     double u_before = law_.command(out.y, 0, s);
     if (!y_slope(x, u_before + in_.d, slope)) return {0, 0, 0, false};
     double u = law_.command(out.y, slope, s), gap_before = u - u_before;
-    for (int i = 0; i < kMostSecants && gap_before != 0; ++i) {
+    for (int i = 0; i < kMaxSecants && gap_before != 0; ++i) {
         if (!y_slope(x, u + in_.d, slope)) return {0, 0, 0, false};
         const double gap = law_.command(out.y, slope, s) - u;
         if (std::abs(gap) <= kSecantDone * (std::abs(u) + std::abs(slope)) || gap == gap_before) break;

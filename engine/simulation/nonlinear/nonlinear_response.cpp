@@ -22,13 +22,13 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kEscaped = 1e6;  // of the scale of y
 constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
 constexpr double kLongStep = 4;   // in dead times: shorter steps are not worth repeating
-constexpr int kMostPasses = 12;
-constexpr double kAgreed = 0.1;      // of the tolerance: two passes of a long step agree
-constexpr double kPause = 50;        // dead times until long steps are tried again
-constexpr int kMostCrossings = 100;  // without a whole step between two
-constexpr double kStill = 100;       // y and u have not moved since this fraction of the time: they will not
-constexpr int kRestInterval = 32;    // steps between two looks for where the loop comes to rest
-constexpr double kNearRest = 0.05;   // of the largest deviation: the end is near enough to rest to name it
+constexpr int kMaxPasses = 12;
+constexpr double kAgreed = 0.1;     // of the tolerance: two passes of a long step agree
+constexpr double kPause = 50;       // dead times until long steps are tried again
+constexpr int kMaxCrossings = 100;  // without a whole step between two
+constexpr double kStill = 100;      // y and u have not moved since this fraction of the time: they will not
+constexpr int kRestInterval = 32;   // steps between two looks for where the loop comes to rest
+constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
 
 /// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
 class Run {
@@ -123,7 +123,7 @@ private:
         if (!read_signals()) return fail(OdeStep::left_domain);
         if (loop_.delayed() && y_.h > L_ + slack() && !agree_with_itself()) return false;
         if (const auto crossing = find_crossing()) {
-            if (++crossings_in_a_row_ > kMostCrossings) return crowded();
+            if (++crossings_in_a_row_ > kMaxCrossings) return crowded();
             const OdeStep again = integrator_.shorten(*crossing);
             if (again != OdeStep::made || !read_signals()) return fail(again);
             keep_step();
@@ -138,7 +138,7 @@ private:
     /// Repeats a step longer than the dead time until the input that it supposed is the one that it gives; cuts it to
     /// the dead time where that does not come about.
     bool agree_with_itself() {
-        for (int pass = 0; pass < kMostPasses; ++pass) {
+        for (int pass = 0; pass < kMaxPasses; ++pass) {
             const StepPolynomial w = plant_input();
             double gap = 0;
             for (const double s : kSixPoints)

@@ -33,7 +33,7 @@ struct NonlinearOptions {
 };
 
 struct NonlinearResponse {
-    LinearResponse loop;  ///< deviations from the operating point; u after the limits; `schedule` stays empty
+    StepResponse loop;  ///< deviations from the operating point; u after the limits; `schedule` stays empty
     EvenSamples even;
     bool limited = false;  ///< u met a limit
     double t_end = 0;

@@ -10,7 +10,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMostIterations = 40, kMostHalvings = 20;
+constexpr int kMaxIterations = 40, kMaxHalvings = 20;
 constexpr double kDone = 1e-12, kRounding = 1e-9;  // of a Newton step, relative to the values and to their sizes
 
 /// The equations of rest in (x, u): f = 0 and what closes the loop.
@@ -51,7 +51,7 @@ struct Rest {
     bool solve_from(std::vector<double>& v, const std::vector<double>& sizes) {
         std::vector<double> r(n + 1), M((n + 1) * (n + 1)), next(n + 1);
         if (!residual(v, r)) return false;
-        for (int k = 0; k < kMostIterations; ++k) {
+        for (int k = 0; k < kMaxIterations; ++k) {
             if (!matrix(v, M)) return false;
             const auto step = solve(M, r, int(n + 1));
             if (!step) return false;
@@ -59,7 +59,7 @@ struct Rest {
             for (int halving = 0;; ++halving) {
                 for (Index i = 0; i <= n; ++i) next[i] = v[i] - length * (*step)[i];
                 if (residual(next, r)) break;
-                if (halving == kMostHalvings) return false;
+                if (halving == kMaxHalvings) return false;
                 length *= 0.5;
             }
             bool done = length == 1;

@@ -4,8 +4,8 @@
 
 namespace tunewright {
 
-LinearResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
-                             const StepInputs& inputs, const ResponseOptions& options) {
+StepResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
+                           const StepInputs& inputs, const ResponseOptions& options) {
     const ErrorScaling scaling{delta_r};
     return run_response(plant, linear_part, &scaling, inputs, options);
 }

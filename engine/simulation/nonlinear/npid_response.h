@@ -15,7 +15,7 @@ namespace tunewright {
 ///   third power of the error at the last node.
 /// - `settles` is false also where the response grows without bound; it ends there.
 /// The linear part's loop must be well posed; it need not be stable.
-LinearResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
-                             const StepInputs& inputs, const ResponseOptions& options);
+StepResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
+                           const StepInputs& inputs, const ResponseOptions& options);
 
 }  // namespace tunewright

@@ -13,7 +13,7 @@ namespace tunewright {
 /// linear in y, y' and s; without `delta_r` so are the rates. y' enters only a derivative without any filter.
 class PidLaw {
 public:
-    static constexpr int kMostStates = 3;
+    static constexpr int kMaxStates = 3;
 
     /// `delta_r`: the error that the integral sees is the nonlinear PID's. `tracking_rate`: 1/Tt of the anti-windup.
     PidLaw(const ParallelPid& gains, double r, std::optional<double> delta_r, double tracking_rate);
@@ -50,7 +50,7 @@ private:
     std::optional<ErrorScaling> scaling_;
     double tracking_rate_;
     int order_ = 1;
-    double by_y_ = 0, by_state_[kMostStates] = {1, 0, 0};
+    double by_y_ = 0, by_state_[kMaxStates] = {1, 0, 0};
 };
 
 }  // namespace tunewright

@@ -24,7 +24,7 @@ public:
     /// yet.
     void give(double u) { give_at(t(), u); }
     void give_at(double t, double u);
-    /// One step, not beyond `t_stop` nor the next arrival of a switch. False where the run cannot go on: `why` says it.
+    /// One step, not beyond `t_stop` nor the next arrival of a switch. Returns false on failure; see why().
     bool step(double t_stop);
     /// Goes back within the last step.
     bool shorten(double t);

@@ -50,16 +50,15 @@ LimitCycle describe(const LinearPlant& plant, const RelaySettings& settings, con
 // The spacing of rows where none is given: as fine as is useful, coarser where the record would not hold it.
 double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
     if (settings.record_interval) return *settings.record_interval;
-    const double most = 0.9 * static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles;
+    const double most = 0.9 * static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles;
     const double fitting = settings.cycles * steady.Pu() / most, Ts = settings.relay_sample_time;
     return Ts > 0 ? Ts * std::max(1.0, std::ceil(fitting / Ts)) : std::max(steady.Pu() / kRowsPerPeriod, fitting);
 }
 
 std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRelayCycle& steady, double spacing) {
     const double rows = settings.cycles * (steady.Pu() / spacing + 2);
-    if (rows <= static_cast<double>(kMostRelayRows)) return std::nullopt;
-    const double fitting =
-        settings.cycles * steady.Pu() / (static_cast<double>(kMostRelayRows) - 2.0 * settings.cycles);
+    if (rows <= static_cast<double>(kMaxRelayRows)) return std::nullopt;
+    const double fitting = settings.cycles * steady.Pu() / (static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles);
     return refuse("record_interval", "record_interval is " + text(spacing) + "; " + std::to_string(settings.cycles) +
                                          " cycles of about " + text(steady.Pu()) + " would make " + text(rows) +
                                          " rows, and at most 100000 are recorded. Ask for fewer cycles, or rows at "
@@ -92,7 +91,7 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
         const double last = piece->switched ? piece->t_end - 1e-9 * spacing : piece->t_end;
         for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
             if (!record.t.empty() && t <= record.t.back() + 1e-9 * spacing) continue;
-            if (record.t.size() >= kMostRelayRows) return full_record(settings, switches / 2);
+            if (record.t.size() >= kMaxRelayRows) return full_record(settings, switches / 2);
             add_row(record, t, piece->u, steady.direction * piece->y.at(std::max(0.0, t - piece->t)));
         }
         if (!piece->switched) continue;
@@ -114,13 +113,13 @@ std::optional<Error> record_samples(const LinearPlant& plant, const RelaySetting
     SampledRelay relay(motion, plant.dead_time(), {settings.u_plus, settings.u_minus, settings.hysteresis},
                        settings.relay_sample_time, settings.noise_std, static_cast<std::uint64_t>(settings.seed));
     const auto every = static_cast<std::int64_t>(std::llround(spacing / settings.relay_sample_time));
-    constexpr std::int64_t kMostSamples = 10'000'000;
+    constexpr std::int64_t kMaxSamples = 10'000'000;
     int switches = 0;
-    for (std::int64_t k = 0; k < kMostSamples; ++k) {
+    for (std::int64_t k = 0; k < kMaxSamples; ++k) {
         if ((k & 4095) == 0 && control.stop.stop_requested()) return stopped();
         const SampledRelay::Sample sample = relay.next();
         if (sample.switched || k % every == 0) {
-            if (record.t.size() >= kMostRelayRows) break;
+            if (record.t.size() >= kMaxRelayRows) break;
             add_row(record, sample.t, sample.u, steady.direction * sample.y);
         }
         if (sample.switched && ++switches == 2 * settings.cycles) return std::nullopt;
@@ -171,7 +170,7 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
         return refuse("relay_sample_time",
                       "relay_sample_time is 0 and noise_std > 0; noise belongs to samples. Give the time between looks "
                       "of the relay, or set noise_std to 0.");
-    if (s.cycles < 1 || s.cycles > kMostRelayCycles)
+    if (s.cycles < 1 || s.cycles > kMaxRelayCycles)
         return refuse("cycles", "cycles is " + std::to_string(s.cycles) + "; it must be 1 to 1000.");
     if (s.seed < 0) return refuse("seed", "seed must be >= 0.");
     if (s.shift && !(*s.shift > 0)) return refuse("shift", "shift must be > 0.");
@@ -191,7 +190,7 @@ Expected<RelayExperiment> simulate_relay(const Plant& given, const RelaySettings
     if (!plant) return plant.error();
     const RelayLevels levels{settings.u_plus, settings.u_minus, settings.hysteresis};
     const bool sampled = settings.relay_sample_time > 0;
-    if (sampled && plant->dead_time() > kMostDeadSamples * settings.relay_sample_time)
+    if (sampled && plant->dead_time() > kMaxDeadSamples * settings.relay_sample_time)
         return refuse("relay_sample_time", "relay_sample_time is " + text(settings.relay_sample_time) +
                                                "; the dead time may hold at most 1000000 samples. Make it longer.");
     const auto steady = sampled ? steady_sampled_cycle(*plant, levels, settings.relay_sample_time, control)

@@ -21,7 +21,7 @@ struct RelaySettings {
     double noise_std = 0;             ///< >= 0; of white noise on each sample of y, seen by the relay; y
     double relay_sample_time = 0;     ///< 0: switches at the instant of crossing; else the relay looks that often
     /// Spacing of the record's rows; a whole multiple of relay_sample_time if that is not 0. None: Pu/200, or
-    /// relay_sample_time; more where the record would have more than kMostRelayRows.
+    /// relay_sample_time; more where the record would have more than kMaxRelayRows.
     std::optional<double> record_interval;
     int cycles = 10;              ///< 1 to 1000 cycles of u_plus and u_minus from t = 0
     int seed = 0;                 ///< of the noise; >= 0
@@ -54,8 +54,8 @@ struct RelayExperiment {
     std::vector<Warning> warnings;
 };
 
-constexpr int kMostRelayCycles = 1000;
-constexpr std::size_t kMostRelayRows = 100'000;
+constexpr int kMaxRelayCycles = 1000;
+constexpr std::size_t kMaxRelayRows = 100'000;
 
 /// Simulates the test. Errors: invalid_argument with `where` = "plant/..." or "relay/<field>", also where the relay
 /// cannot oscillate; unsupported where the plant cannot; cancelled.

@@ -12,7 +12,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMostCycles = 400;
+constexpr int kMaxCycles = 400;
 constexpr double kNear = 0.02;    // of the period: a run that has come so close is on its way to the cycle
 constexpr double kSteady = 1e-3;  // of the period
 
@@ -233,7 +233,7 @@ public:
     Expected<SteadyRelayCycle> solve() {
         double previous = 1;
         int next_attempt = 2;
-        for (int count = 1; count <= kMostCycles; ++count) {
+        for (int count = 1; count <= kMaxCycles; ++count) {
             const auto cycle = next_cycle(run_, control_);
             if (!cycle) return refusal();
             history_.push_back(cycle->durations);
@@ -244,12 +244,12 @@ public:
             const double now = distance(cycle->durations, {steady->t_plus, steady->t_minus});
             const bool arrived = now <= kNear && (now <= previous || now < 1e-6);
             previous = now;
-            if (!arrived && count + count / 4 < kMostCycles) continue;
+            if (!arrived && count + count / 4 < kMaxCycles) continue;
             if (!arrived && now > 0.2) break;
             steady->settling_cycles = count_settling(*steady);
             return *steady;
         }
-        return no_steady_cycle(plant_, kMostCycles);
+        return no_steady_cycle(plant_, kMaxCycles);
     }
 
 private:
@@ -273,7 +273,7 @@ private:
 
     int count_settling(const SteadyRelayCycle& steady) {
         const Durations target{steady.t_plus, steady.t_minus};
-        while (static_cast<int>(history_.size()) < kMostCycles && distance(history_.back(), target) > kSteady) {
+        while (static_cast<int>(history_.size()) < kMaxCycles && distance(history_.back(), target) > kSteady) {
             const auto cycle = next_cycle(run_, control_);
             if (!cycle) break;
             history_.push_back(cycle->durations);

@@ -82,7 +82,7 @@ RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, co
     plan.hysteresis = levels.hysteresis;
     plan.amplitude = factor * amplitude(cycle);
     plan.expected_period = cycle.Pu();
-    plan.cycles = std::min(cycle.settling_cycles + (noisy ? kNoisyCycles : kQuietCycles), kMostRelayCycles);
+    plan.cycles = std::min(cycle.settling_cycles + (noisy ? kNoisyCycles : kQuietCycles), kMaxRelayCycles);
     plan.duration = plant.dead_time() + plan.cycles * cycle.Pu();
     const double spacing = cycle.Pu() / kRowsPerPeriod, Ts = settings.relay_sample_time;
     plan.record_interval = Ts > 0 ? Ts * std::max(1.0, std::floor(spacing / Ts)) : round_down(spacing);

@@ -6,9 +6,9 @@
 namespace tunewright {
 namespace {
 
-constexpr std::int64_t kMostSteps = 4'000'000;
-constexpr std::size_t kMostPending = 20'000;
-constexpr int kMostCrowded = 50;
+constexpr std::int64_t kMaxSteps = 4'000'000;
+constexpr std::size_t kMaxPending = 20'000;
+constexpr int kMaxCrowded = 50;
 constexpr double kGrowth = 45;  // e^45 beyond the last swing: never to come back
 constexpr int kFirstSwitches = 4;
 constexpr double kEscape = 1e9;     // times the swing before these switches
@@ -60,11 +60,11 @@ RelayPiece RelayRun::switch_over(RelayPiece piece) {
     piece.t_end = t_;
     ++switches_;
     crowded_ = t_ - switched_at_ <= 1e-14 * t_ ? crowded_ + 1 : 0;
-    if (crowded_ > kMostCrowded) end_ = RelayEnd::too_fast;
+    if (crowded_ > kMaxCrowded) end_ = RelayEnd::too_fast;
     switched_at_ = t_;
     u_ = u_ == levels_.u_plus ? levels_.u_minus : levels_.u_plus;
     pending_.push_back({t_ + L_, u_});
-    if (pending_.size() > kMostPending) end_ = RelayEnd::too_fast;
+    if (pending_.size() > kMaxPending) end_ = RelayEnd::too_fast;
     return piece;
 }
 
@@ -127,7 +127,7 @@ double RelayRun::polish(double tau, double low, double high) const {
 
 std::optional<RelayPiece> RelayRun::next() {
     if (end_ != RelayEnd::running) return std::nullopt;
-    if (++steps_ > kMostSteps) {
+    if (++steps_ > kMaxSteps) {
         end_ = RelayEnd::exhausted;
         return std::nullopt;
     }

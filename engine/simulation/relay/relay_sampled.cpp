@@ -10,8 +10,8 @@
 namespace tunewright {
 namespace {
 
-constexpr std::int64_t kMostSamples = 4'000'000;
-constexpr std::size_t kMostCycles = 400, kAveraged = 200, kLongestPattern = 32, kRepeats = 4;
+constexpr std::int64_t kMaxSamples = 4'000'000;
+constexpr std::size_t kMaxCycles = 400, kAveraged = 200, kMaxPatternLength = 32, kRepeats = 4;
 constexpr double kGrowth = 45;
 constexpr double kSteady = 1e-3;
 
@@ -23,7 +23,7 @@ struct SampledCycle {
 
 // The smallest number of cycles after which everything repeats.
 std::optional<std::size_t> pattern(const std::vector<SampledCycle>& cycles) {
-    for (std::size_t k = 1; k <= kLongestPattern; ++k) {
+    for (std::size_t k = 1; k <= kMaxPatternLength; ++k) {
         const std::size_t needed = std::max<std::size_t>(kRepeats * k, 8) + k;
         if (cycles.size() < needed) return std::nullopt;
         bool repeats = true;
@@ -54,7 +54,7 @@ public:
     Expected<SteadyRelayCycle> solve() {
         double started = 0, turned = 0;
         SampledCycle cycle = fresh();
-        for (std::int64_t k = 0; k < kMostSamples; ++k) {
+        for (std::int64_t k = 0; k < kMaxSamples; ++k) {
             if ((k & 4095) == 0 && control_.stop.stop_requested())
                 return Error{ErrorKind::cancelled, {}, "The simulation was stopped."};
             const SampledRelay::Sample sample = relay_.next();
@@ -76,14 +76,14 @@ public:
             cycle = fresh();
             started = sample.t;
             if (const auto length = pattern(cycles_)) return mean_over(*length);
-            if (cycles_.size() < kMostCycles) continue;
-            if (grows()) return no_steady_cycle(plant_, static_cast<int>(kMostCycles));
+            if (cycles_.size() < kMaxCycles) continue;
+            if (grows()) return no_steady_cycle(plant_, static_cast<int>(kMaxCycles));
             return mean_over(kAveraged);
         }
         if (cycles_.size() >= 4 && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
         return Error{ErrorKind::invalid_argument, "relay/relay_sample_time",
                      "relay_sample_time is " + text(Ts_) + "; the oscillation is not steady after " +
-                         std::to_string(kMostSamples) + " samples. Make it longer, or 0 for an event-accurate relay."};
+                         std::to_string(kMaxSamples) + " samples. Make it longer, or 0 for an event-accurate relay."};
     }
 
 private:

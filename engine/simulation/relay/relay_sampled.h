@@ -33,7 +33,7 @@ public:
         bool switched = false;
     };
 
-    /// `sample_time` > 0; dead_time/sample_time at most kMostDeadSamples.
+    /// `sample_time` > 0; dead_time/sample_time at most kMaxDeadSamples.
     SampledRelay(const RelayMotion& motion, double dead_time, const RelayLevels& levels, double sample_time,
                  double noise_std, std::uint64_t seed);
 
@@ -55,7 +55,7 @@ private:
     OutputMotion output_;
 };
 
-constexpr double kMostDeadSamples = 1e6;
+constexpr double kMaxDeadSamples = 1e6;
 
 /// The noise-free oscillation at that sampling: the mean over the pattern that repeats exactly, found within 400
 /// cycles, or over the last 200 of them. `x` is empty. Errors: as steady_relay_cycle; invalid_argument

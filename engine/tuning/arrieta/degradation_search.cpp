@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kPoints = 25;  // of the scan: every 0.025
 constexpr double kAccuracy = 1e-9;
-constexpr int kMostHalvings = 60;
+constexpr int kMaxHalvings = 60;
 
 struct Sample {
     double Ms = 0, Deg = 0;
@@ -38,7 +38,7 @@ private:
 // Regula falsi with the Illinois weighting between two samples on either side of `target`.
 double root(const Branch& branch, Sample a, Sample b, double target) {
     double fa = a.Deg - target, fb = b.Deg - target;
-    for (int i = 0; i < kMostHalvings && b.Ms - a.Ms > kAccuracy; ++i) {
+    for (int i = 0; i < kMaxHalvings && b.Ms - a.Ms > kAccuracy; ++i) {
         const double Ms = (a.Ms * fb - b.Ms * fa) / (fb - fa);
         const auto Deg = branch.degradation(Ms);
         if (!Deg) return Ms;
@@ -90,7 +90,7 @@ Expected<double> Ms_of_degradation(const Fopdt& model, double degradation, const
     }
     if (samples.empty())
         return Error{ErrorKind::unsupported, "plant",
-                     "With no Ms from 1.4 to 2 does the rule stabilise this model. Use amigo or robust."};
+                     "The rule does not stabilise this model for any Ms from 1.4 to 2. Use amigo or robust."};
     return out_of_reach(samples, degradation);
 }
 

@@ -20,8 +20,8 @@ constexpr double kLargestTau = 50;
 constexpr double kTolerance = 1e-4;   // of the simulation: its error of the IAE is 1e-5 and hardly changes nearby
 constexpr double kFirstStep = 0.004;  // of a logarithm: about what interpolation leaves
 constexpr double kAccuracy = 1e-6;    // of ln IAE
-constexpr int kMostSteps = 6000;
-constexpr int kMostEvaluations = 16;
+constexpr int kMaxSteps = 6000;
+constexpr int kMaxEvaluations = 16;
 constexpr double kNoController = 1e3;  // ln IAE of what does not settle
 
 // An optimum at tau = L/T, scaled so that all is finite from tau = 0 on.
@@ -86,9 +86,9 @@ double log_iae(const LinearPlant& plant, const Point& x, bool load) {
     if (!loop || !count_unstable_poles(*loop).stable()) return kNoController;
     ResponseOptions options;
     options.tolerance = options.settled = kTolerance;
-    options.max_steps = kMostSteps;
+    options.max_steps = kMaxSteps;
     const StepInputs inputs = load ? StepInputs{.d = 1} : StepInputs{.r = 1};
-    const LinearResponse response = simulate_linear(plant, gains, inputs, options);
+    const StepResponse response = simulate_linear(plant, gains, inputs, options);
     if (!response.settles || !response.error_integral_final) return kNoController;
     return std::log(integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final));
 }
@@ -97,7 +97,7 @@ Pid best_from(const Point& start, const LinearPlant& plant, bool load) {
     LocalOptions options;
     options.step = {kFirstStep, kFirstStep, kFirstStep};
     options.tolerance = kAccuracy;
-    options.most_evaluations = kMostEvaluations;
+    options.most_evaluations = kMaxEvaluations;
     const auto cost = [&](const Point& x, bool&) { return log_iae(plant, x, load); };
     return controller_at(find_local_minimum(LocalSearch::nelder_mead, cost, start, options).x);
 }

@@ -20,7 +20,7 @@ constexpr const char* kUnsettled = "The response does not settle within the step
 std::optional<double> step_iae(const Loop& loop, const StepInputs& inputs) {
     ResponseOptions options;
     options.tolerance = options.settled = kTolerance;
-    const LinearResponse response = simulate_linear(loop.plant(), loop.gains(), inputs, options);
+    const StepResponse response = simulate_linear(loop.plant(), loop.gains(), inputs, options);
     if (!response.settles || !response.error_integral_final) return std::nullopt;
     return integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);
 }

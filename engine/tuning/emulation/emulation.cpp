@@ -27,7 +27,7 @@ Expected<Design> approximate(const Remark6& remark6, const Bounds& bounds, doubl
     const auto point = remark6.best(bounds);
     if (!point)
         return Error{ErrorKind::no_feasible_controller, "bounds",
-                     "Within the bounds no gain but 0 is best: the nonlinear controller's action has no share of the "
+                     "Within the bounds the optimal gain is 0: the nonlinear controller's action has no share of the "
                      "error, its integral or derivative. Give bounds of Kp with the sign of the plant's gain."};
     const double J = remark6.J(*point);
     return Design{*point, bounds, J, J / wu, std::nullopt, false};

@@ -12,10 +12,10 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kMostHysteresis = 3;     // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
-constexpr double kSlowIntegral = 4;       // Ti over the target's time, where the nonlinear controller gives Kp
-constexpr double kLeastAlphaOfTi = 1e-3;  // Ti = 0 is no controller
-constexpr double kHysteresis = 0.1;       // of what the relay moves y by in the long run, where there is no dead time
+constexpr double kMaxHysteresis = 3;    // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
+constexpr double kSlowIntegral = 4;     // Ti over the target's time, where the nonlinear controller gives Kp
+constexpr double kMinAlphaOfTi = 1e-3;  // Ti = 0 is no controller
+constexpr double kHysteresis = 0.1;     // of what the relay moves y by in the long run, where there is no dead time
 
 class FirstLevel {
 public:
@@ -126,7 +126,7 @@ private:
         }
         // Of its own the plant swings beyond the hysteresis; where it does not, the hysteresis sets the period.
         const double hysteresis_share = std::numbers::pi * test->Ku * hysteresis / (4 * amplitude);
-        if (hysteresis_share > kMostHysteresis) {
+        if (hysteresis_share > kMaxHysteresis) {
             row.error =
                 "The plant has no oscillation of its own under a relay: y turns as soon as the relay has switched.";
             by_linear_model("ziegler_nichols_ultimate", {});
@@ -206,7 +206,7 @@ Expected<Bounds> search_bounds(const Problem& problem, const std::vector<LevelOn
     if (!ranges.contains("Ti")) {
         const auto times = magnitudes(settings, &Pid::Ti);
         if (times.empty()) return nothing_to_start_from(rows);
-        ranges["Ti"] = widened(times, {std::max(alpha.low, kLeastAlphaOfTi), alpha.high});
+        ranges["Ti"] = widened(times, {std::max(alpha.low, kMinAlphaOfTi), alpha.high});
     }
     if (problem.with_derivative && !ranges.contains("Td")) {
         const auto times = magnitudes(settings, &Pid::Td);

@@ -11,13 +11,13 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kShareOfInput = 0.05;    // of the nominal input, or of its range: the default step
-constexpr double kTargetTimes = 8;        // the default horizon, in the target's slowest time
-constexpr double kMostTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
-constexpr double kFilterShare = 0.1;      // the default Tf over the target's time
-constexpr NumberRange kAlpha{0.2, 5};     // the default of Eq. 3
-constexpr double kShareOfTest = 0.4;      // of that step: a simulated test has no noise to stand out of
-constexpr int kFewestIntervals = 800, kMostIntervals = 6400;
+constexpr double kShareOfInput = 0.05;   // of the nominal input, or of its range: the default step
+constexpr double kTargetTimes = 8;       // the default horizon, in the target's slowest time
+constexpr double kMaxTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
+constexpr double kFilterShare = 0.1;     // the default Tf over the target's time
+constexpr NumberRange kAlpha{0.2, 5};    // the default of Eq. 3
+constexpr double kShareOfTest = 0.4;     // of that step: a simulated test has no noise to stand out of
+constexpr int kMinIntervals = 800, kMaxIntervals = 6400;
 constexpr double kIntervalShare = 0.04;  // of the fastest time constant
 
 Error wrong(const std::string& where, const std::string& sentence) {
@@ -133,7 +133,7 @@ void choose_bounds(Problem& problem, const MethodOptions& options) {
 std::optional<Error> choose_horizon(Problem& problem, const MethodOptions& options) {
     const double slowest = slowest_time(problem.target), L = problem.system->dead_time();
     problem.horizon = options.number("horizon").value_or(kTargetTimes * slowest + L);
-    const double longest = kMostTargetTimes * slowest + L;
+    const double longest = kMaxTargetTimes * slowest + L;
     if (problem.horizon <= longest) return std::nullopt;
     return wrong("horizon", "horizon is " + text(problem.horizon) + ", so long that the response, over after some " +
                                 text(kTargetTimes * slowest) + ", would fall between two samples; it may be " +
@@ -156,8 +156,8 @@ int chosen_intervals(const Problem& problem) {
     double fastest = problem.target.beta.back() / problem.target.beta[problem.target.beta.size() - 2];
     if (problem.with_derivative)
         fastest = std::min(fastest, problem.free_Tf() ? problem.bounds.at("Tf").low : problem.Tf);
-    int intervals = kFewestIntervals;
-    while (intervals < kMostIntervals && problem.horizon / intervals > kIntervalShare * fastest) intervals *= 2;
+    int intervals = kMinIntervals;
+    while (intervals < kMaxIntervals && problem.horizon / intervals > kIntervalShare * fastest) intervals *= 2;
     return intervals;
 }
 

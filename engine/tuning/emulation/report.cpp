@@ -10,14 +10,14 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kOnBound = 1e-6;    // of the range
-constexpr double kLeftOfU = 0.1;     // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
-constexpr double kLeftOfY = 0.05;    // of int y_nl^2, likewise
-constexpr double kLeastSize = 1e-3;  // of an unknown near 0, relative to its range
-constexpr int kTold = 400;           // intervals of what is told
+constexpr double kOnBound = 1e-6;        // of the range
+constexpr double kLeftOfU = 0.1;         // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
+constexpr double kLeftOfY = 0.05;        // of int y_nl^2, likewise
+constexpr double kMinSize = 1e-3;        // of an unknown near 0, relative to its range
+constexpr int kReportedIntervals = 400;  // intervals of what is told
 
 // Every so many samples are told.
-std::size_t stride(const Problem& problem) { return static_cast<std::size_t>(problem.intervals / kTold); }
+std::size_t stride(const Problem& problem) { return static_cast<std::size_t>(problem.intervals / kReportedIntervals); }
 
 std::vector<double> told(const std::vector<double>& samples, double rest, std::size_t stride) {
     std::vector<double> values;
@@ -115,7 +115,7 @@ void add_flatness(EmulationReport& report, const Criterion& criterion, const Rem
     const Problem& problem = criterion.problem();
     Point sizes = design.point;
     for (std::size_t i = 0; i < sizes.size(); ++i)
-        sizes[i] = std::max(std::abs(sizes[i]), kLeastSize * (design.bounds.high[i] - design.bounds.low[i]));
+        sizes[i] = std::max(std::abs(sizes[i]), kMinSize * (design.bounds.high[i] - design.bounds.low[i]));
     const auto J = [&](const Point& point) {
         if (stop.stop_requested()) return 0.0;
         return problem.remark6 ? remark6.J(point)

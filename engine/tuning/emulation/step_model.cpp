@@ -9,7 +9,7 @@ namespace tunewright::emulation {
 namespace {
 
 constexpr double kTolerance = 1e-12;
-constexpr int kMostEvaluations = 600;
+constexpr int kMaxEvaluations = 600;
 constexpr double kFirstSteps = 0.1;  // in ln T, and of L relative to T
 
 // K by least squares for a shape, and the sum of squares that is left.
@@ -61,7 +61,7 @@ Expected<Fopdt> first_order_model(const StepTest& recorded) {
         return std::log(fit(test, T, L).left + 1e-300);
     };
     const auto found = find_local_minimum(LocalSearch::nelder_mead, left, {0, std::max(0.0, slow / T0 - 1)},
-                                          {{kFirstSteps, kFirstSteps}, kTolerance, kMostEvaluations});
+                                          {{kFirstSteps, kFirstSteps}, kTolerance, kMaxEvaluations});
     const double T = T0 * std::exp(std::clamp(found.x[0], -7.0, 7.0)), L = T0 * std::max(0.0, found.x[1]);
     return Fopdt{.K = fit(test, T, L).K, .T = T, .L = L};
 }

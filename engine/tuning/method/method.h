@@ -42,7 +42,7 @@ struct TunedController {
 };
 
 /// The controller that the method answers.
-inline Controller answered(const TunedController& tuned) {
+inline Controller controller_of(const TunedController& tuned) {
     const Pid& pid = tuned.controller;
     if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
     return pid;

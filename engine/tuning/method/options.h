@@ -17,7 +17,7 @@ enum class OptionType {
     choice,
     object,
     number_or_word,   ///< a number within the limits, or one of `choices`
-    text,             ///< any short text; whoever takes it knows what suits
+    text,             ///< any short text, validated by the consumer
     range,            ///< [low, high], both within the limits, low < high
     number_or_range,  ///< either
     complex,          ///< a number, or [re, im]

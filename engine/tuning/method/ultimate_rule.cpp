@@ -74,9 +74,9 @@ double gain_ratio(const LinearPlant& plant, const UltimatePoint& at) {
 
 std::vector<Warning> ultimate_warnings(const TuningProblem& problem) {
     if (problem.linear.unstable_poles() == 0) return {};
-    return {outside_validity(
-        "The plant is unstable: it also needs a least gain, of which a rule that takes a share of Ku knows nothing. "
-        "Check that the loop is stable, or use robust.")};
+    return {
+        outside_validity("The plant is unstable: it also needs a least gain, which rules based on Ku ignore. "
+                         "Check that the loop is stable, or use robust.")};
 }
 
 }  // namespace tunewright

@@ -16,18 +16,18 @@
 namespace tunewright {
 namespace {
 
-constexpr double kNoLoop = 50;         // ln(cost/scale) of what is no stable loop
-constexpr double kMostNeutral = 0.98;  // of |L(infinity)|: beyond it echoes hardly fade
-constexpr int kExplored = 500;         // points of the global search
-constexpr int kStarts = 3;             // of local searches from it
-constexpr double kApart = 0.5;         // of two starts, in ln
+constexpr double kNoLoop = 50;        // ln(cost/scale) of what is no stable loop
+constexpr double kMaxNeutral = 0.98;  // of |L(infinity)|: beyond it echoes hardly fade
+constexpr int kExplored = 500;        // points of the global search
+constexpr int kStarts = 3;            // of local searches from it
+constexpr double kApart = 0.5;        // of two starts, in ln
 constexpr int kLocalEvaluations = 260;
 constexpr int kPolishes = 8;
 constexpr double kPolished = 2e-5;  // gain in ln at which they end
 constexpr int kExpected = kExplored + (kStarts + 2) * kLocalEvaluations;
 constexpr int kReportEvery = 50;
 constexpr double kNearBound = 1e-3;  // in ln
-constexpr int kMostSteps = 4000;     // of a response; what has not settled then is no candidate
+constexpr int kMaxSteps = 4000;      // of a response; what has not settled then is no candidate
 
 class Search {
 public:
@@ -112,12 +112,12 @@ private:
     double cost(const Pid& pid) const {
         const auto loop = Loop::make(problem_.plant, to_parallel(pid));
         if (!loop) return kNoLoop;
-        if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMostNeutral) return kNoLoop;
+        if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMaxNeutral) return kNoLoop;
         ResponseOptions options;
         options.tolerance = fine_ ? 1e-6 : 1e-4;
         options.settled = fine_ ? 1e-8 : 1e-6;
-        options.max_steps = kMostSteps;
-        const LinearResponse response = simulate_npid(problem_.plant, loop->gains(), 1, {1, 0}, options);
+        options.max_steps = kMaxSteps;
+        const StepResponse response = simulate_npid(problem_.plant, loop->gains(), 1, {1, 0}, options);
         if (!response.settles) return kNoLoop;
         const auto e = error_integrals(response.nodes, 1, response.error_integral_final);
         const double value = problem_.criterion == ErrorCriterion::ISE   ? e.ISE / time_

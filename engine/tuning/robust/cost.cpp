@@ -23,7 +23,7 @@ Run run(const Problem& problem, const Point& x, bool setpoint, double tolerance,
     options.max_steps = kMaxSteps;
     options.repeat = repeat;
     const StepInputs inputs{setpoint ? 1.0 : 0.0, setpoint ? 0.0 : 1.0};
-    LinearResponse response = simulate_linear(*problem.plant, to_parallel(controller_at(problem, x)), inputs, options);
+    StepResponse response = simulate_linear(*problem.plant, to_parallel(controller_at(problem, x)), inputs, options);
     Run result;
     if (!response.settles || !response.error_integral_final) return result;
     result.IAE = integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);

@@ -34,7 +34,7 @@ using Point = std::array<double, 3>;
 /// Within which the searches by gradient keep the controller's times, in 1/reference frequency: beyond, the design is
 /// an integral alone, a PI, or lives below every frequency of interest, and a filter tied to Td leaves the frequency
 /// grid.
-constexpr double kLeastTi = 1e-6, kLeastTd = 2e-4, kMostTd = 300;
+constexpr double kMinTi = 1e-6, kMinTd = 2e-4, kMaxTd = 300;
 
 /// What a search answers.
 struct Found {

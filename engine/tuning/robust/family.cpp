@@ -7,7 +7,7 @@
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/loop/worst_member.h"
+#include "engine/loop/worst_case.h"
 
 namespace tunewright::robust {
 namespace {
@@ -55,13 +55,13 @@ double excess_on_points(const Problem& problem, const Point& x) {
 
 std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
                                       const std::stop_token& stop) {
-    const Badness badness = [&](const LinearPlant& plant) { return excess_on(plant, problem, x, {}); };
+    const PlantCost cost = [&](const LinearPlant& plant) { return excess_on(plant, problem, x, {}); };
     std::vector<LinearPlant> found;
     for (const auto& region : family.regions) {
         if (region.dimension() == 0) continue;
         for (const auto& starts : {region.spread(kRegionSamples), region.ends()}) {
-            const WorstMember worst = find_worst(region, badness, starts, stop);
-            if (!(worst.badness > kAllowedInside)) continue;
+            const WorstCase worst = find_worst_case(region, cost, starts, stop);
+            if (!(worst.cost > kAllowedInside)) continue;
             if (auto plant = LinearPlant::make(region.at(worst.z))) found.push_back(std::move(*plant));
         }
     }

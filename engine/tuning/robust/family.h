@@ -27,7 +27,7 @@ double excess_on(const LinearPlant& plant, const Problem& problem, const Point& 
 double excess_on_points(const Problem& problem, const Point& x);
 
 /// For each region of the family the plant inside on which the design at x exceeds a limit most, where that is by more
-/// than 5e-5: from 128 points and the ends the worst is followed (find_worst). Empty: the limits hold.
+/// than 5e-5: from 128 points and the ends the worst is followed (find_worst_case). Empty: the limits hold.
 std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
                                       const std::stop_token& stop);
 

@@ -17,8 +17,8 @@ constexpr double kSameDesign = 0.02;       // of each logarithm
 constexpr double kHopeless = 0.7;          // of ln of the cost: a start so much dearer than the best is left out
 constexpr double kPolishTolerance = 1e-5;  // of ln of the cost
 constexpr double kPolishStep = 0.1;        // of a logarithm
-constexpr int kMostPolishing = 100;        // simulations of one simplex
-constexpr int kMostSimplices = 10;
+constexpr int kMaxPolishing = 100;         // simulations of one simplex
+constexpr int kMaxSimplices = 10;
 constexpr double kWorthAnother = 1e-4;  // of ln of the cost: what a simplex won, for the next to begin
 
 // Where the valleys of a resonant plant lie. Beside ordinary designs it may want an integral alone, behind a filter
@@ -77,7 +77,7 @@ public:
     /// By simplices, from the best so far: the integral of |e| has kinks where a slow tail after a set-point step, or a
     /// wave of a resonance, comes to change its sign, and a descent along smooth models stalls on them.
     void polish() {
-        for (int round = 0; round < kMostSimplices && best_ && !stopped(); ++round) {
+        for (int round = 0; round < kMaxSimplices && best_ && !stopped(); ++round) {
             const double before = best_->log_cost;
             simplex();
             if (before - best_->log_cost < kWorthAnother) break;
@@ -105,7 +105,7 @@ private:
         find_local_minimum(LocalSearch::nelder_mead, cost, std::vector<double>(n, 0.0),
                            {.step = std::vector<double>(n, kPolishStep),
                             .tolerance = kPolishTolerance,
-                            .most_evaluations = kMostPolishing});
+                            .most_evaluations = kMaxPolishing});
     }
 
     void take(const Found& found) {
@@ -132,7 +132,7 @@ private:
 /// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
 /// against the least one and against a long one.
 void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem, std::vector<ScanPoint> points) {
-    const double shortest = std::log(kLeastTd / sweep.reference()), ordinary = std::log(kShortTd / sweep.reference());
+    const double shortest = std::log(kMinTd / sweep.reference()), ordinary = std::log(kShortTd / sweep.reference());
     const Point end = runs.best()->x;
     if (end[2] > ordinary) return;
     runs.from(Candidate{.x = {end[0], end[1], shortest}});

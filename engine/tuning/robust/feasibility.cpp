@@ -13,8 +13,8 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kLongestTi = 200, kShortestTd = 1e-3;  // times the period over 2 pi at the reference frequency
-constexpr double kUnstable = 20;                        // ln of the larger peak, where the loop is unstable
+constexpr double kFarTi = 200, kFarTd = 1e-3;  // times the period over 2 pi at the reference frequency
+constexpr double kUnstable = 20;               // ln of the larger peak, where the loop is unstable
 
 double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
     const auto loop = MeasuredLoop::make(plant, gains);
@@ -58,7 +58,7 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem) {
     const auto n = static_cast<std::size_t>(problem.dimension());
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
-    const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestTd / reference);
+    const double longest = std::log(kFarTi / reference), shortest = std::log(kFarTd / reference);
     Point centre = *start;
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {

@@ -19,7 +19,7 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem);
 /// `x` moved within the problem's limits, if that succeeds with a stable loop.
 std::optional<Point> feasible_near(const Sweep& sweep, const Point& x);
 
-/// True where the gain can grow for ever within the limits: no dead time, no right-half-plane zero, and a design of the
+/// True where the gain is unbounded within the limits: no dead time, no right-half-plane zero, and a design of the
 /// plant's high-frequency asymptote that scales with frequency exists (Tf tied to Td, no filter, or a filter that
 /// leaves a pole excess of one).
 bool has_no_finite_optimum(const Problem& problem);

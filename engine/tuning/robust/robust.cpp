@@ -15,7 +15,7 @@ namespace {
 
 using namespace robust;
 
-constexpr int kMostRounds = 10;  // of adding the worst plant found inside a region
+constexpr int kMaxRounds = 10;  // of adding the worst plant found inside a region
 
 Objective objective_named(const std::string& name) {
     if (name == "load_ie") return Objective::load_ie;
@@ -35,14 +35,14 @@ Expected<std::optional<FilterRule>> explicit_filter(const MethodOptions& options
     return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = *ratio});
 }
 
-constexpr double kLeastResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
+constexpr double kMinResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
 
 /// The sum of the lags minus the leads, kept from vanishing where the leads cancel it; 0 without lags.
 double filter_basis(const LinearPlant& plant) {
     double shortest = std::numeric_limits<double>::infinity();
     for (const auto pole : plant.poles())
         if (pole.real() < 0) shortest = std::min(shortest, (-1.0 / pole).real());
-    return std::isfinite(shortest) ? std::max(plant.lag_sum(), kLeastResidence * shortest) : 0;
+    return std::isfinite(shortest) ? std::max(plant.lag_sum(), kMinResidence * shortest) : 0;
 }
 
 /// A plant with neither dead time nor lags has no natural filter time.
@@ -152,8 +152,8 @@ std::optional<Error> without_optimum(const Problem& problem) {
     if (auto error = check_Mks(problem)) return error;
     if (!has_no_finite_optimum(problem)) return std::nullopt;
     return Error{ErrorKind::unbounded_optimum, "filter",
-                 "On this plant the gain can grow for ever within the limits, so there is no optimum: it has no "
-                 "dead time to stop it. "
+                 "On this plant the gain is unbounded within the limits, because no dead time bounds it, so there is "
+                 "no optimum. "
                  "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
 }
 
@@ -175,7 +175,7 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     for (int round = 0; found && !found->stopped && tuning.family; ++round) {
         const auto added = worst_inside(*tuning.family, problem, found->x, control.stop);
         if (added.empty()) break;
-        if (round == kMostRounds) {
+        if (round == kMaxRounds) {
             result.warnings.push_back(exceeded_inside(added, problem, found->x));
             break;
         }

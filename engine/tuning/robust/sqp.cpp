@@ -47,8 +47,8 @@ std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, c
         constraints.push_back({peak.gradient, -peak.value - kAimBelow});
     }
     const auto log_time = [&](double in_reference) { return std::log(in_reference / sweep.reference()); };
-    const std::array<double, 3> lowest = {-INFINITY, log_time(kLeastTi), log_time(kLeastTd)};
-    const std::array<double, 3> highest = {INFINITY, INFINITY, log_time(kMostTd)};
+    const std::array<double, 3> lowest = {-INFINITY, log_time(kMinTi), log_time(kMinTd)};
+    const std::array<double, 3> highest = {INFINITY, INFINITY, log_time(kMaxTd)};
     for (std::size_t i = 0; i < std::size_t(sweep.problem().dimension()); ++i) {
         Vector3 up{}, down{};
         up[i] = 1;

@@ -31,8 +31,8 @@ using Report = std::function<bool(const Point&, double log_cost)>;
 SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& start, const SqpOptions& options,
                    const Report& report);
 
-/// Moves x to the feasible side (every constraint <= -1e-9 of its logarithm) by Newton steps on the violated peaks,
-/// along the shortest way; empty if that does not succeed.
+/// Moves x to the feasible side by Newton steps on the violated peaks, along the shortest way. The steps aim 1e-7
+/// inside (of a constraint's logarithm); up to 1e-8 outside is accepted. Empty if that does not succeed.
 std::optional<Point> restore(const Sweep& sweep, Point x);
 
 /// Is the loop at x stable, on every plant?

@@ -11,8 +11,8 @@ namespace tunewright::robust {
 namespace {
 
 constexpr double kScanTolerance = 1e-3;  // of the simulations that only compare starting points
-constexpr int kMostCompared = 12;
-constexpr std::size_t kMostValleys = 4;
+constexpr int kMaxCompared = 12;
+constexpr std::size_t kMaxValleys = 4;
 constexpr double kWiderLimits = 1.4;  // times M - 1
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
@@ -45,7 +45,7 @@ std::optional<Candidate> best_start(const Sweep& sweep, const Problem& problem, 
     int compared = 0;
     for (const auto& point : points) {
         if (log_cost_bound(problem, point.x) >= best.log_cost) break;  // the points ascend in it
-        if (++compared > kMostCompared && std::isfinite(best.log_cost)) break;
+        if (++compared > kMaxCompared && std::isfinite(best.log_cost)) break;
         consider(best, problem, point.x);
     }
     if (std::isfinite(best.log_cost)) return best;
@@ -67,7 +67,7 @@ std::vector<Candidate> valley_starts(const Problem& problem, const std::vector<S
     std::sort(starts.begin(), starts.end(),
               [](const Candidate& a, const Candidate& b) { return a.log_cost < b.log_cost; });
     // Runs on the integrated error need no simulation.
-    if (starts.size() > kMostValleys && problem.objective != Objective::load_ie) starts.resize(kMostValleys);
+    if (starts.size() > kMaxValleys && problem.objective != Objective::load_ie) starts.resize(kMaxValleys);
     return starts;
 }
 

@@ -22,10 +22,10 @@ std::vector<double> frequencies(const Problem& problem, const LinearPlant& plant
     const double L = plant.dead_time();
     double high = reference * std::pow(10, kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
-    // Where the plant itself does not fall a tied filter alone ends the loop, and |C S| peaks near 1/Tf on any plant: up
-    // to beyond the shortest Tf, which belongs to the least Td.
+    // Where the plant itself does not fall a tied filter alone ends the loop, and |C S| peaks near 1/Tf on any plant:
+    // up to beyond the shortest Tf, which belongs to the least Td.
     if (problem.pid && problem.filter.Tf_over_Td && (plant.pole_excess() == 0 || problem.limits.Mks))
-        high = std::max(high, 10 * reference / (*problem.filter.Tf_over_Td * kLeastTd));
+        high = std::max(high, 10 * reference / (*problem.filter.Tf_over_Td * kMinTd));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
     std::vector<double> omega;

@@ -6,7 +6,7 @@ namespace tunewright::server {
 namespace {
 
 constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
-constexpr std::size_t kMostAhead = 16;
+constexpr std::size_t kMaxAhead = 16;
 constexpr double kForgetting = 0.2;
 // Where no worker has come for that long, each is at a long job, whatever the latest took.
 constexpr std::chrono::milliseconds kBusy{25};
@@ -66,7 +66,7 @@ bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->job.bat
 
 std::size_t Claims::ahead() const {
     if (!more_ || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
-    return std::min({kMostAhead, streak_, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4))});
+    return std::min({kMaxAhead, streak_, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4))});
 }
 
 std::size_t Claims::wanted() const {

@@ -15,7 +15,7 @@ namespace tunewright::server::postgres {
 namespace {
 
 constexpr int kFirstPauseMs = 100;
-constexpr int kLongestPauseMs = 2000;
+constexpr int kMaxPauseMs = 2000;
 
 class Receiver : public pqxx::notification_receiver {
 public:
@@ -72,7 +72,7 @@ void Listener::work() {
         try {
             listen();
         } catch (const std::exception&) {  // whoever writes logs what is wrong
-            pause_ms = connected_.exchange(false) ? kFirstPauseMs : std::min(2 * pause_ms, kLongestPauseMs);
+            pause_ms = connected_.exchange(false) ? kFirstPauseMs : std::min(2 * pause_ms, kMaxPauseMs);
             tried();
             if (!pause(pause_ms)) return;
         }

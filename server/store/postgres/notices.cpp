@@ -6,7 +6,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr std::size_t kLongestPayload = 7000;  // PostgreSQL's own limit is 8000 bytes
+constexpr std::size_t kMaxPayloadLength = 7000;  // PostgreSQL's own limit is 8000 bytes
 
 std::string notify(const std::string& payload) {
     return std::string("SELECT pg_notify('") + kChannel + "', " + literal(payload) + "); ";
@@ -16,7 +16,7 @@ std::string statements_of(const std::string& head, const std::vector<std::string
     std::string statements;
     std::string payload = head;
     for (const std::string& id : ids) {
-        if (payload.size() + id.size() > kLongestPayload) {
+        if (payload.size() + id.size() > kMaxPayloadLength) {
             statements += notify(payload);
             payload = head;
         }

@@ -12,7 +12,7 @@ constexpr std::size_t kLargestGroup = 200;             // changes of a kind
 constexpr std::size_t kOtherChanges = 16;              // a statement each, or more
 constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
 constexpr std::chrono::milliseconds kFirstPause{100};
-constexpr std::chrono::milliseconds kLongestPause{2000};
+constexpr std::chrono::milliseconds kMaxPause{2000};
 constexpr std::chrono::seconds kDoubt{10};
 constexpr int kTriesMore = 4;  // of a group that was in another's way, or whose connection was lost
 
@@ -268,7 +268,7 @@ bool Writer::connect() {
         return true;
     } catch (const Failure& failure) {
         if (pause_.count() == 0) log_error("the store has lost " + address_.shown() + ": " + failure.what());
-        pause_ = std::clamp(2 * pause_, kFirstPause, kLongestPause);
+        pause_ = std::clamp(2 * pause_, kFirstPause, kMaxPause);
         next_try_ = Clock::now() + pause_;
         return false;
     }

@@ -11,23 +11,23 @@
 
 namespace tunewright::testing {
 
-using StepResponse = std::function<double(double)>;    ///< of t, 0 for t <= 0
+using StepCurve = std::function<double(double)>;       ///< of t, 0 for t <= 0
 using Steps = std::vector<std::pair<double, double>>;  ///< time and new level of u
 
 /// 1 - e^(-(t-L)/T).
-inline StepResponse first_order(double K, double T, double L) {
+inline StepCurve first_order(double K, double T, double L) {
     return [=](double t) { return t <= L ? 0 : K * -std::expm1(-(t - L) / T); };
 }
 
 /// Two different lags.
-inline StepResponse two_lags(double K, double T1, double T2, double L) {
+inline StepCurve two_lags(double K, double T1, double T2, double L) {
     return [=](double t) {
         return t <= L ? 0 : K * (1 - (T1 * std::exp(-(t - L) / T1) - T2 * std::exp(-(t - L) / T2)) / (T1 - T2));
     };
 }
 
 /// Damped oscillation, zeta < 1.
-inline StepResponse oscillation(double K, double T, double zeta, double L) {
+inline StepCurve oscillation(double K, double T, double zeta, double L) {
     return [=](double t) {
         if (t <= L) return 0.0;
         const double s = (t - L) / T, w = std::sqrt(1 - zeta * zeta);
@@ -35,7 +35,7 @@ inline StepResponse oscillation(double K, double T, double zeta, double L) {
     };
 }
 
-inline StepResponse ramp(double K, double L, double T = 0) {
+inline StepCurve ramp(double K, double L, double T = 0) {
     return [=](double t) {
         if (t <= L) return 0.0;
         const double s = t - L;
@@ -51,7 +51,7 @@ inline std::vector<double> even_times(int n, double spacing) {
 
 /// Superposition of the step responses, from rest at (u0, y0).
 inline Record simulate(const std::vector<double>& t, double u0, double y0, const Steps& steps,
-                       const StepResponse& response) {
+                       const StepCurve& response) {
     Record record;
     record.t = t;
     for (double time : t) {

@@ -29,7 +29,7 @@ bool noted(const IdentifiedModel& model, const std::string& words) {
 }
 
 /// Lags in a row by superposition of exponentials; all different.
-StepResponse lags(double K, std::vector<double> T) {
+StepCurve lags(double K, std::vector<double> T) {
     return [=](double t) {
         if (t <= 0) return 0.0;
         double y = 1;

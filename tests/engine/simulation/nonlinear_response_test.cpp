@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 NonlinearSystem written_out(const Plant& plant) { return *as_equations(*LinearPlant::make(plant)); }
 
 /// The largest difference of y and u at even times, relative to the largest values.
-double difference(const NonlinearResponse& a, const LinearResponse& b, double horizon) {
+double difference(const NonlinearResponse& a, const StepResponse& b, double horizon) {
     const auto values = sampled(b.nodes, horizon, int(a.even.y.size()));
     double dy = 0, du = 0, y = 0, u = 0;
     for (std::size_t i = 1; i < values.size(); ++i) {

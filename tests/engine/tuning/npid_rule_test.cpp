@@ -29,7 +29,7 @@ SetpointPerformance setpoint_of(const Plant& plant, const TunedController& answe
     EvaluateOptions options;
     options.points = 0;
     options.setpoint_step = step;
-    const auto evaluation = evaluate(PlantModel(plant), answered(answer), options);
+    const auto evaluation = evaluate(PlantModel(plant), controller_of(answer), options);
     EXPECT_TRUE(evaluation.has_value() && evaluation->robustness.stable);
     return evaluation->performance.setpoint;
 }
@@ -105,7 +105,7 @@ TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
         if (rule) {
             EvaluateOptions options;
             options.points = 0;
-            const auto by_rule = evaluate(PlantModel(plant), answered(*rule), options);
+            const auto by_rule = evaluate(PlantModel(plant), controller_of(*rule), options);
             if (by_rule && by_rule->robustness.stable) {
                 EXPECT_LE(best, *by_rule->performance.setpoint.IAE * 1.0001);
             }

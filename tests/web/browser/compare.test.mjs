@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;
@@ -129,19 +129,19 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
       ["Nyquist curve of L", 2],
       ["Sensitivities", 6],
     ])
-      assert.equal(await drawnTraces(page, title), traces, title);
+      await tracesShown(page, title, traces);
     const names = await page.locator(".overlay-legend span").allInnerTexts();
     assert.equal(names.length, 2);
     for (const at of [2, 3]) await boxes.nth(at).check();
     await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
     assert.ok(await boxes.nth(4).isDisabled());
-    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 4);
+    await tracesShown(page, "Nyquist curve of L", 4);
     const rows = /rows=([\d.]+)/.exec(page.url())[1];
     assert.equal(rows.split(".").length, 4);
     // The same rows stand on Design, and the way back leads to the same table.
     await table(page).getByRole("link").first().click();
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
-    assert.equal(await drawnTraces(page, "Nyquist curve of L"), 4);
+    await tracesShown(page, "Nyquist curve of L", 4);
     assert.ok((await page.locator(".legend-item").count()) <= 8);
     await page.getByRole("link", { name: "League table" }).click();
     await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);

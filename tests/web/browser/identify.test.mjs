@@ -38,7 +38,7 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
     const chosen = await options.filter({ has: page.locator(":checked") }).innerText();
     assert.match(chosen, /chosen by the service/);
     assert.match(chosen, new RegExp(`fit ${shown(model.fit_percent)}`));
-    assert.match(chosen, /K 2\.000\d+ ± 0\.000\d+/);
+    assert.match(chosen, /K 2\.000\d+ ± 0\.001\d+/);
     await page.getByText(model.choice_reason).waitFor();
     await tracesShown(page, "Record and model", 4);
     assert.match(await page.getByRole("region", { name: "Was the test good enough?" }).innerText(), /Good enough/);

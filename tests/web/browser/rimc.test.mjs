@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { accessibilityViolations, browserTests, drawnTraces, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
 
 const { withPage, jobOf } = browserTests();
 
@@ -29,7 +29,7 @@ test("the chart shows the curve of this plant with the design on it, and its fig
     await showRimc(page);
     const { result } = await jobOf(page);
     const { rimc } = result.controllers[1];
-    assert.equal(await drawnTraces(page, "What λ buys: load peak and Ms"), 2);
+    await tracesShown(page, "What λ buys: load peak and Ms", 2);
     assert.equal(await cell(page, "Ms"), shown(rimc.Ms));
     assert.equal(await cell(page, "Load peak"), shown(rimc.disturbance_peak));
     assert.equal(await cell(page, "Dead time error"), shown(rimc.dead_time_error));
@@ -94,7 +94,7 @@ test("the full controller stands beside its PID, in figures and in its load resp
       [await cell(page, "Ms", 1), await cell(page, "Load peak", 1), await cell(page, "Load IAE", 1)],
       [1.23, 0.321, 9.87],
     );
-    assert.equal(await drawnTraces(page, "Load step: PID and full controller"), 4);
+    await tracesShown(page, "Load step: PID and full controller", 4);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
 });

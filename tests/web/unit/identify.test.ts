@@ -7,7 +7,7 @@ import { bareRecordFrame, identifiedFrame } from "../../../web/src/charts/identi
 import { held } from "../../../web/src/charts/record.ts";
 import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tune_subject.ts";
-import { parameterTexts } from "../../../web/src/views/candidates_card.ts";
+import { parameterTexts } from "../../../web/src/views/cards/candidates_card.ts";
 import { cycleRows } from "../../../web/src/words/cycle.ts";
 import { formatUncertain, unitNames } from "../../../web/src/words/numbers.ts";
 import { structureTitle } from "../../../web/src/words/plant.ts";

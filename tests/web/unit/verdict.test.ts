@@ -5,7 +5,7 @@ import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
 import { formatNumber, formatSetting, unitNames } from "../../../web/src/words/numbers.ts";
 import { verdictOf } from "../../../web/src/words/verdict.ts";
-import { settingsOf, settingsText } from "../../../web/src/views/settings_card.ts";
+import { settingsOf, settingsText } from "../../../web/src/views/cards/settings_card.ts";
 
 function entry(changes: Record<string, unknown> = {}, performance: Record<string, unknown> = {}): Entry {
   return {

@@ -19,11 +19,11 @@ import { jobActions } from "./job_actions.ts";
 import type { JobEvents } from "./job_actions.ts";
 import { leagueControls } from "./league_controls.ts";
 import { leagueTable } from "./league_table.ts";
-import { progressCard } from "./progress_card.ts";
+import { progressCard } from "./cards/progress_card.ts";
 import type { View } from "./start.ts";
-import { titleCard } from "./title_card.ts";
-import { tradeoffCard } from "./tradeoff_card.ts";
-import { showFailure } from "./verdict_card.ts";
+import { titleCard } from "./cards/title_card.ts";
+import { tradeoffCard } from "./cards/tradeoff_card.ts";
+import { showFailure } from "./cards/verdict_card.ts";
 
 export function compareView(store: Store, announce: (sentence: string) => void, events: JobEvents): View {
   let shown: Result | null = null;

@@ -16,10 +16,10 @@ import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { structureTitle } from "../words/plant.ts";
 import { qualityOf } from "../words/quality.ts";
-import { candidatesCard } from "./candidates_card.ts";
-import { cycleCard } from "./cycle_card.ts";
-import { partCard } from "./part_card.ts";
-import { qualityCard } from "./quality_card.ts";
+import { candidatesCard } from "./cards/candidates_card.ts";
+import { cycleCard } from "./cards/cycle_card.ts";
+import { partCard } from "./cards/part_card.ts";
+import { qualityCard } from "./cards/quality_card.ts";
 import type { View } from "./start.ts";
 
 /** How the record will be tuned. */

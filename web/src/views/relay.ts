@@ -14,7 +14,7 @@ import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { planSentences } from "../words/relay_plan.ts";
-import { cycleCard } from "./cycle_card.ts";
+import { cycleCard } from "./cards/cycle_card.ts";
 import type { View } from "./start.ts";
 
 export interface RelayEvents {

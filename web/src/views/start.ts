@@ -10,11 +10,11 @@ import type { TuneSubject } from "../form/tune_subject.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
-import { equationsCard } from "./equations_card.ts";
-import { methodsCard } from "./methods_card.ts";
-import { modelCard } from "./model_card.ts";
-import { recordCard } from "./record_card.ts";
-import { todayCard } from "./today_card.ts";
+import { equationsCard } from "./cards/equations_card.ts";
+import { methodsCard } from "./cards/methods_card.ts";
+import { modelCard } from "./cards/model_card.ts";
+import { recordCard } from "./cards/record_card.ts";
+import { todayCard } from "./cards/today_card.ts";
 
 export interface View {
   element: HTMLElement;

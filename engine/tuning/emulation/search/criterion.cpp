@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPenalty = 100;    // of a run that ends early, in J at rest
 constexpr double kLargest = 1e100;  // of a penalised J
-constexpr int kMostSteps = 20000;
+constexpr int kMaxSteps = 20000;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance, co
     NonlinearOptions options;
     options.tolerance = tolerance;
     options.horizon = problem_.horizon;
-    options.max_steps = kMostSteps;
+    options.max_steps = kMaxSteps;
     options.initial = asked.x0;
     options.samples = problem_.intervals + 1;
     options.nodes = false;

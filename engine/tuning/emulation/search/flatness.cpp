@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFirstStep = 1e-3;   // relative to the unknown
 constexpr double kRiseSought = 2e-3;  // of J, relative, at the steps of the differences
-constexpr double kLongestStep = 0.3;
+constexpr double kMaxStep = 0.3;
 constexpr int kStepRounds = 8;
 
 // Steps to either side at which the curvature of J stands out and is still that of the optimum.
@@ -37,7 +37,7 @@ std::optional<Differences> measure(const std::function<double(const Point&)>& J,
             const double rise = 0.5 * found.curvature[i] * step * step / J0;
             if (rise > kRiseSought / 4 && rise < kRiseSought * 4) break;
             const double factor = rise > 0 ? std::sqrt(kRiseSought / rise) : 10;
-            step = std::min(step * std::clamp(factor, 0.01, 30.0), kLongestStep * sizes[i]);
+            step = std::min(step * std::clamp(factor, 0.01, 30.0), kMaxStep * sizes[i]);
         }
         if (!(found.curvature[i] > 0)) return std::nullopt;
     }

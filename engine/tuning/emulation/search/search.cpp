@@ -15,15 +15,15 @@ constexpr double kSearchTolerance = 1e-8;        // of those between which diffe
 constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
 constexpr int kPolished = 2;                     // starts that are polished
 constexpr double kApart = 0.05;                  // of two of them, in a unit box
-constexpr int kMostSteps = 25;
+constexpr int kMaxSteps = 25;
 constexpr double kDifference = 1e-4;    // of a derivative, relative to the unknown
 constexpr double kFlat = 1e-10;         // expected fall of J, relative, at which a polish ends
 constexpr double kFirstDamping = 1e-3;  // of Levenberg and Marquardt
-constexpr double kLeastDamping = 1e-9;
-constexpr double kMostDamping = 1e8;
+constexpr double kMinDamping = 1e-9;
+constexpr double kMaxDamping = 1e8;
 constexpr double kConfident = 10;      // damping up to which a small expected fall means that J is flat
-constexpr double kLongestStep = 0.5;   // relative to the unknown
-constexpr double kLeastSize = 1e-3;    // of an unknown near 0, relative to its range
+constexpr double kMaxStep = 0.5;       // relative to the unknown
+constexpr double kMinSize = 1e-3;      // of an unknown near 0, relative to its range
 constexpr double kSubplexStep = 0.02;  // in a unit box
 constexpr double kNotLookedAt = 700;   // ln J of a point where the search is stopped
 constexpr int kSubplexEvaluations = 150;
@@ -143,7 +143,7 @@ private:
         std::vector<std::vector<double>> columns(n);
         Slope slope{std::vector<double>(n), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
         for (std::size_t i = 0; i < n; ++i) {
-            slope.size[i] = std::max(std::abs(point[i]), kLeastSize * (bounds_.high[i] - bounds_.low[i]));
+            slope.size[i] = std::max(std::abs(point[i]), kMinSize * (bounds_.high[i] - bounds_.low[i]));
             Point moved = point;
             moved[i] += kDifference * slope.size[i];
             if (stopped()) return std::nullopt;
@@ -170,8 +170,8 @@ private:
         std::vector<double> H = slope.H, low(n), high(n);
         for (std::size_t i = 0; i < n; ++i) {
             H[i * n + i] *= 1 + damping;
-            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kLongestStep));
-            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kLongestStep));
+            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kMaxStep));
+            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kMaxStep));
         }
         const std::vector<double> d = best_step_in_box(H, slope.g, low, high);
         Point next = point;
@@ -199,7 +199,7 @@ private:
         keep(point, cost);
         if (!cost.ended.empty()) return false;
         double damping = kFirstDamping;
-        for (int i = 0; i < kMostSteps; ++i) {
+        for (int i = 0; i < kMaxSteps; ++i) {
             const auto slope = slope_at(point, residuals);
             if (!slope) return false;
             for (;;) {
@@ -214,11 +214,11 @@ private:
                     cost = there;
                     residuals.swap(tried);
                     keep(point, cost);
-                    damping = std::max(kLeastDamping, damping / 10);
+                    damping = std::max(kMinDamping, damping / 10);
                     break;
                 }
                 damping *= 10;
-                if (damping > kMostDamping) return false;
+                if (damping > kMaxDamping) return false;
             }
         }
         return false;

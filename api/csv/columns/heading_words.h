@@ -1,0 +1,29 @@
+// The words by which loggers, historians and people name time, controller output, measurement and set point.
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/csv/columns/heading.h"
+
+namespace tunewright::api {
+
+template <std::size_t N>
+bool is_one_of(std::string_view word, const std::string_view (&list)[N]) {
+    return std::find(std::begin(list), std::end(list), word) != std::end(list);
+}
+
+/// Where a whole name stands in the role's list, in the order of preference from 0.
+std::optional<int> place(std::string_view name, Role role);
+
+/// The same of one word of a name, with or without digits behind it: "pv1" is "pv".
+std::optional<int> word_place(std::string_view word, Role role);
+
+/// A heading apart into its words, lower case.
+std::vector<std::string> words(std::string_view text);
+
+}  // namespace tunewright::api

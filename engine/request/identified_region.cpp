@@ -1,0 +1,77 @@
+#include "engine/request/identified_region.h"
+
+#include <algorithm>
+
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kNoticeable = 1.01;  // of a limit, before a warning
+
+// What a method lets itself be asked for as Ms, if it does.
+std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& options) {
+    if (const auto given = options.number("Ms")) return given;
+    const auto at = std::ranges::find(method.options, "Ms", &OptionDescription::name);
+    if (at == method.options.end() || !at->default_value) return std::nullopt;
+    const double* value = std::get_if<double>(&*at->default_value);
+    return value ? std::optional(*value) : std::nullopt;
+}
+
+}  // namespace
+
+bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned) {
+    if (!evaluation.region) return false;
+    const auto limit = Ms_limit(*planned.method, planned.options);
+    return !evaluation.region->worst_Ms || (limit && *evaluation.region->worst_Ms > kNoticeable * *limit);
+}
+
+void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified) {
+    constexpr double kFar = 2;  // times the limit
+    if (identified)
+        for (Warning& warning : evaluation.warnings)
+            if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
+    const auto limit = Ms_limit(*planned.method, planned.options);
+    if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
+    const double worst = *evaluation.region->worst_Ms;
+    if (worst <= kNoticeable * *limit) return;
+    evaluation.warnings.push_back(
+        {"above-limit-in-region",
+         "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*limit) + " asked for.",
+         identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
+}
+
+std::string with_variant(const std::string& title, const std::string& variant) {
+    if (title.ends_with(')')) return title.substr(0, title.size() - 1) + ", " + variant + ")";
+    return title + " (" + variant + ")";
+}
+
+void say_choice(Evaluation& held, const Evaluation& nominal) {
+    const std::string there = nominal.region->worst_Ms ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
+                                                       : std::string("the loop may be unstable");
+    held.warnings.insert(held.warnings.begin(),
+                         {"held-on-region",
+                          "The limits hold on every plant that the record leaves possible (95 %). With the design for "
+                          "the model alone, the next entry, " +
+                              there + " on them. uncertainty \"none\" gives that one alone."});
+}
+
+void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {
+    const auto& crossover = evaluation.robustness.phase_crossover;
+    if (!band || !crossover || *crossover <= band->omega_high) return;
+    evaluation.warnings.push_back(
+        {"beyond-excited-band",
+         "The loop's phase crossover, omega " + text(*crossover) +
+             ", lies beyond the band that the record excited (up to omega " + text(band->omega_high) +
+             "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
+}
+
+Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
+    auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
+    if (!region) return region.error();
+    PlantFamily family{{std::move(*region)}};
+    for (const Plant& other : model.alternatives) family.regions.push_back(PlantRegion::of_ranges(other));
+    return family;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,34 @@
+// What a record leaves open about its plant, and what that means for a design.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/identification/identify.h"
+#include "engine/plant/uncertain/plant_family.h"
+#include "engine/request/plan.h"
+
+namespace tunewright {
+
+/// The 95 % confidence region of the chosen model, and beside it the best fit of every structure that the record does
+/// not tell from its own. Error: numerical_failure where the covariance is no covariance.
+Expected<PlantFamily> identified_region(const IdentifiedModel& model);
+
+/// Whether some plant of the region is unstable, or beyond the limit that the method was asked for.
+bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned);
+
+/// Warns where the region's worst Ms is above the limit. With a model from a record (`identified`) what the region
+/// shows is the answer's own doubt, not only the user's: then the warnings may be of level bad.
+void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified);
+
+/// "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
+std::string with_variant(const std::string& title, const std::string& variant);
+
+/// The design that holds on the region stands before the one on the model alone, and says why.
+void say_choice(Evaluation& held, const Evaluation& nominal);
+
+/// Warns where the loop's phase crossover lies beyond the band that the record excited.
+void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band);
+
+}  // namespace tunewright

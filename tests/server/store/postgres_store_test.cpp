@@ -1,0 +1,273 @@
+#include "server/store/postgres/postgres_store.h"
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "tests/server/store/postgres_place.h"
+#include "tests/server/store/store_conformance.h"
+
+namespace tunewright::server {
+namespace {
+
+class PostgresPlace : public StorePlace {
+public:
+    explicit PostgresPlace(std::unique_ptr<PostgresDatabase> database) : database_(std::move(database)) {}
+    std::unique_ptr<JobStore> open() override { return open_postgres_store(database_->url()); }
+
+private:
+    std::unique_ptr<PostgresDatabase> database_;
+};
+
+std::unique_ptr<StorePlace> postgres_place() {
+    std::unique_ptr<PostgresDatabase> database = PostgresDatabase::make();
+    if (!database) return nullptr;
+    return std::make_unique<PostgresPlace>(std::move(database));
+}
+
+INSTANTIATE_TEST_SUITE_P(Postgres, StoreConformance, testing::Values(MakePlace(postgres_place)));
+
+class PostgresStore : public testing::Test {
+protected:
+    void SetUp() override {
+        database_ = PostgresDatabase::make();
+        if (!database_) GTEST_SKIP() << "TUNEWRIGHT_TEST_POSTGRES names no cluster";
+    }
+    std::unique_ptr<JobStore> open() { return open_postgres_store(database_->url()); }
+    static NewJob job(const std::string& id) {
+        NewJob made;
+        made.id = id;
+        made.request = "{}";
+        made.request_hash = "hash";
+        made.created_at = 1000;
+        return made;
+    }
+    static bool accept(JobStore& store, const std::string& id) {
+        const NewJob made = job(id);
+        return completed<Accepted>([&](auto done) { store.accept(made, done); }).kind == Accepted::Kind::created;
+    }
+    static std::vector<JobRecord> claim(JobStore& store, std::size_t most = 1) {
+        const Claim claim{"worker", 2000, std::chrono::minutes(10), most};
+        return completed<std::vector<JobRecord>>([&](auto done) { store.claim(claim, done); });
+    }
+    /// Until the database says so; the test program's own time-out ends what never happens.
+    void wait_until(const std::string& question) const {
+        while (database_->run(question) != "t") std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    static void wait_until_healthy(const JobStore& store) {
+        while (!store.healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+
+    std::unique_ptr<PostgresDatabase> database_;
+};
+
+TEST_F(PostgresStore, ReplicasMayStartTogether) {
+    std::vector<std::unique_ptr<JobStore>> stores(4);
+    {
+        std::vector<std::jthread> starts;
+        for (auto& store : stores) starts.emplace_back([&] { store = open(); });
+    }
+    for (const auto& store : stores) EXPECT_TRUE(store->shared() && store->healthy());
+    EXPECT_EQ(database_->run("SELECT count(*) = max(step) FROM tunewright.schema_steps"), "t");
+}
+
+TEST_F(PostgresStore, TwoProcessesShareTheJobsAndNeverTheSame) {
+    const auto one = open();
+    const auto two = open();
+    constexpr std::size_t count = 300;
+    for (std::size_t i = 0; i < count; i++) one->accept(job("job" + std::to_string(i)), [](const auto&) {});
+    accept(*one, "last");
+    std::mutex mutex;
+    std::multiset<std::string> ids;
+    const auto work = [&](JobStore& store) {
+        for (auto claimed = claim(store, 3); !claimed.empty(); claimed = claim(store, 3)) {
+            const std::lock_guard lock(mutex);
+            for (const JobRecord& record : claimed) ids.insert(record.id);
+        }
+    };
+    {
+        const std::jthread a([&] { work(*one); });
+        const std::jthread b([&] { work(*two); });
+    }
+    EXPECT_EQ(ids.size(), count + 1);
+    EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), count + 1);
+}
+
+TEST_F(PostgresStore, NoticesGoToOtherProcessesAndNotToOneself) {
+    struct Heard {
+        std::mutex mutex;
+        std::condition_variable changed;
+        std::set<std::string> notices;
+        void add(const StoreNotice& notice) {
+            const std::lock_guard lock(mutex);
+            notices.insert(std::to_string(static_cast<int>(notice.kind)) + notice.id);
+            changed.notify_all();
+        }
+        void wait_for(StoreNotice::Kind kind, const std::string& id) {
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return notices.contains(std::to_string(static_cast<int>(kind)) + id); });
+        }
+    } here, there;
+    const auto one = open();
+    const auto two = open();
+    one->watch([&](const StoreNotice& notice) { here.add(notice); });
+    two->watch([&](const StoreNotice& notice) { there.add(notice); });
+    accept(*one, "a");
+    there.wait_for(StoreNotice::Kind::queued, "");
+    claim(*one);
+    completed<std::vector<Renewed>>([&](auto done) {
+        one->renew({{"a", 1, R"({"stage":"x"})"}}, 0, std::chrono::minutes(1), done);
+    });
+    there.wait_for(StoreNotice::Kind::progress, "a");
+    completed<CancelEffect>([&](auto done) { one->cancel("a", 3000, done); });
+    there.wait_for(StoreNotice::Kind::cancel, "a");
+    completed<bool>([&](auto done) { one->finish({"a", 1, JobStatus::cancelled, "", "{}", "1", 3000}, done); });
+    there.wait_for(StoreNotice::Kind::ended, "a");
+    accept(*two, "b");
+    here.wait_for(StoreNotice::Kind::queued, "");
+    EXPECT_EQ(here.notices.size(), 1U) << "only what the other did";
+}
+
+TEST_F(PostgresStore, AConnectionThatWasLostIsReplacedBeforeAnybodyNotices) {
+    const auto store = open();
+    accept(*store, "a");
+    EXPECT_TRUE(store->find("a"));
+    database_->cut_connections();
+    EXPECT_TRUE(accept(*store, "b"));
+    EXPECT_TRUE(store->find("a"));
+    wait_until_healthy(*store);
+}
+
+TEST_F(PostgresStore, WithoutADatabaseItFailsAndTellsAndComesBack) {
+    const auto store = open();
+    accept(*store, "a");
+    database_->allow_connections(false);
+    EXPECT_THROW(accept(*store, "b"), std::runtime_error);
+    EXPECT_THROW(store->find("a"), StoreError);
+    EXPECT_FALSE(store->healthy());
+    database_->allow_connections(true);
+    wait_until_healthy(*store);  // by itself, without being asked for anything
+    EXPECT_TRUE(store->find("a"));
+    EXPECT_TRUE(accept(*store, "c"));
+}
+
+TEST_F(PostgresStore, WhatIsReportedAsAcceptedIsThereHoweverOftenConnectionsBreak) {
+    const auto store = open();
+    std::vector<std::string> accepted;
+    for (int wave = 0; wave < 10; wave++) {
+        std::vector<std::promise<Outcome<Accepted>>> answers(40);
+        for (std::size_t i = 0; i < answers.size(); i++)
+            store->accept(job(std::to_string(wave) + "-" + std::to_string(i)),
+                          [&answers, i](auto outcome) { answers[i].set_value(std::move(outcome)); });
+        database_->cut_connections();
+        for (auto& answer : answers) {
+            const Outcome<Accepted> outcome = answer.get_future().get();
+            if (const auto* made = std::get_if<Accepted>(&outcome)) accepted.push_back(made->job.id);
+        }
+        wait_until_healthy(*store);
+    }
+    EXPECT_TRUE(accept(*store, "last"));
+    for (const std::string& id : accepted) EXPECT_TRUE(store->find(id)) << id;
+    EXPECT_EQ(database_->run("SELECT count(*) = count(DISTINCT id) FROM tunewright.jobs"), "t");
+}
+
+TEST_F(PostgresStore, ACommitWhoseAnswerWasLostIsFoundOutAndNotDoneTwice) {
+    const auto store = open();
+    accept(*store, "a");
+    // A commit that waits for a standby is durable already; whoever is cut off then does not hear of it.
+    database_->run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'");
+    database_->run("SELECT pg_reload_conf()");
+    std::promise<Outcome<std::vector<JobRecord>>> claimed;
+    std::promise<Outcome<Accepted>> accepted;
+    store->accept(job("b"), [&](auto outcome) { accepted.set_value(std::move(outcome)); });
+    store->claim({"worker", 2000, std::chrono::minutes(10), 1},
+                 [&](auto outcome) { claimed.set_value(std::move(outcome)); });
+    const std::string waiting = " FROM pg_stat_activity WHERE wait_event = 'SyncRep' AND datname = current_database()";
+    wait_until("SELECT count(*) > 0" + waiting);
+    database_->run("SELECT pg_terminate_backend(pid)" + waiting);
+    database_->run("ALTER SYSTEM RESET synchronous_standby_names");
+    database_->run("SELECT pg_reload_conf()");
+    const Outcome<Accepted> outcome = accepted.get_future().get();
+    ASSERT_TRUE(std::holds_alternative<Accepted>(outcome)) << std::get<StoreFault>(outcome).detail;
+    EXPECT_EQ(std::get<Accepted>(outcome).kind, Accepted::Kind::created);
+    EXPECT_EQ(std::get<std::vector<JobRecord>>(claimed.get_future().get()).size(), 1U);
+    EXPECT_EQ(database_->run("SELECT count(*) FROM tunewright.jobs WHERE id = 'b'"), "1");
+    EXPECT_EQ(database_->run("SELECT sum(attempts) FROM tunewright.jobs"), "1");
+}
+
+TEST_F(PostgresStore, ACommitThatWasCutOffIsDoneAgain) {
+    const auto store = open();
+    database_->run(
+        "CREATE FUNCTION slow() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN PERFORM pg_sleep(60); RETURN NULL; END $$;"
+        "CREATE CONSTRAINT TRIGGER slow AFTER INSERT ON tunewright.jobs DEFERRABLE INITIALLY DEFERRED FOR EACH ROW "
+        "EXECUTE FUNCTION slow()");
+    std::promise<Outcome<Accepted>> accepted;
+    store->accept(job("a"), [&](auto outcome) { accepted.set_value(std::move(outcome)); });
+    const std::string asleep = " FROM pg_stat_activity WHERE wait_event = 'PgSleep' AND datname = current_database()";
+    wait_until("SELECT count(*) > 0" + asleep);
+    database_->run(
+        "CREATE OR REPLACE FUNCTION slow() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN RETURN NULL; END $$");
+    database_->run("SELECT pg_terminate_backend(pid)" + asleep);
+    const Outcome<Accepted> outcome = accepted.get_future().get();
+    ASSERT_TRUE(std::holds_alternative<Accepted>(outcome)) << std::get<StoreFault>(outcome).detail;
+    EXPECT_EQ(database_->run("SELECT count(*) FROM tunewright.jobs WHERE id = 'a'"), "1");
+}
+
+TEST_F(PostgresStore, ADatabaseOfANewerProgramIsLeftAlone) {
+    open().reset();
+    database_->run("INSERT INTO tunewright.schema_steps (step) VALUES (99)");
+    try {
+        open();
+        FAIL() << "it was opened";
+    } catch (const StoreError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("schema 99 of a newer program"));
+    }
+}
+
+TEST_F(PostgresStore, TheDatabaseItselfRefusesWhatTheStatesDoNotAllow) {
+    const auto store = open();
+    for (const char* id : {"ended", "running", "waiting"}) accept(*store, id);
+    claim(*store, 2);
+    completed<bool>([&](auto done) { store->finish({"ended", 1, JobStatus::succeeded, "{}", "", "1", 3000}, done); });
+    const std::string update = "UPDATE tunewright.jobs SET ";
+    for (const char* change : {
+             "status = 'queued', finished_at = NULL WHERE id = 'ended'",
+             "status = 'failed' WHERE id = 'ended'",
+             "attempts = 0 WHERE id = 'running'",
+             "attempts = 5 WHERE id = 'running'",
+             "worker = NULL WHERE id = 'running'",
+             "lease_until = NULL WHERE id = 'running'",
+             "status = 'succeeded', worker = NULL, lease_until = NULL WHERE id = 'running'",
+             "status = 'succeeded', finished_at = 1 WHERE id = 'waiting'",
+             "status = 'running' WHERE id = 'waiting'",
+             "finished_at = 1 WHERE id = 'waiting'",
+         })
+        EXPECT_ANY_THROW(database_->run(update + change)) << change;
+}
+
+TEST_F(PostgresStore, NoMessageHasThePasswordInIt) {
+    const auto message_of = [](const std::string& url) -> std::string {
+        try {
+            open_postgres_store(url);
+        } catch (const StoreError& error) {
+            return error.what();
+        }
+        return "it was opened";
+    };
+    const std::string unreadable = message_of("postgresql://me:top/secret@127.0.0.1/db");
+    EXPECT_THAT(unreadable, testing::HasSubstr("cannot be read"));
+    EXPECT_THAT(unreadable, testing::Not(testing::HasSubstr("secret")));
+    for (const char* url :
+         {"postgresql://me:12/secret@host/db", "postgresql://me:a@secret@host/db", "postgresql://me:%secret@host/db"})
+        EXPECT_EQ(message_of(url), unreadable);
+    const std::string closed = message_of("postgresql://me:topsecret@127.0.0.1:1/db");
+    EXPECT_THAT(closed, testing::HasSubstr("Cannot open the store postgresql://127.0.0.1:1/db"));
+    EXPECT_THAT(closed, testing::Not(testing::HasSubstr("topsecret")));
+    std::string wrong = database_->url();
+    wrong.replace(wrong.find(':', 13) + 1, 4, "topsecret");
+    EXPECT_THAT(message_of(wrong), testing::HasSubstr("password"));
+    EXPECT_THAT(message_of(wrong), testing::Not(testing::HasSubstr("topsecret")));
+}
+
+}  // namespace
+}  // namespace tunewright::server

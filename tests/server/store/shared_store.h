@@ -1,0 +1,152 @@
+// One store seen by several processes: each has a view of its own, over one store that is really there. A view can be
+// deaf (no notices reach it), mute (its signs of life and its results do not reach the store: its process seems dead)
+// or out of order (every write fails).
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <vector>
+
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+class SharedStore;
+
+/// Carries notices from one view to all others.
+class NoticeBoard {
+public:
+    void add(SharedStore* view);
+    void tell(const SharedStore* from, const StoreNotice& notice);
+
+private:
+    std::mutex mutex_;
+    std::vector<SharedStore*> views_;
+};
+
+class SharedStore : public JobStore {
+public:
+    SharedStore(JobStore& store, NoticeBoard& board) : store_(store), board_(board) { board_.add(this); }
+
+    std::atomic<bool> deaf = false;
+    std::atomic<bool> mute = false;
+    std::atomic<bool> broken = false;
+    std::atomic<int> claims = 0;    ///< asked for so far
+    std::atomic<int> reclaims = 0;  ///< likewise
+
+    void hear(const StoreNotice& notice) {
+        const std::lock_guard lock(mutex_);
+        if (!deaf && told_) told_(notice);
+    }
+
+    bool shared() const override { return true; }
+    void watch(std::function<void(const StoreNotice&)> told) override {
+        const std::lock_guard lock(mutex_);
+        told_ = std::move(told);
+    }
+    bool healthy() const override { return !broken && store_.healthy(); }
+    /// Whoever recovers while others are at work must leave theirs alone: the leases tell.
+    Recovery recover(UnixMs, int, const std::string&) override { return {}; }
+    void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) override {
+        reclaims++;
+        write(done, [&] { store_.reclaim(now, attempts, std::move(error), done); });
+    }
+    std::optional<JobRecord> find(const std::string& id) override { return store_.find(id); }
+    std::vector<JobState> states(const std::vector<std::string>& ids) override { return store_.states(ids); }
+    JobPage list(const JobQuery& query) override { return store_.list(query); }
+    Depth depth() override { return store_.depth(); }
+    void accept(NewJob job, Done<Accepted> done) override {
+        write(done, [&] {
+            store_.accept(std::move(job), [this, done](Outcome<Accepted> outcome) {
+                done(std::move(outcome));
+                board_.tell(this, {StoreNotice::Kind::queued, ""});
+            });
+        });
+    }
+    void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
+        claims++;
+        if (mute) return done(std::vector<JobRecord>{});
+        write(done, [&] { store_.claim(std::move(claim), done); });
+    }
+    void renew(std::vector<Renewal> renewals, UnixMs now, std::chrono::milliseconds lease,
+               Done<std::vector<Renewed>> done) override {
+        if (mute) return done(StoreFault{StoreFault::Kind::unavailable, "mute"});
+        write(done, [&] { store_.renew(std::move(renewals), now, lease, done); });
+    }
+    void finish(JobEnd end, Done<bool> done) override {
+        if (mute) return done(StoreFault{StoreFault::Kind::unavailable, "mute"});
+        write(done, [&] {
+            store_.finish(end, [this, id = end.id, done](Outcome<bool> outcome) {
+                done(std::move(outcome));
+                board_.tell(this, {StoreNotice::Kind::ended, id});
+            });
+        });
+    }
+    void release(std::string id, int attempts, Done<bool> done) override {
+        write(done, [&] {
+            store_.release(std::move(id), attempts, [this, done](Outcome<bool> outcome) {
+                done(std::move(outcome));
+                board_.tell(this, {StoreNotice::Kind::queued, ""});
+            });
+        });
+    }
+    void cancel(std::string id, UnixMs now, Done<CancelEffect> done) override {
+        write(done, [&] {
+            store_.cancel(id, now, [this, id, done](Outcome<CancelEffect> outcome) {
+                done(std::move(outcome));
+                board_.tell(this, {StoreNotice::Kind::cancel, id});
+            });
+        });
+    }
+    void remove(std::string id, Done<RemoveEffect> done) override { store_.remove(std::move(id), done); }
+    void open_batch(NewBatch batch, Done<bool> done) override { store_.open_batch(std::move(batch), done); }
+    void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
+        store_.add_entries(std::move(batch), std::move(entries), now, done);
+    }
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override { store_.seal_batch(std::move(seal), std::move(done)); }
+    void drop_batch(std::string batch, Done<bool> done) override { store_.drop_batch(std::move(batch), done); }
+    std::optional<BatchSummary> find_batch(const std::string& id) override { return store_.find_batch(id); }
+    std::optional<std::string> batch_of_key(const std::string& owner, const std::string& key) override {
+        return store_.batch_of_key(owner, key);
+    }
+    BatchPage list_batches(const std::optional<std::string>& owner, int limit,
+                           std::optional<std::int64_t> before_seq) override {
+        return store_.list_batches(owner, limit, before_seq);
+    }
+    std::vector<BatchRow> batch_rows(const std::string& id, std::int64_t from, std::size_t limit) override {
+        return store_.batch_rows(id, from, limit);
+    }
+    void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override {
+        store_.cancel_batch(std::move(id), now, done);
+    }
+    void remove_batch(std::string id, Done<RemoveEffect> done) override { store_.remove_batch(std::move(id), done); }
+    void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) override {
+        store_.sweep(ended_before, most, done);
+    }
+
+private:
+    template <class D, class Work>
+    void write(const D& done, Work work) {
+        if (broken) return done(StoreFault{StoreFault::Kind::full, "out of order"});
+        work();
+    }
+
+    JobStore& store_;
+    NoticeBoard& board_;
+    std::mutex mutex_;
+    std::function<void(const StoreNotice&)> told_;
+};
+
+inline void NoticeBoard::add(SharedStore* view) {
+    const std::lock_guard lock(mutex_);
+    views_.push_back(view);
+}
+
+inline void NoticeBoard::tell(const SharedStore* from, const StoreNotice& notice) {
+    const std::lock_guard lock(mutex_);
+    for (SharedStore* view : views_)
+        if (view != from) view->hear(notice);
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,96 @@
+// A file system without room: told as such, read as before, and as good as new when there is room again.
+#include <sys/mount.h>
+
+#include <thread>
+
+#include "server/store/sqlite/sqlite_store.h"
+#include "tests/server/store/sqlite_file.h"
+#include "tests/server/store/store_conformance.h"
+#include "tests/server/store/temporary_folder.h"
+
+namespace tunewright::server {
+namespace {
+
+/// A file system in memory of so many kilobytes, where this process may mount one.
+class SmallDisk {
+public:
+    explicit SmallDisk(const std::filesystem::path& path) : path_(path) {
+        mounted_ = ::mount("tmpfs", path_.c_str(), "tmpfs", 0, "size=2048k") == 0;
+    }
+    ~SmallDisk() {
+        if (mounted_) ::umount(path_.c_str());
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    bool mounted() const { return mounted_; }
+    void grow() const { EXPECT_EQ(::mount("tmpfs", path_.c_str(), "tmpfs", MS_REMOUNT, "size=32768k"), 0); }
+
+private:
+    std::filesystem::path path_;
+    bool mounted_ = false;
+};
+
+TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAgain) {
+    const TemporaryFolder folder;
+    const SmallDisk disk(folder.path());
+    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    std::vector<std::string> accepted;
+    {
+        const auto store = open_sqlite_store(folder.file());
+        store->recover(1, 10, "{}");
+        std::optional<StoreFault> fault;
+        while (!fault) {
+            NewJob job;
+            job.id = "job" + std::to_string(accepted.size());
+            job.request.assign(20'000, 'x');
+            std::promise<Outcome<Accepted>> answer;
+            store->accept(job, [&](Outcome<Accepted> outcome) { answer.set_value(std::move(outcome)); });
+            const Outcome<Accepted> outcome = answer.get_future().get();
+            if (const auto* refused = std::get_if<StoreFault>(&outcome))
+                fault = *refused;
+            else
+                accepted.push_back(job.id);
+        }
+        EXPECT_EQ(fault->kind, StoreFault::Kind::full) << fault->detail;
+        ASSERT_GT(accepted.size(), 5U);
+        for (const std::string& id : accepted) EXPECT_EQ(store->find(id).value().request.size(), 20'000U);
+
+        disk.grow();
+        while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const auto claimed = completed<std::vector<JobRecord>>([&](auto told) {
+            store->claim({"worker", 1, std::chrono::minutes(1), 1}, told);
+        });
+        ASSERT_EQ(claimed.size(), 1U);
+        const JobEnd end{claimed[0].id, 1, JobStatus::succeeded, std::string(100'000, 'r'), "", "1", 2};
+        EXPECT_TRUE(completed<bool>([&](auto told) { store->finish(end, told); }));
+        EXPECT_EQ(store->find(claimed[0].id).value().result.size(), 100'000U);
+    }
+    EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA integrity_check"), "ok");
+    EXPECT_EQ(run_sqlite(folder.file(), "SELECT count(*) FROM jobs"), std::to_string(accepted.size()));
+}
+
+TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
+    const TemporaryFolder folder;
+    const SmallDisk disk(folder.path());
+    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    const auto store = open_sqlite_store(folder.file());
+    NewJob job;
+    job.id = "a";
+    completed<Accepted>([&](auto told) { store->accept(job, told); });
+    completed<std::vector<JobRecord>>([&](auto told) {
+        store->claim({"worker", 1, std::chrono::minutes(1), 1}, told);
+    });
+    const JobEnd end{"a", 1, JobStatus::succeeded, std::string(4'000'000, 'r'), "", "1", 2};
+    std::promise<Outcome<bool>> answer;
+    store->finish(end, [&](Outcome<bool> outcome) { answer.set_value(std::move(outcome)); });
+    const Outcome<bool> refused = answer.get_future().get();
+    ASSERT_TRUE(std::holds_alternative<StoreFault>(refused));
+    EXPECT_EQ(std::get<StoreFault>(refused).kind, StoreFault::Kind::full);
+    EXPECT_EQ(store->find("a").value().status, JobStatus::running);
+    disk.grow();
+    EXPECT_TRUE(completed<bool>([&](auto told) { store->finish(end, told); }));
+    EXPECT_EQ(store->find("a").value().result, end.result);
+}
+
+}  // namespace
+}  // namespace tunewright::server

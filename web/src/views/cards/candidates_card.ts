@@ -1,0 +1,160 @@
+// The models that explain a record: one is chosen, with what speaks for it, and tuned.
+import type { Candidate, Model } from "../../api/types.ts";
+import { h, mathElement, uniqueId } from "../../dom.ts";
+import { plantFormula } from "../../form/formula.ts";
+import { serviceChoice } from "../../form/tune_subject.ts";
+import { formatNumber, formatParameter, formatUncertain } from "../../words/numbers.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+import { parameterUnit, structureTitle } from "../../words/plant.ts";
+
+export interface CandidatesCard {
+  element: HTMLElement;
+  show(model: Model, units: UnitNames): void;
+  /** Null where the service lists no candidates. */
+  chosen(): Candidate | null;
+  /** Whether limits shall hold on all that the record leaves possible. */
+  onRegion(): boolean;
+  setBusy(busy: boolean): void;
+}
+
+export interface CandidatesEvents {
+  onChoose(): void;
+  /** `all`: by every method. */
+  onTune(all: boolean): void;
+}
+
+/** `methods`: names of those that Use and tune will use. */
+export function candidatesCard(methods: string[], region: boolean, events: CandidatesEvents): CandidatesCard {
+  let candidates: Candidate[] = [];
+  let index = -1;
+  let duration = Infinity;
+  const title = h("h2", { id: uniqueId("candidates") }, "Model candidates");
+  const list = h("fieldset", { class: "candidates" });
+  const reason = h("p", { class: "hint" });
+  const tune = h("button", { type: "button", class: "primary", onclick: () => events.onTune(false) }, "Use and tune");
+  const all = h("button", { type: "button", onclick: () => events.onTune(true) }, "Compare all methods");
+  const whole = h("input", { type: "checkbox", id: uniqueId("region"), checked: region });
+  const element = h(
+    "section",
+    { class: "card", "aria-labelledby": title.id },
+    title,
+    list,
+    reason,
+    h(
+      "div",
+      { class: "check" },
+      whole,
+      h("label", { for: whole.id }, "Hold the limits on all that the record leaves possible"),
+    ),
+    h("div", { class: "actions" }, tune),
+    h("div", { class: "actions" }, all),
+    methods.length > 0
+      ? h("p", { class: "hint" }, `By ${methods.join(", ")}; `, h("a", { href: "#/" }, "choose methods on Start"), ".")
+      : null,
+  );
+
+  function item(candidate: Candidate, at: number, preferred: number, units: UnitNames, name: string): HTMLElement {
+    const input = h("input", { type: "radio", name, value: at, checked: at === index });
+    input.addEventListener("change", () => {
+      index = at;
+      events.onChoose();
+    });
+    return h(
+      "label",
+      { class: "candidate" },
+      input,
+      h(
+        "span",
+        {},
+        h("strong", {}, capital(structureTitle(candidate.plant))),
+        h("span", { class: "fit" }, `fit ${formatNumber(candidate.fit_percent)} %`),
+        at === preferred ? h("span", { class: "badge" }, "chosen by the service") : null,
+        formulaOf(candidate),
+        h(
+          "span",
+          { class: "parameters" },
+          parameterTexts(candidate, units, duration).map((text) => h("span", {}, text)),
+        ),
+      ),
+    );
+  }
+
+  return {
+    element,
+    show(model, units) {
+      const before = candidates[index];
+      candidates = model.candidates ?? [];
+      const preferred = serviceChoice(model);
+      const t = model.fit?.t ?? [];
+      duration = t.length > 1 ? t[t.length - 1]! - t[0]! : Infinity;
+      // The reader's own choice stays when the same record is identified again.
+      const again = before
+        ? candidates.findIndex((candidate) => structureTitle(candidate.plant) === structureTitle(before.plant))
+        : -1;
+      index = again >= 0 ? again : Math.max(0, preferred);
+      if (candidates.length === 0) index = -1;
+      const name = uniqueId("candidate");
+      const only: Candidate = { ...model };
+      const items = candidates.map((candidate, at) => item(candidate, at, preferred, units, name));
+      const folded = items.filter((_, at) => at !== index && poor(candidates, at));
+      list.replaceChildren(
+        h("legend", { class: "visually-hidden" }, "Which model to use"),
+        ...(items.length > 0 ? items.filter((row) => !folded.includes(row)) : [item(only, -1, -1, units, name)]),
+        ...(folded.length > 0
+          ? [
+              h(
+                "details",
+                {},
+                h("summary", {}, `${folded.length} that ${folded.length === 1 ? "fits" : "fit"} worse`),
+                folded,
+              ),
+            ]
+          : []),
+      );
+      reason.textContent = model.choice_reason ?? "";
+    },
+    chosen: () => candidates[index] ?? null,
+    onRegion: () => whole.checked,
+    setBusy(busy) {
+      tune.disabled = busy;
+      all.disabled = busy;
+    },
+  };
+}
+
+/** So many per cent below the best fit a candidate is not worth a look at first. */
+const WORSE_PERCENT = 3;
+
+function poor(candidates: Candidate[], at: number): boolean {
+  const fits = candidates.map((candidate) => candidate.fit_percent ?? -Infinity);
+  return fits[at]! < Math.max(...fits) - WORSE_PERCENT;
+}
+
+const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** Of structures that their parameters alone do not tell. */
+function formulaOf(candidate: Candidate): HTMLElement | null {
+  if (candidate.plant.type !== "transfer_function") return null;
+  const round = (value: unknown): unknown =>
+    typeof value === "number" ? Number(value.toPrecision(4)) : Array.isArray(value) ? value.map(round) : value;
+  const plant = Object.fromEntries(Object.entries(candidate.plant).map(([key, value]) => [key, round(value)]));
+  const tree = plantFormula(plant as Candidate["plant"]);
+  return tree ? h("span", { class: "formula small" }, mathElement(tree)) : null;
+}
+
+/**
+ * "K 1.25 ± 0.01 °C/%" of each parameter; of a transfer function only the errors of its coefficients. A time whose error
+ * is longer than the record is not known from it.
+ */
+export function parameterTexts(candidate: Candidate, units: UnitNames, duration = Infinity): string[] {
+  const errors = candidate.standard_errors ?? {};
+  const known = (name: string): boolean => !(["L", "T", "T1", "T2"].includes(name) && (errors[name] ?? 0) > duration);
+  const texts = Object.entries(candidate.plant).flatMap(([name, value]) => {
+    if (typeof value !== "number" || (candidate.plant.type === "ipdt" && name === "T" && value === 0)) return [];
+    const unit = parameterUnit(candidate.plant, name, units);
+    const text = known(name) ? formatUncertain(value, errors[name]) : `${formatParameter(value)} ± unknown`;
+    return [`${name} ${text}${unit ? ` ${unit}` : ""}`];
+  });
+  const unnamed = Object.keys(errors).filter((name) => typeof candidate.plant[name] !== "number");
+  return [...texts, ...unnamed.map((name) => `${name} ± ${formatNumber(errors[name], 2)}`)];
+}

@@ -1,0 +1,67 @@
+// "A model": the kind of plant, its parameters, the formula as it is typed.
+import type { Plant } from "../../api/types.ts";
+import { h } from "../../dom.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import type { PlantReading } from "../../form/plant.ts";
+import { plantFields } from "../../form/plant_fields.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+
+export interface ModelCard {
+  element: HTMLFormElement;
+  read(): PlantReading;
+  /** False where this card cannot show such a plant. */
+  load(plant: Plant): boolean;
+  loadTyped(form: string, values: Record<string, string>): void;
+  setUnits(units: UnitNames): void;
+}
+
+export interface ModelCardEvents {
+  onTune(): void;
+  /** By every method. */
+  onCompare(): void;
+  /** The form's id and the texts as typed: what the address keeps. */
+  onChange(form: string, values: Record<string, string>): void;
+  /** What a relay test on this plant would show. */
+  onRelay(form: string, values: Record<string, string>): void;
+}
+
+/** `active`: whether a request that is sent now is about this card's model. */
+export function modelCard(errors: FormErrors, active: () => boolean, events: ModelCardEvents): ModelCard {
+  const fields = plantFields(errors, active, () => {
+    const { form, values } = fields.typed();
+    events.onChange(form, values);
+  });
+  const relay = (): void => {
+    const { form, values } = fields.typed();
+    events.onRelay(form, values);
+  };
+  const element = h(
+    "form",
+    { class: "card", novalidate: true },
+    h("h2", {}, "A model"),
+    h(
+      "p",
+      { class: "hint" },
+      "You know how the process answers: its gain, lag and dead time, or its transfer function.",
+    ),
+    fields.elements,
+    h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Tune this model")),
+    h(
+      "div",
+      { class: "actions" },
+      h("button", { type: "button", onclick: () => events.onCompare() }, "Compare all methods"),
+      h("button", { type: "button", class: "quiet", onclick: relay }, "What would a relay test on it show?"),
+    ),
+  );
+  element.addEventListener("submit", (event) => {
+    event.preventDefault();
+    events.onTune();
+  });
+  return {
+    element,
+    read: fields.read,
+    load: fields.load,
+    loadTyped: fields.loadTyped,
+    setUnits: fields.setUnits,
+  };
+}

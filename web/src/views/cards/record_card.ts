@@ -1,0 +1,130 @@
+// "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
+import type { FieldError, RecordedTest } from "../../api/types.ts";
+import { h } from "../../dom.ts";
+import { areaField } from "../../form/controls.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import { csvOf, recordFields } from "../../form/record_fields.ts";
+import type { Identify } from "../../form/record_fields.ts";
+
+export interface RecordCard {
+  element: HTMLFormElement;
+  read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
+  load(record: RecordedTest, identify: Identify | undefined): void;
+}
+
+const LARGEST_BYTES = 8 * 1024 * 1024;
+
+export interface RecordCardEvents {
+  /** Look at the record first: also what a file that arrives does. */
+  onIdentify(): void;
+  /** Straight to the controller. */
+  onTune(): void;
+  /** By every method. */
+  onCompare(): void;
+}
+
+export function recordCard(errors: FormErrors, events: RecordCardEvents): RecordCard {
+  const status = h("p", { class: "hint", role: "status" });
+  const file = h("input", {
+    type: "file",
+    class: "visually-hidden",
+    accept: ".csv,.txt,.tsv,text/csv,text/plain",
+    tabindex: -1,
+    "aria-label": "CSV file",
+  });
+  const choose = h("button", { type: "button", onclick: () => file.click() }, "Choose file");
+  const drop = h("div", { class: "drop" }, h("p", {}, "Drop a CSV file here, or"), choose, file);
+  const csv = areaField(
+    {
+      label: "or paste it",
+      hint: "One row a sample: time, controller output u, measurement y.",
+      placeholder: "t,u,y\n0,0,20.1\n1,5,20.1\n2,5,20.3",
+      rows: 4,
+      wide: true,
+      pointer: () => "/record/csv",
+    },
+    errors,
+  );
+  const fields = recordFields(errors, false);
+  const element = h(
+    "form",
+    { class: "card", novalidate: true },
+    h("h2", {}, "A recorded test"),
+    h(
+      "p",
+      { class: "hint" },
+      "A step, a relay test, or any movement of the controller's output with the measurement that followed.",
+    ),
+    drop,
+    status,
+    csv.element,
+    h("details", {}, h("summary", {}, "Columns, kind of test, model"), h("div", { class: "stack" }, fields.elements)),
+    h(
+      "div",
+      { class: "actions" },
+      h("button", { type: "submit", class: "primary" }, "Identify this test"),
+      h("button", { type: "button", onclick: () => events.onTune() }, "Tune at once"),
+      h(
+        "button",
+        { type: "button", onclick: () => events.onCompare() },
+        "Compare all methods",
+        h("span", { class: "visually-hidden" }, " on this record"),
+      ),
+    ),
+  );
+
+  async function take(chosen: File | undefined): Promise<void> {
+    if (!chosen) return;
+    if (chosen.size > LARGEST_BYTES) {
+      status.textContent = `${chosen.name} has ${(chosen.size / 1024 / 1024).toFixed(1)} MiB; 8 MiB is the most that can be sent. Cut the record to the test itself.`;
+      return;
+    }
+    csv.input.value = await chosen.text();
+    csv.input.dispatchEvent(new Event("input"));
+    const rows = csv.input.value.split("\n").filter((line) => line.trim() !== "").length;
+    status.textContent = `${chosen.name}: ${rows} lines.`;
+    events.onIdentify();
+  }
+
+  file.addEventListener("change", () => void take(file.files?.[0]));
+  // The whole card takes the file: people do not aim.
+  element.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    drop.classList.add("over");
+  });
+  element.addEventListener("dragleave", () => drop.classList.remove("over"));
+  element.addEventListener("drop", (event) => {
+    event.preventDefault();
+    drop.classList.remove("over");
+    void take(event.dataTransfer?.files[0]);
+  });
+  element.addEventListener("submit", (event) => {
+    event.preventDefault();
+    events.onIdentify();
+  });
+
+  return {
+    element,
+    read() {
+      const read = fields.read();
+      const missing = csv.input.value.trim() === "";
+      return {
+        record: { ...read.record, csv: csv.input.value },
+        identify: read.identify,
+        errors: missing
+          ? [
+              {
+                pointer: "/record/csv",
+                detail: "There is no record yet. Drop a CSV file, choose one, or paste its text.",
+              },
+            ]
+          : read.errors,
+      };
+    },
+    load(record, identify) {
+      csv.input.value = csvOf(record);
+      fields.load(record, identify);
+      status.textContent = "";
+    },
+  };
+}

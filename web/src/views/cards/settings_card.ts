@@ -1,0 +1,183 @@
+// "Settings to enter": the chosen controller in the form that the user's controller has.
+import type { Entry } from "../../api/types.ts";
+import { h, uniqueId } from "../../dom.ts";
+import { filterWords } from "../../words/figures.ts";
+import { formatSetting, plainSetting, quotient, withUnit } from "../../words/numbers.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+
+export type SettingsForm = "ideal" | "parallel" | "series" | "npid";
+
+export interface Setting {
+  name: string;
+  unit: string;
+  value: number | null;
+}
+
+/** The settings of one form, or the sentence why that form does not exist. */
+export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): Setting[] | string {
+  const controller = entry.controller;
+  if (!controller) return "There is no controller to enter.";
+  const gain = quotient(units.u, units.y);
+  const per = gain ? `${gain}/${units.time}` : `1/${units.time}`;
+  const times = gain ? `${gain} ${units.time}` : units.time;
+  const filter: Setting[] =
+    typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
+  if (form === "ideal" || form === "npid") {
+    const { delta_r } = controller;
+    const delta: Setting[] =
+      form === "npid" && typeof delta_r === "number" ? [{ name: "delta_r", unit: units.y, value: delta_r }] : [];
+    return [
+      { name: "Kp", unit: gain, value: controller.Kp },
+      { name: "Ti", unit: units.time, value: controller.Ti },
+      { name: "Td", unit: units.time, value: controller.Td ?? 0 },
+      ...delta,
+      ...filter,
+    ];
+  }
+  const equivalent = entry.equivalents?.[form];
+  if (!equivalent || typeof equivalent.Kp !== "number") {
+    const why = equivalent?.why_null ?? entry.equivalents?.why_null;
+    return (
+      why?.[form] ??
+      why?.["Kp"] ??
+      Object.values(why ?? {})[0] ??
+      `This controller has no ${form} form: its zeros are complex. Enter it in the ideal or parallel form.`
+    );
+  }
+  if (form === "parallel") {
+    return [
+      { name: "Kp", unit: gain, value: equivalent.Kp },
+      { name: "Ki", unit: per, value: equivalent.Ki ?? null },
+      { name: "Kd", unit: times, value: equivalent.Kd ?? null },
+      ...filter,
+    ];
+  }
+  return [
+    { name: "Kp", unit: gain, value: equivalent.Kp },
+    { name: "Ti", unit: units.time, value: equivalent.Ti ?? null },
+    { name: "Td", unit: units.time, value: equivalent.Td ?? null },
+    ...filter,
+  ];
+}
+
+/** What Copy puts on the clipboard. */
+export function settingsText(form: SettingsForm, settings: Setting[]): string {
+  const lines = settings.map(
+    (setting) =>
+      `${setting.name} = ${setting.value === null ? "off" : plainSetting(setting.value)}${setting.unit && setting.value !== null ? ` ${setting.unit}` : ""}`,
+  );
+  return [`form: ${form}`, ...lines].join("\n");
+}
+
+const FORMULAS: Record<SettingsForm, string> = {
+  ideal: "Kp (1 + 1/(Ti s) + Td s)",
+  parallel: "Kp + Ki/s + Kd s",
+  series: "Kp (1 + 1/(Ti s)) (1 + Td s)",
+  npid: "Kp (e + 1/Ti ∫ exp(−e²/(2 delta_r²)) e dt − Td dy/dt)",
+};
+
+export interface SettingsCard {
+  element: HTMLElement;
+  show(entry: Entry, name: string, units: UnitNames): void;
+}
+
+export function settingsCard(announce: (sentence: string) => void): SettingsCard {
+  /** As chosen; a nonlinear controller has its own form only. */
+  let chosen: SettingsForm = "ideal";
+  let shown: { entry: Entry; name: string; units: UnitNames } | null = null;
+  const titleId = uniqueId("settings-title");
+  const group = uniqueId("form");
+  const title = h("h2", { id: titleId }, "Settings to enter");
+  const body = h("div", {});
+  const copy = h("button", { type: "button", onclick: () => void copySettings() }, "Copy");
+  const radios = (["ideal", "parallel", "series"] as const).map((name) => {
+    const input = h("input", { type: "radio", name: group, value: name, checked: name === chosen });
+    input.addEventListener("change", () => {
+      chosen = name;
+      write();
+    });
+    return h("label", {}, input, h("span", {}, name));
+  });
+  const segments = h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios);
+  const element = h("section", { class: "card settings", "aria-labelledby": titleId }, title, segments, body);
+
+  const formOf = (entry: Entry): SettingsForm => (entry.controller?.form === "npid" ? "npid" : chosen);
+
+  function write(): void {
+    if (!shown) return;
+    title.textContent = `Settings to enter: ${shown.name}`;
+    const form = formOf(shown.entry);
+    segments.hidden = form === "npid";
+    const settings = settingsOf(shown.entry, form, shown.units);
+    if (typeof settings === "string") {
+      body.replaceChildren(h("p", {}, settings));
+      return;
+    }
+    const filter = shown.entry.controller?.filter;
+    const weights = shown.entry.controller;
+    body.replaceChildren(
+      h(
+        "table",
+        { class: "figures" },
+        h("caption", { class: "visually-hidden" }, `Settings of ${shown.name} in ${form} form`),
+        h(
+          "tbody",
+          {},
+          settings.map((setting) =>
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, withUnit(setting.name, setting.unit)),
+              h("td", {}, setting.value === null ? "off" : formatSetting(setting.value)),
+            ),
+          ),
+        ),
+      ),
+      h(
+        "p",
+        { class: "hint" },
+        `${FORMULAS[form]}; set-point weights b ${weights?.b ?? 1}, c ${weights?.c ?? 0}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`,
+      ),
+      h("div", { class: "actions" }, copy),
+    );
+  }
+
+  async function copySettings(): Promise<void> {
+    if (!shown) return;
+    const form = formOf(shown.entry);
+    const settings = settingsOf(shown.entry, form, shown.units);
+    if (typeof settings === "string") return;
+    const text = settingsText(form, settings);
+    try {
+      await navigator.clipboard.writeText(text);
+      copy.textContent = "Copied";
+    } catch {
+      copy.textContent = copyBySelection(text) ? "Copied" : "Not copied: select it by hand";
+    }
+    announce(`${copy.textContent}.`);
+    setTimeout(() => {
+      copy.textContent = "Copy";
+    }, 2000);
+  }
+
+  return {
+    element,
+    show(entry, name, units) {
+      shown = { entry, name, units };
+      write();
+    },
+  };
+}
+
+/** The old way: pages that do not come over TLS or from this machine have no clipboard object. */
+function copyBySelection(text: string): boolean {
+  const area = h("textarea", { class: "visually-hidden", "aria-hidden": "true", tabindex: -1 });
+  area.value = text;
+  document.body.append(area);
+  const before = document.activeElement;
+  area.select();
+  const done = document.execCommand("copy");
+  area.remove();
+  if (before instanceof HTMLElement) before.focus();
+  return done;
+}

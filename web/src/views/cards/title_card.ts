@@ -1,0 +1,54 @@
+// What a job is about: its name, its plant, and ways to go on from it. Head of every screen that shows a job.
+import type { Job, Plant } from "../../api/types.ts";
+import { h, mathElement } from "../../dom.ts";
+import type { Child } from "../../dom.ts";
+import { plantFormula } from "../../form/formula.ts";
+import { formatRoute } from "../../routes.ts";
+import { unitNames } from "../../words/numbers.ts";
+import { plantTitle, plantWords } from "../../words/plant.ts";
+
+export interface TitleCard {
+  element: HTMLElement;
+  heading: HTMLElement;
+  show(job: Job | null): void;
+}
+
+/** `screen`: the heading of a job without a name. `actions`: beside the links that every job has. */
+export function titleCard(screen: string, ...actions: Child[]): TitleCard {
+  const heading = h("h1", { tabindex: -1 }, screen);
+  const plantLine = h("p", { class: "hint" });
+  const formula = h("div", { class: "formula small" });
+  const editLink = h("a", { href: "#/" }, "Change the request");
+  const recordLink = h("a", { href: "#/" }, "Look at the record");
+  const element = h(
+    "section",
+    { class: "card title" },
+    heading,
+    plantLine,
+    formula,
+    h("p", { class: "actions" }, editLink, recordLink, actions),
+  );
+  return {
+    element,
+    heading,
+    show(job) {
+      element.hidden = !job;
+      if (!job) return;
+      const request = job.request;
+      const plant = job.result?.model?.plant ?? request?.plant;
+      heading.textContent = job.name || request?.name || screen;
+      plantLine.textContent = plant
+        ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
+        : "from a recorded test";
+      const tree = plant && !job.result?.model && hasFormulaOnly(plant) ? plantFormula(plant) : null;
+      formula.replaceChildren(...(tree ? [mathElement(tree)] : []));
+      formula.hidden = tree === null;
+      editLink.href = formatRoute({ screen: "edit", job: job.id });
+      recordLink.href = formatRoute({ screen: "identify", job: job.id });
+      recordLink.hidden = !request?.record;
+    },
+  };
+}
+
+/** Plants whose one-line words say less than their formula. */
+const hasFormulaOnly = (plant: Plant): boolean => ["transfer_function", "zpk", "state_space"].includes(plant.type);

@@ -1,0 +1,129 @@
+// Units and today's settings: both optional.
+import type { Baseline, FieldError, Units } from "../../api/types.ts";
+import { h } from "../../dom.ts";
+import { choiceField, textField } from "../../form/controls.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import { parseNumber } from "../../form/number.ts";
+
+export interface TodayCard {
+  element: HTMLElement;
+  readUnits(): Units;
+  read(): { baseline: Baseline | undefined; errors: FieldError[] };
+  load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
+  readName(): string;
+}
+
+const FORMS = [
+  ["ideal", "ideal"],
+  ["parallel", "parallel"],
+  ["series", "series"],
+  ["npid", "nonlinear"],
+] as const;
+
+export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
+  const unit = (label: string, pointer: string, value: string, placeholder: string): ReturnType<typeof textField> =>
+    textField({ label, value, placeholder, pointer: () => pointer }, errors);
+  const name = unit("Loop name", "/name", "", "TIC-101");
+  const time = unit("Time unit", "/units/time", "s", "s");
+  const u = unit("Unit of u", "/units/u", "", "%");
+  const y = unit("Unit of y", "/units/y", "", "degC");
+  for (const field of [time, u, y]) field.input.addEventListener("change", onUnits);
+
+  const form = choiceField({ label: "Form", choices: FORMS, pointer: () => "/baseline/form" }, errors);
+  const slots = (["first", "second", "third"] as const).map((_, index) =>
+    textField({ label: "", pointer: () => `/baseline/${names()[index]}` }, errors),
+  );
+  const filter = textField(
+    { label: "Tf", hint: "filter of the derivative; empty is none", pointer: () => "/baseline/filter/Tf" },
+    errors,
+  );
+  const delta = textField(
+    {
+      label: "delta_r",
+      hint: "errors well beyond it do not feed the integral; empty is the set-point step",
+      pointer: () => "/baseline/delta_r",
+    },
+    errors,
+  );
+  // What a loaded request had and no field shows, e.g. set-point weights.
+  let rest: Record<string, unknown> = {};
+
+  function names(): [string, string, string] {
+    return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
+  }
+  function label(): void {
+    names().forEach((text, index) => slots[index]!.setLabel(text));
+    delta.element.hidden = form.input.value !== "npid";
+  }
+  label();
+  form.input.addEventListener("change", label);
+
+  const element = h(
+    "section",
+    { class: "card", "aria-labelledby": "today-title" },
+    h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
+    h("p", { class: "hint" }, "What the controller runs with now: drawn and counted beside every proposal."),
+    h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
+    h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
+    h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
+  );
+
+  return {
+    element,
+    readName: () => name.input.value.trim(),
+    readUnits() {
+      const units: Units = {};
+      if (time.input.value.trim()) units.time = time.input.value.trim();
+      if (u.input.value.trim()) units.u = u.input.value.trim();
+      if (y.input.value.trim()) units.y = y.input.value.trim();
+      return units;
+    },
+    read() {
+      const typed = slots.map((slot) => slot.input.value.trim());
+      if (typed.every((text) => text === "")) return { baseline: undefined, errors: [] };
+      const faults: FieldError[] = [];
+      const baseline: Baseline = { form: form.input.value, ...rest };
+      names().forEach((key, index) => {
+        const text = typed[index]!;
+        if (text === "" && key !== "Kp") {
+          if (key === "Ti") baseline[key] = null;
+          return;
+        }
+        const parsed = parseNumber(text, key);
+        if (parsed.ok) baseline[key] = parsed.value;
+        else faults.push({ pointer: `/baseline/${key}`, detail: parsed.sentence });
+      });
+      if (baseline.form === "npid" && delta.input.value.trim() !== "") {
+        const parsed = parseNumber(delta.input.value, "delta_r");
+        if (parsed.ok) baseline["delta_r"] = parsed.value;
+        else faults.push({ pointer: "/baseline/delta_r", detail: parsed.sentence });
+      }
+      if (filter.input.value.trim() !== "") {
+        const parsed = parseNumber(filter.input.value, "Tf");
+        if (parsed.ok)
+          baseline["filter"] = { type: "derivative", ...(rest["filter"] as object | undefined), Tf: parsed.value };
+        else faults.push({ pointer: "/baseline/filter/Tf", detail: parsed.sentence });
+      }
+      return { baseline, errors: faults };
+    },
+    load(units, baseline, loopName) {
+      name.input.value = loopName ?? "";
+      time.input.value = units?.time ?? "s";
+      u.input.value = units?.u ?? "";
+      y.input.value = units?.y ?? "";
+      const known = baseline && FORMS.some(([id]) => id === baseline.form);
+      form.input.value = known ? baseline.form : "ideal";
+      label();
+      const text = (value: unknown): string => (typeof value === "number" ? String(value) : "");
+      names().forEach((key, index) => {
+        slots[index]!.input.value = text(baseline?.[key]);
+      });
+      delta.input.value = text(baseline?.["delta_r"]);
+      filter.input.value = text((baseline?.["filter"] as { Tf?: unknown } | undefined)?.Tf);
+      rest = Object.fromEntries(
+        Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && key !== "delta_r" && !names().includes(key)),
+      );
+      onUnits();
+    },
+  };
+}

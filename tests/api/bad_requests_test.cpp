@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequest{"StateThatIsNoNumber", with_plant(R"({"type": "nonlinear", "states": {"h": "1"}})"), 422,
                    "/plant/states/h", "it must be a number"},
         BadRequest{"EquationThatIsNoText", with_plant(R"({"type": "nonlinear", "equations": {"h": 1}})"), 422,
-                   "/plant/equations/h", "text"},
+                   "/plant/equations/h", "string"},
         BadRequest{"AnInputThatMovesNothing",
                    with_plant(R"({"type": "nonlinear", "states": {"h": 0}, "equations": {"h": "-h"},
                                   "input": {"name": "q", "nominal": 1}, "output": "h"})"),

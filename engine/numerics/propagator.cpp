@@ -55,12 +55,6 @@ std::vector<double> phi_action(const std::vector<double>& F, std::vector<double>
 
 }  // namespace
 
-std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double v1, double slope1) {
-    const double difference = v1 - v0;
-    return {v0, slope0, (6 * difference - h * (4 * slope0 + 2 * slope1)) / (h * h),
-            (-12 * difference + 6 * h * (slope0 + slope1)) / (h * h * h)};
-}
-
 Propagator::Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0)
     : n_(n), F_(std::move(F)), G_(std::move(G)), b_(std::move(b)), h0_(h0), norm_(balanced_norm(F_, n)) {}
 

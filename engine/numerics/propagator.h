@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/numerics/cubic.h"
+
 namespace tunewright {
 
 /// One step of length h: x(h) = Phi x(0) + sum_j Gamma[j] v_j + constant with v(s) = sum_j v_j s^j/j!.
@@ -15,12 +17,8 @@ struct ExactStep {
     std::vector<double> constant;              // integral of e^(F s) b
 };
 
-/// v over a step as Taylor coefficients from values and slopes at both ends (cubic Hermite).
-std::array<double, 4> hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
-
 /// x := Phi x + Gamma v + constant. `scratch` has as many entries as x.
-void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-             std::vector<double>& scratch);
+void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x, std::vector<double>& scratch);
 
 class Propagator {
 public:

@@ -99,9 +99,14 @@ std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows&
     const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
     if (n < m + kSteps + 8 || !(rows.residual.squaredNorm() > 0)) return {};
     const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);
+    // The likelihood has one peak over a: beyond what is far less likely there is nothing to find.
     std::vector<Strengths> found;
-    for (const double a : {0.0, 0.3, 0.55, 0.75, 0.88, 0.95}) found.push_back(likeliest(rows, G, a));
-    const double least = std::ranges::min(found, {}, &Strengths::unlikeliness).unlikeliness;
+    double least = INFINITY;
+    for (const double a : {0.0, 0.3, 0.55, 0.75, 0.88, 0.95}) {
+        found.push_back(likeliest(rows, G, a));
+        if (found.back().unlikeliness > least + kAsLikely) break;
+        least = std::min(least, found.back().unlikeliness);
+    }
     const Eigen::MatrixXd pulls = rows.J.transpose() * G;
     std::vector<Eigen::MatrixXd> all;
     for (const Strengths& one : found) {

@@ -25,13 +25,12 @@ struct Memory {
 };
 
 double cubic(double h, double s, double a, double slope_a, double b, double slope_b) {
-    const auto c = hermite_taylor(h, a, slope_a, b, slope_b);
-    return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6));
+    return value_at(hermite_taylor(h, a, slope_a, b, slope_b), s);
 }
 
 Signal cubic(double h, double s, Signal a, Signal b) {
     const auto c = hermite_taylor(h, a.value, a.slope, b.value, b.slope);
-    return {cubic(h, s, a.value, a.slope, b.value, b.slope), c[1] + s * (c[2] + s * c[3] / 2)};
+    return {value_at(c, s), slope_at(c, s)};
 }
 
 /// x' = F x + G e + b, u = M x + N e: plant states, the model's, Q's two, the integral of y without dead time. e is

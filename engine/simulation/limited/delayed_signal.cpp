@@ -28,7 +28,7 @@ Signal DelayedSignal::at(double t, bool after, double slack) {
     const ResponseNode &a = nodes_[left], &b = nodes_[left + 1];
     const double h = b.t - a.t, s = t - a.t;
     const auto c = hermite_taylor(h, a.u, a.u_slope, b.u, b.u_slope);
-    return {c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)) + d_, c[1] + s * (c[2] + s * c[3] / 2)};
+    return {value_at(c, s) + d_, slope_at(c, s)};
 }
 
 }  // namespace tunewright

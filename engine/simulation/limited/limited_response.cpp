@@ -7,7 +7,9 @@
 #include <map>
 
 #include "engine/numerics/linear_algebra.h"
+#include "engine/simulation/limited/input_history.h"
 #include "engine/simulation/limited/limited_loop.h"
+#include "engine/simulation/limited/limited_rest.h"
 #include "engine/simulation/linear/error_tail.h"
 #include "engine/simulation/linear/long_step.h"
 #include "engine/simulation/linear/steady_state.h"
@@ -27,103 +29,11 @@ constexpr double kRounding = 1e-5;       // times `settled`, of the value at res
 constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
 constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled length would still be fine
 
-double value_at(const std::array<double, 4>& c, double s) { return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)); }
-double slope_at(const std::array<double, 4>& c, double s) { return c[1] + s * (c[2] + s * c[3] / 2); }
-
 /// How far the cubic through a and c misses b halfway, in value and slope.
 double miss(double h, Signal a, Signal b, Signal c) {
     const double value = 0.5 * (a.value + c.value) + h * (a.slope - c.slope) / 8;
     const double slope = 1.5 * (c.value - a.value) / h - 0.25 * (a.slope + c.slope);
     return std::max(std::abs(b.value - value), h * std::abs(b.slope - slope) / 8);
-}
-
-/// First s in [0, h] where the cubic c rises above 0 and stays no noise: it must reach more than `noise`.
-std::optional<double> first_rise(const std::array<double, 4>& c, double h, double noise) {
-    std::array<double, 4> mark = {0, h, h, h};
-    int n = 1;
-    // Turning points: c1 + c2 s + c3/2 s^2 = 0, by the formula without cancellation.
-    const double discriminant = c[2] * c[2] - 2 * c[1] * c[3];
-    if (discriminant >= 0) {
-        const double q = -(c[2] + std::copysign(std::sqrt(discriminant), c[2]));
-        std::array<double, 2> root = {q / c[3], 2 * c[1] / q};
-        if (!(root[0] <= root[1])) std::swap(root[0], root[1]);
-        for (const double s : root)
-            if (s > 0 && s < h) mark[Index(n++)] = s;
-    }
-    mark[Index(n++)] = h;
-    for (int i = 0; i < n; ++i) {
-        if (!(value_at(c, mark[Index(i)]) > noise)) continue;
-        if (i == 0) return 0;
-        double low = mark[Index(i - 1)], high = mark[Index(i)];
-        if (value_at(c, low) > 0) return low;
-        for (int k = 0; k < 60 && high - low > 4 * kEpsilon * high; ++k) {
-            const double middle = 0.5 * (low + high);
-            (value_at(c, middle) > 0 ? high : low) = middle;
-        }
-        return high;
-    }
-    return std::nullopt;
-}
-
-/// w = u + d as it was: 0 before t = 0, then cubic between the nodes.
-class History {
-public:
-    History(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
-
-    /// Limit from the right (`after`) or from the left.
-    Signal at(double t, bool after, double slack) const {
-        if (t < -slack || (t <= slack && !after)) return {};
-        auto i = std::lower_bound(nodes_.begin(), nodes_.end(), t - slack,
-                                  [](const ResponseNode& node, double time) { return node.t < time; });
-        if (i == nodes_.end()) return {nodes_.back().u + d_, nodes_.back().u_slope};
-        if (i->t <= t + slack) {
-            while (after && i + 1 != nodes_.end() && (i + 1)->t <= t + slack) ++i;
-            return {i->u + d_, i->u_slope};
-        }
-        const ResponseNode &a = *(i - 1), &b = *i;
-        const auto c = hermite_taylor(b.t - a.t, a.u, a.u_slope, b.u, b.u_slope);
-        return {value_at(c, t - a.t) + d_, slope_at(c, t - a.t)};
-    }
-
-private:
-    const std::vector<ResponseNode>& nodes_;
-    double d_;
-};
-
-/// Where the loop comes to rest, limits respected.
-struct Rest {
-    bool exists = false, within = false;  // within: by the control law, not at a limit
-    double y = 0, u = 0;
-    SteadyState linear;
-};
-
-Rest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
-               const OutputLimits& limits) {
-    Rest rest;
-    rest.linear = steady_state(plant, controller, in);
-    if (!rest.linear.exists) return rest;
-    const double u = rest.linear.u, slack = 1e-9 * std::abs(u);
-    if (u <= limits.max + slack && u >= limits.min - slack) {
-        rest.exists = rest.within = true;
-        rest.y = rest.linear.y;
-        rest.u = std::clamp(u, limits.min, limits.max);
-        return rest;
-    }
-    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return rest;
-    rest.exists = true;
-    rest.u = u > limits.max ? limits.max : limits.min;
-    rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
-    return rest;
-}
-
-/// The size that y has when the actuator does all it can over the plant's own time.
-double scale_of_y(const LinearPlant& plant, const StepInputs& in, const OutputLimits& limits, double y_rest) {
-    double time = plant.dead_time(), u = std::abs(in.d);
-    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
-    for (const double limit : {limits.min, limits.max})
-        if (std::isfinite(limit)) u += std::abs(limit);
-    const double gain = std::abs(plant.rational({0, time > 0 ? 1 / time : 1}));
-    return std::max({std::abs(in.r), std::abs(y_rest), gain * u, 1e-200});
 }
 
 /// Steps of one length in one region.
@@ -439,10 +349,10 @@ private:
     StepInputs in_;
     OutputLimits limits_;
     const ResponseOptions& options_;
-    Rest rest_;
+    LimitedRest rest_;
     double scale_y_;
     StepResponse response_;
-    History history_;
+    InputHistory history_;
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
     std::map<double, int> breaks_;
     LongStep::Start start_;

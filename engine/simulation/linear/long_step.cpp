@@ -95,7 +95,7 @@ Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double
     return v;
 }
 
-LongStep::Cubic LongStep::cubic(double w0, const Jet& end) const {
+Cubic LongStep::cubic(double w0, const Jet& end) const {
     // w(s) = sum_{k < 3} end_k (s - h)^k/k! + a (s - h)^3, with w(0) = w0.
     const double h = h_, a = (end[0] - h * end[1] + h * h * end[2] / 2 - w0) / (h * h * h);
     return {w0, end[1] - h * end[2] + 3 * a * h * h, end[2] - 6 * a * h, 6 * a};
@@ -103,7 +103,7 @@ LongStep::Cubic LongStep::cubic(double w0, const Jet& end) const {
 
 Signal LongStep::delayed_end(const Cubic& c) const {
     const double s = rest_.h;
-    return {c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)), c[1] + s * (c[2] + s * c[3] / 2)};
+    return {value_at(c, s), slope_at(c, s)};
 }
 
 /// What w, w' and w'' at the end get from the delayed signal over the rest of the step.

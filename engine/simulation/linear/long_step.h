@@ -48,7 +48,6 @@ private:
         Signal v;
         Jet out{};
     };
-    using Cubic = std::array<double, 4>;  // Taylor coefficients at the start
 
     void work_out_rows();
     Cubic cubic(double w0, const Jet& end) const;

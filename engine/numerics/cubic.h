@@ -1,0 +1,22 @@
+// A cubic polynomial over a step, and what is asked of it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+namespace tunewright {
+
+/// Taylor coefficients at the beginning of the step: c0 + c1 s + c2 s^2/2 + c3 s^3/6.
+using Cubic = std::array<double, 4>;
+
+inline double value_at(const Cubic& c, double s) { return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)); }
+inline double slope_at(const Cubic& c, double s) { return c[1] + s * (c[2] + s * c[3] / 2); }
+
+/// From values and slopes at both ends of a step of length h (cubic Hermite).
+Cubic hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
+
+/// First s in [0, h] where c rises above 0, if it reaches more than `noise` within the step: bisection between the
+/// turning points, to rounding.
+std::optional<double> first_rise(const Cubic& c, double h, double noise);
+
+}  // namespace tunewright

@@ -8,6 +8,7 @@
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/reading_check.h"
+#include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/input_limits.h"
 #include "engine/identification/record/record_kind.h"
@@ -213,26 +214,33 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
 }
 
 /// At the oscillation a lag much longer than its period looks like an integrator: the static gain comes from the
-/// structure alone. Where the model leaves more than noise (`left` of y's variation), so does whether there is one.
-void warn_extrapolated_gain(const RecordedCycle& cycle, const Fit& fit, double left, std::vector<Warning>& warnings) {
-    constexpr double kFar = 2, kPlainly = 0.02;
+/// structure alone. Where the model leaves more than noise (`left` of y's variation) or a pattern, the structure is not
+/// the plant's: then what it says far from the oscillation is open.
+void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, double left,
+                            std::vector<Warning>& warnings) {
+    constexpr double kFar = 2, kPlainly = 0.02, kPattern = 2;
     const Structure structure = fit.form.structure;
+    const bool another = left > kPlainly || correlation_time(fit.residual) > kPattern;
     if (is_integrating(structure) || structure == Structure::unstable) {
-        if (left < kPlainly) return;
-        warnings.push_back(
-            {"gain-from-oscillation",
-             "The model leaves " + number_text(100 * left, 2) +
-                 " % of y's variation beyond noise, so whether the plant integrates, is unstable or has a "
-                 "static gain K is open: a relay's oscillation hardly tells. A step test does."});
+        if (!another) return;
+        warnings.push_back({"gain-from-oscillation",
+                            "The model leaves more than noise, so whether the plant integrates, is unstable or has a "
+                            "static gain K is open: a relay's oscillation hardly tells. A step test does."});
         return;
     }
     const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();
-    if (lag * cycle.omega() < kFar) return;
-    warnings.push_back({"gain-from-oscillation",
-                        "The relay's oscillation shows the plant where its lags times omega are " +
-                            number_text(lag * cycle.omega(), 2) +
-                            ": the static gain K is extrapolated by the model's structure. The design rests on what is "
-                            "measured near the oscillation; a step test shows the gain."});
+    if (omega && lag * *omega >= kFar) {
+        warnings.push_back({"gain-from-oscillation",
+                            "The relay's oscillation shows the plant where its lags times omega are " +
+                                number_text(lag * *omega, 2) +
+                                ": the static gain K is extrapolated by the model's structure. The design rests on "
+                                "what is measured near the oscillation; a step test shows the gain."});
+    } else if (another) {
+        warnings.push_back({"gain-from-oscillation",
+                            "The model leaves more than noise, and a relay's oscillation shows the plant near one "
+                            "frequency: the static gain K may be off by more than its standard error. A step test "
+                            "shows it."});
+    }
 }
 
 double steady_misfit(const CleanRecord& r, const RecordedCycle& cycle, const Fit& fit) {
@@ -289,7 +297,8 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
         search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
 
     std::vector<Warning> last;
-    if (cycle) warn_extrapolated_gain(*cycle, search.chosen(), left, last);
+    if (kind == RecordKind::relay)
+        warn_extrapolated_gain(cycle ? std::optional(cycle->omega()) : std::nullopt, search.chosen(), left, last);
     const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());

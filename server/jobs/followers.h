@@ -16,7 +16,7 @@
 #include "server/jobs/job_view.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
-#include "server/jobs/work/held.h"
+#include "server/jobs/running/held.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {

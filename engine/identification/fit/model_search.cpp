@@ -5,8 +5,8 @@
 #include <numeric>
 #include <string>
 
+#include "engine/identification/fit/gap_moves.h"
 #include "engine/identification/fit/uncertainty.h"
-#include "engine/identification/record/gap_moves.h"
 
 namespace tunewright {
 namespace {

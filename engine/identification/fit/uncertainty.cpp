@@ -149,7 +149,7 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
     less.form = fit.form;
     less.residual = block_sums(fit.residual, n, block);
     for (const std::vector<double>& column : fit.J) less.J.push_back(block_sums(column, n, block));
-    t = block_sums(t, t.size(), block);
+    t = block_sums(t, block);
     return less;
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/identification/record/record_rows.h"
 #include "engine/identification/wording.h"
+#include "engine/numerics/statistics.h"
 
 namespace tunewright {
 namespace {
@@ -173,6 +174,19 @@ CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& 
     record.u_only += static_cast<int>(next);
     record.dropped += static_cast<int>(next);
     return record;
+}
+
+std::vector<double> spacings(const CleanRecord& r) {
+    std::vector<double> all;
+    for (std::size_t i = 1; i < r.t.size(); ++i) {
+        if (r.t[i] > r.t[i - 1]) all.push_back(r.t[i] - r.t[i - 1]);
+    }
+    return all;
+}
+
+double usual_spacing(const CleanRecord& r) {
+    std::vector<double> all = spacings(r);
+    return all.empty() ? 0 : median(std::move(all));
 }
 
 CleanRecord thin_out(const CleanRecord& record, int most) {

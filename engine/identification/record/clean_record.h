@@ -72,6 +72,12 @@ inline constexpr int kMinSamples = 8;
 /// duration.
 Expected<CleanRecord> clean_record(const Record& record);
 
+/// The times from one sample to the next, equal times left out.
+std::vector<double> spacings(const CleanRecord& record);
+
+/// Their median; 0 where there is none.
+double usual_spacing(const CleanRecord& record);
+
 /// A record of at most about `most` samples with the same input, denser after the large changes of u: for coarse
 /// searches. An input of very many changes is averaged over blocks.
 CleanRecord thin_out(const CleanRecord& record, int most);

@@ -13,10 +13,7 @@ namespace tunewright {
 namespace {
 
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
-    std::vector<double> spacings;
-    for (std::size_t i = 1; i < r.t.size(); ++i) {
-        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
-    }
+    std::vector<double> spacings = tunewright::spacings(r);
     const double typical = median(spacings);
     const auto odd = std::count_if(spacings.begin(), spacings.end(),
                                    [&](double d) { return std::abs(d - typical) > 0.1 * typical; });

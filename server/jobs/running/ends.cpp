@@ -1,4 +1,4 @@
-#include "server/jobs/work/ends.h"
+#include "server/jobs/running/ends.h"
 
 namespace tunewright::server {
 namespace {

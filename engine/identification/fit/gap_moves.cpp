@@ -1,9 +1,7 @@
-#include "engine/identification/record/gap_moves.h"
+#include "engine/identification/fit/gap_moves.h"
 
 #include <algorithm>
-#include <utility>
-
-#include "engine/numerics/statistics.h"
+#include <iterator>
 
 namespace tunewright {
 namespace {
@@ -15,14 +13,6 @@ double row_before(const CleanRecord& r, double time) {
 }
 
 }  // namespace
-
-double usual_spacing(const CleanRecord& r) {
-    std::vector<double> spacings;
-    for (std::size_t i = 1; i < r.t.size(); ++i) {
-        if (r.t[i] > r.t[i - 1]) spacings.push_back(r.t[i] - r.t[i - 1]);
-    }
-    return spacings.empty() ? 0 : median(std::move(spacings));
-}
 
 std::vector<int> gap_moves(const CleanRecord& record) {
     constexpr double kLong = 1.5;

@@ -1,4 +1,4 @@
-#include "server/jobs/work/workers.h"
+#include "server/jobs/running/workers.h"
 
 #include "server/executor.h"
 #include "server/jobs/problems.h"

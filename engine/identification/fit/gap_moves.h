@@ -1,14 +1,12 @@
 // Moves of u that happened while nothing was recorded.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
-#include "engine/identification/fit/model_search.h"
+#include "engine/identification/fit/output_error.h"
 
 namespace tunewright {
-
-/// The median time from one sample to the next, equal times left out.
-double usual_spacing(const CleanRecord& record);
 
 /// Indices of the changes of u that were first seen after a spacing of more than 1.5 times the usual one: when they
 /// happened in it is not recorded.

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "server/jobs/outage.h"
-#include "server/jobs/work/held.h"
+#include "server/jobs/running/held.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {

@@ -1,4 +1,4 @@
-#include "server/jobs/work/held.h"
+#include "server/jobs/running/held.h"
 
 namespace tunewright::server {
 

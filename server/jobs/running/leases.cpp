@@ -1,4 +1,4 @@
-#include "server/jobs/work/leases.h"
+#include "server/jobs/running/leases.h"
 
 #include <algorithm>
 #include <utility>

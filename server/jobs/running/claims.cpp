@@ -1,4 +1,4 @@
-#include "server/jobs/work/claims.h"
+#include "server/jobs/running/claims.h"
 
 #include <algorithm>
 

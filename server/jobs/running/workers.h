@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "api/service.h"
+#include "server/jobs/running/claims.h"
+#include "server/jobs/running/ends.h"
+#include "server/jobs/running/held.h"
 #include "server/jobs/timer.h"
-#include "server/jobs/work/claims.h"
-#include "server/jobs/work/ends.h"
-#include "server/jobs/work/held.h"
 
 namespace tunewright::server {
 

@@ -145,12 +145,13 @@ Codec<std::vector<MethodRequest>> tune_list() {
 
 void write_options(const std::string& method, const MethodOptions& options, Writer& out) {
     Json object = Json::object();
+    const auto& all = options.values();
     if (const TuningMethod* described = find_method(method)) {
-        for (const OptionDescription& option : described->options) {
-            if (option.default_value) place_option(object, option.name, *option.default_value);
-        }
+        for (const OptionDescription& option : described->options)
+            if (option.default_value && options.has(option.name))
+                place_option(object, option.name, all.at(option.name));
     }
-    for (const auto& [path, value] : options.values()) place_option(object, path, value);
+    for (const auto& [path, value] : all) place_option(object, path, value);
     out.raw(object.dump());
 }
 

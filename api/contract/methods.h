@@ -16,7 +16,7 @@ Codec<MethodRequest> method_request();
 /// An array of those, or "all".
 Codec<std::vector<MethodRequest>> tune_list();
 
-/// Options given, over the defaults of those that have one.
+/// `options` of an entry of this method: those with a default first, in the order in which the method describes them.
 void write_options(const std::string& method, const MethodOptions& options, Writer& out);
 
 }  // namespace tunewright::api

@@ -4,17 +4,10 @@
 #include <limits>
 #include <tuple>
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
-
-const std::string kController = "controller";
-
-const OptionDescription* option_named(const std::vector<OptionDescription>& options, const std::string& name) {
-    const auto at = std::ranges::find(options, name, &OptionDescription::name);
-    return at == options.end() ? nullptr : &*at;
-}
 
 std::string first_name(const std::string& path) { return path.substr(0, path.find('/')); }
 
@@ -22,11 +15,11 @@ std::string first_name(const std::string& path) { return path.substr(0, path.fin
 std::vector<MethodVariant> variants_of(const TuningMethod& method) {
     if (!method.variants.empty()) return method.variants;
     std::vector<MethodVariant> variants;
-    if (const OptionDescription* controller = option_named(method.options, kController)) {
+    if (const OptionDescription* controller = named(method.options, kControllerOption)) {
         for (const std::string& choice : controller->choices) {
             if (choice == "P") continue;
             variants.push_back({choice, {}});
-            variants.back().options.set(kController, choice);
+            variants.back().options.set(kControllerOption, choice);
         }
     }
     if (variants.empty()) variants.push_back({});
@@ -41,8 +34,8 @@ Error unsuitable(const std::string& path, const std::string& message) {
 Expected<MethodOptions> known_options(const MethodOptions& given, const TuningMethod& method) {
     MethodOptions known;
     for (const auto& [path, value] : given.values()) {
-        if (!option_named(method.options, first_name(path))) {
-            if (path != kController || value == OptionValue(std::string("PID"))) continue;
+        if (!named(method.options, first_name(path))) {
+            if (path != kControllerOption || value == OptionValue(std::string("PID"))) continue;
             return unsuitable(
                 path, method.id + " tunes PID controllers only; " + std::get<std::string>(value) + " was asked for.");
         }
@@ -82,7 +75,7 @@ std::vector<PlannedRow> league_rows(const MethodOptions& given) {
             rows.push_back({&method, std::move(options), row_title(method, variant.name), {}, {}, true});
         }
         if (rows.size() > before) continue;
-        const auto controller = known->text(kController);
+        const auto controller = known->text(kControllerOption);
         rows.push_back({&method, *known, row_title(method, controller.value_or("")), {}, {}, true});
     }
     return rows;

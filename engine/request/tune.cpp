@@ -213,7 +213,9 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     entry.method = planned.method->id;
     entry.title = planned.title;
     entry.source = planned.method->source;
-    entry.options = planned.options;
+    const auto& on_points = planned.method->options_on_points;
+    entry.options =
+        with_defaults(measured_ && !on_points.empty() ? on_points : planned.method->options, planned.options);
     const double started = now_ms();
     auto tuned = tuned_with(planned, share(from, to));
     if (!tuned) {

@@ -40,7 +40,7 @@ struct TuningEntry {
     std::string title;
     std::string source;
     bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
-    MethodOptions options;
+    MethodOptions options;     ///< given, over the defaults
     std::optional<Plant> reduced_model;
     std::optional<CostSurface> surface;
     std::optional<RimcEntry> rimc;

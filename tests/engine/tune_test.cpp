@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/engine/plant/nonlinear_plants.h"
@@ -52,6 +53,40 @@ TEST(Tune, JudgesANonlinearPlantByItselfAndComparesOnItsLinearisation) {
     const double own = *robust.evaluation->performance.setpoint.IAE;
     const double linear = *robust.evaluation->linear->performance.setpoint.IAE;
     EXPECT_GT(std::abs(own / linear - 1), 0.02);
+}
+
+FrequencyResponse points_of(const Plant& plant) {
+    const LinearPlant linear = *LinearPlant::make(plant);
+    FrequencyResponse points;
+    for (double omega = 0.005; omega < 5; omega *= 1.2) {
+        const auto P = linear.at({0, omega});
+        points.omega.push_back(omega);
+        points.re.push_back(P.real());
+        points.im.push_back(P.imag());
+    }
+    return points;
+}
+
+// Points have no response over time: the answer names the objective that was minimised, and warns where another was
+// asked for.
+TEST(Tune, NamesTheObjectiveThatMeasuredPointsAllow) {
+    TuningRequest request;
+    request.plant = points_of(kPlant);
+    request.tune = {method("robust"), method("robust", {{"objective", "load_iae"}}),
+                    method("robust", {{"objective", "load_ie"}})};
+    request.evaluate.points = 0;
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result);
+    const auto warned = [&](std::size_t i) {
+        return std::ranges::count(result->controllers[i].evaluation->warnings, "objective-replaced", &Warning::code);
+    };
+    EXPECT_EQ(result->controllers[0].options.text("objective"), "load_ie");
+    EXPECT_EQ(warned(0), 0);
+    EXPECT_EQ(warned(1), 1);
+    EXPECT_EQ(warned(2), 0);
+    const auto on_model = tune(request_for(kPlant, {method("robust")}), {});
+    ASSERT_TRUE(on_model);
+    EXPECT_EQ(on_model->controllers[0].options.text("objective"), "load_iae");
 }
 
 TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {

@@ -4,22 +4,19 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/arrieta/arrieta_rule.h"
 #include "engine/tuning/arrieta/degradation_search.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
 
 constexpr double kLowestTau = 0.1, kHighestTau = 2;  // of the source
-constexpr double kDefaultMs = 1.6, kDefaultDegradation = 0.35;
 constexpr const char* kSource =
     "Arrieta, Vilanova and Alfaro, Performance degradation driven PID controller design, IFAC PID'12 (2012), ";
 constexpr const char* kCorrectedB3 = "b3 = 1.3870 M^2 - 4.7810 M + 4.9470 (0.3870 in print, a misprint)";
 constexpr const char* kRefittedC3 = "c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic through Table 1)";
 
 // The rule's model, or why there is none.
-Expected<ReducedModel> model_for(const TuningProblem& problem, const MethodOptions& options) {
+Expected<ReducedModel> model_for(const TuningProblem& problem, const ReductionOptions& options) {
     auto model =
         rule_model(problem, options, {.order = ReducedOrder::first, .preferred = ReductionMethod::two_point_123c});
     if (!model) return model.error();
@@ -55,23 +52,23 @@ Expected<TunedController> answer(const TuningProblem& problem, const ReducedMode
     return tuned;
 }
 
-ArrietaReport report_on(const ReducedModel& model, const MethodOptions& options) {
+ArrietaReport report_on(const ReducedModel& model, bool profile) {
     return {.model = {.K = model.K, .T = model.T1, .L = model.L},
             .constants = {},
             .Ms_design = {},
             .degradation = {},
-            .profile = options.boolean("profile").value_or(false)};
+            .profile = profile};
 }
 
-Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model = model_for(problem, options);
+Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const ArrietaMsOptions& options) {
+    const auto model = model_for(problem, options.reduction);
     if (!model) return model.error();
-    ArrietaReport report = report_on(*model, options);
-    if (options.text("Ms") == "free") {
+    ArrietaReport report = report_on(*model, options.profile);
+    if (!options.Ms) {
         report.constants = "Table 1, column without a limit on Ms";
         return answer(problem, *model, arrieta_free(), report, {});
     }
-    const double Ms = options.number("Ms").value_or(kDefaultMs);
+    const double Ms = *options.Ms;
     if (!(Ms >= kArrietaLowestMs && Ms <= kArrietaHighestMs))
         return Error{ErrorKind::invalid_argument, "Ms",
                      "Ms is " + text(Ms) + "; this rule has settings for 1.4 to 2, and for \"free\"."};
@@ -80,10 +77,10 @@ Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const MethodO
         report.constants = "Table 1, column Ms = " + text(Ms);
         return answer(problem, *model, *column, report, {});
     }
-    const bool printed = options.text("c3") == "printed";
+    const bool printed = options.c3 == ArrietaC3::printed;
     report.constants = "Eq. 9 at Ms = " + text(Ms) + ", with " + kCorrectedB3 + " and " +
                        (printed ? std::string("c3 as printed") : kRefittedC3);
-    const auto constants = arrieta_equation_9(Ms, printed ? ArrietaC3::printed : ArrietaC3::refitted);
+    const auto constants = arrieta_equation_9(Ms, options.c3);
     return answer(problem, *model, constants, report, {});
 }
 
@@ -104,13 +101,13 @@ std::string listed_levels() {
     return levels;
 }
 
-Expected<TunedController> tune_by_degradation(const TuningProblem& problem, const MethodOptions& options,
+Expected<TunedController> tune_by_degradation(const TuningProblem& problem, const ArrietaDegradationOptions& options,
                                               const RunControl& control) {
-    const auto model = model_for(problem, options);
+    const auto model = model_for(problem, options.reduction);
     if (!model) return model.error();
-    ArrietaReport report = report_on(*model, options);
-    const double degradation = options.number("degradation").value_or(kDefaultDegradation);
-    const auto exact = options.boolean("exact");
+    ArrietaReport report = report_on(*model, options.profile);
+    const double degradation = options.degradation;
+    const std::optional<bool>& exact = options.exact;
     const ArrietaConstants* column = arrieta_column(arrieta_degradation_levels(), degradation);
     if (column && (degradation == 0 || !exact.value_or(false))) {
         report.constants = "Table 2, column degradation = " + text(degradation);
@@ -129,74 +126,48 @@ Expected<TunedController> tune_by_degradation(const TuningProblem& problem, cons
     return tune_exactly(problem, *model, degradation, report, std::move(warnings), control);
 }
 
-OptionDescription profile_option() {
-    OptionDescription option;
-    option.name = "profile";
-    option.type = OptionType::boolean;
-    option.sentence =
-        "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.";
-    option.default_value = false;
-    return option;
+template <class T>
+void add_profile(OptionSet<T>& set) {
+    set.flag(
+        &T::profile, "profile",
+        "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.");
+    add_reduction(set, "123c, as in the source; half_rule where that does not apply.");
 }
 
-OptionDescription Ms_option() {
-    OptionDescription option;
-    option.name = "Ms";
-    option.type = OptionType::number_or_word;
-    option.sentence =
-        "Largest |S| that the loop on the model shall have, from 1.4 (robust) to 2 (fast); free: no limit, the least "
-        "combined distance from both optima (Ms is then 2 to 2.9).";
-    option.default_value = kDefaultMs;
-    option.minimum = kArrietaLowestMs;
-    option.maximum = kArrietaHighestMs;
-    option.choices = {"free"};
-    return option;
-}
-
-OptionDescription c3_option() {
-    OptionDescription option;
-    option.name = "c3";
-    option.type = OptionType::choice;
-    option.sentence =
+OptionSet<ArrietaMsOptions> Ms_options() {
+    OptionSet<ArrietaMsOptions> set;
+    set.number_or_word(&ArrietaMsOptions::Ms, "Ms",
+                       "Largest |S| that the loop on the model shall have, from 1.4 (robust) to 2 (fast); free: no "
+                       "limit, the least combined distance from both optima (Ms is then 2 to 2.9).",
+                       "free", {.minimum = kArrietaLowestMs, .maximum = kArrietaHighestMs});
+    set.choice(
+        &ArrietaMsOptions::c3, "c3",
         "Constant c3 of Eq. 9, which serves the Ms between the levels of Table 1. refitted: the quadratic through "
-        "Table "
-        "1, within 0.006 of it; printed: the source's, off by 0.014 at Ms 1.4 and 2, so that Td jumps there.";
-    option.default_value = std::string("refitted");
-    option.choices = {"refitted", "printed"};
-    return option;
+        "Table 1, within 0.006 of it; printed: the source's, off by 0.014 at Ms 1.4 and 2, so that Td jumps "
+        "there.",
+        Words<ArrietaC3>{{"refitted", ArrietaC3::refitted}, {"printed", ArrietaC3::printed}});
+    add_profile(set);
+    return set;
 }
 
-std::vector<OptionDescription> degradation_options() {
-    OptionDescription degradation;
-    degradation.name = "degradation";
-    degradation.sentence =
-        "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on Ms, "
-        "0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.";
-    degradation.default_value = kDefaultDegradation;
-    degradation.minimum = 0;
-    degradation.maximum = 1;
-    OptionDescription exact;
-    exact.name = "exact";
-    exact.type = OptionType::boolean;
-    exact.sentence =
-        "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the levels "
-        "of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. Left out: "
-        "the table at its levels, solved in between.";
-    return {degradation, exact};
+OptionSet<ArrietaDegradationOptions> degradation_options() {
+    using O = ArrietaDegradationOptions;
+    OptionSet<O> set;
+    set.number(
+        &O::degradation, "degradation",
+        "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on "
+        "Ms, 0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.",
+        {.minimum = 0, .maximum = 1});
+    set.flag(&O::exact, "exact",
+             "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the "
+             "levels of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. "
+             "Left out: the table at its levels, solved in between.");
+    add_profile(set);
+    return set;
 }
 
 constexpr const char* kFormula =
     "tau = L/T; Kp = (a1 tau^b1 + c1)/K, Ti = (a2 tau^b2 + c2) T, Td = (a3 tau^b3 + c3) T, Tf = Td/10; ";
-
-OptionDescription reduction() {
-    return reduction_option("123c, as in the source; half_rule where that does not apply.");
-}
-
-MethodVariant variant(const std::string& name, const std::string& option, OptionValue value) {
-    MethodVariant row{name, {}};
-    row.options.set(option, std::move(value));
-    return row;
-}
 
 }  // namespace
 
@@ -211,9 +182,10 @@ TuningMethod arrieta_ms_method() {
     method.source = std::string(kSource) + "Eqs. 7-9, Table 1";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, Ms from 1.4 to 2";
-    method.options = {Ms_option(), c3_option(), profile_option(), reduction()};
-    method.variants = {variant("Ms 2", "Ms", 2.0), variant("Ms 1.6", "Ms", 1.6), variant("Ms 1.4", "Ms", 1.4)};
-    method.tune = tune_by_Ms;
+    const OptionSet<ArrietaMsOptions> options = Ms_options();
+    for (const double Ms : {2.0, 1.6, 1.4})
+        method.variants.push_back({"Ms " + text(Ms), options.given_for({.Ms = Ms}, {.Ms = {}})});
+    method.serve(options, tune_by_Ms);
     return method;
 }
 
@@ -228,12 +200,12 @@ TuningMethod arrieta_degradation_method() {
     method.source = std::string(kSource) + "Eqs. 5-11, Table 2";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, degradation up to 0.55";
-    method.options = degradation_options();
-    method.options.push_back(profile_option());
-    method.options.push_back(reduction());
-    for (const ArrietaLevel& column : arrieta_degradation_levels())
-        method.variants.push_back(variant("degradation " + text(column.level), "degradation", column.level));
-    method.tune = tune_by_degradation;
+    const OptionSet<ArrietaDegradationOptions> options = degradation_options();
+    constexpr double kNoLevel = -1;  // every variant states its level, the default too
+    for (const auto& [level, constants] : arrieta_degradation_levels())
+        method.variants.push_back(
+            {"degradation " + text(level), options.given_for({.degradation = level}, {.degradation = kNoLevel})});
+    method.serve(options, tune_by_degradation);
     return method;
 }
 

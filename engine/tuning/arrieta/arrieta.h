@@ -1,9 +1,24 @@
 // Servo/regulation rules: one PID for set points and loads, by robustness or by allowed degradation.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/arrieta/arrieta_rule.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
+
+struct ArrietaMsOptions {
+    std::optional<double> Ms = 1.6;  ///< on the model; empty ("free"): no limit
+    ArrietaC3 c3 = ArrietaC3::refitted;
+    bool profile = false;  ///< also return what the rule offers on the model
+    ReductionOptions reduction = {};
+};
+
+struct ArrietaDegradationOptions {
+    double degradation = 0.35;
+    std::optional<bool> exact = {};  ///< solve on the model; false: the table alone; empty: the table at its levels
+    bool profile = false;
+    ReductionOptions reduction = {};
+};
 
 /// Option Ms: "free" (no limit: the least J_rd) or a number from 1.4 to 2, which Ms on the model then is about. Table 1
 /// at its levels, Eq. 9 in between, with b3 corrected and c3 refitted, or as printed with option c3 = "printed" (see

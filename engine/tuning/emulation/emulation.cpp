@@ -62,7 +62,7 @@ Expected<std::vector<Trajectory>> trajectories_of(Problem& problem, const RunCon
     return trajectories;
 }
 
-Expected<TunedController> tune(const TuningProblem& plant, const MethodOptions& options, const RunControl& control) {
+Expected<TunedController> tune(const TuningProblem& plant, const EmulationOptions& options, const RunControl& control) {
     auto stated = state_problem(plant, options);
     if (!stated) return stated.error();
     Problem& problem = *stated;
@@ -91,7 +91,7 @@ Expected<TunedController> tune(const TuningProblem& plant, const MethodOptions& 
 
 TuningMethod emulation_method() {
     TuningMethod method;
-    method.id = "emulation";
+    method.id = kEmulation;
     method.title = "Emulation of a nonlinear controller";
     method.formula =
         "min over Kp, Ti, Td of the mean over scenarios of int_0^horizon wy (y_nl - y)^2 + wu (u_nl - u)^2 dt, with "
@@ -104,9 +104,8 @@ TuningMethod emulation_method() {
     method.validity =
         "operating conditions that a PID can stabilise; where much of the nonlinear controller's action is left the "
         "answer warns (Remark 7)";
-    method.options = described_options();
     method.all_if_nonlinear = true;
-    method.tune = tune;
+    method.serve(described_options(), tune);
     return method;
 }
 

@@ -16,5 +16,6 @@ namespace tunewright {
 /// no_feasible_controller where the first level finds nothing, or no PID within the bounds reaches the horizon;
 /// unsupported where the nonlinear controller itself does not; cancelled.
 TuningMethod emulation_method();
+inline constexpr const char* kEmulation = "emulation";  ///< its id
 
 }  // namespace tunewright

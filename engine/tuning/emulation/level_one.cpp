@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "engine/number_text.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
+#include "engine/tuning/emulation/emulation.h"
 #include "engine/tuning/emulation/step_model.h"
 #include "engine/tuning/emulation/target.h"
+#include "engine/tuning/model_based/imc.h"
+#include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright::emulation {
 namespace {
@@ -25,13 +29,13 @@ public:
     std::vector<LevelOneRow> rows() {
         for (const std::string& method : problem_.level_one.methods) {
             if (control_.stop.stop_requested()) break;
-            if (method == "imc") {
+            if (method == kImc) {
                 by_step_test();
-                by_linear_model(method, imc_options("maclaurin"));
-            } else if (method == "ziegler_nichols_ultimate") {
+                by_linear_model(method, imc(ImcExpansion::maclaurin));
+            } else if (method == kZieglerNicholsUltimate) {
                 by_oscillation();
             } else {
-                by_linear_model(method, {});
+                by_linear_model(method, by_its_defaults(method));
             }
         }
         if (std::ranges::none_of(rows_, [](const LevelOneRow& row) { return row.controller.has_value(); }))
@@ -49,49 +53,65 @@ private:
         return rows_.back();
     }
 
-    MethodOptions imc_options(const std::string& expansion) const {
-        MethodOptions options;
-        options.set("lambda", problem_.level_one.lambda);
-        options.set("filter_order", 1.0);
-        options.set("expansion", problem_.with_derivative ? expansion : std::string("maclaurin"));
-        return options;
+    using Rule = std::function<Expected<TunedController>(const TuningProblem&)>;
+
+    Rule imc(ImcExpansion expansion) const {
+        ImcOptions options;
+        options.lambda = problem_.level_one.lambda;
+        options.filter_order = 1;
+        // Of a PID as PI the derivative is left out: the first two terms of its series.
+        options.expansion = problem_.with_derivative ? expansion : ImcExpansion::maclaurin;
+        return [options](const TuningProblem& plant) { return tune_imc(plant, options); };
     }
 
-    /// The method's settings on this plant. Of a PID as PI the derivative is left out: the first two terms of its
-    /// series.
-    void settle(LevelOneRow& row, const Plant& plant, const LinearPlant& linear, MethodOptions options) const {
-        const TuningMethod& method = *find_method(row.method);
-        const std::string wanted = problem_.with_derivative ? "PID" : "PI";
-        const auto choice = std::ranges::find(method.options, "controller", &OptionDescription::name);
-        if (choice != method.options.end()) {
-            if (const auto fault = misfit(method.options, "controller", wanted)) {
-                row.error = *fault;
-                return;
+    Rule ziegler_nichols(const UltimateOptions& point) const {
+        ZieglerNicholsUltimateOptions options;
+        options.controller = wanted();
+        options.point = point;
+        return [options](const TuningProblem& plant) { return tune_ziegler_nichols_ultimate(plant, options); };
+    }
+
+    /// Any method, for the controller wanted where it lets that be chosen.
+    Rule by_its_defaults(const std::string& id) const {
+        return [this, &method = *find_method(id)](const TuningProblem& plant) -> Expected<TunedController> {
+            MethodOptions options;
+            const std::string controller = wanted_word();
+            if (named(method.options, kControllerOption) != nullptr) {
+                if (const auto fault = misfit(method.options, kControllerOption, controller))
+                    return Error{ErrorKind::unsupported, kControllerOption, *fault};
+                options.set(kControllerOption, controller);
             }
-            options.set("controller", wanted);
-        }
-        const auto tuned = method.tune({plant, linear, std::nullopt, std::nullopt}, options, control_);
+            return method.tune(plant, options, control_);
+        };
+    }
+
+    ControllerKind wanted() const { return problem_.with_derivative ? ControllerKind::PID : ControllerKind::PI; }
+    std::string wanted_word() const { return word_of(words_of({wanted()}), wanted()); }
+
+    /// The settings that the rule gives on this plant.
+    void settle(LevelOneRow& row, const Plant& plant, const LinearPlant& linear, const Rule& rule) const {
+        const auto tuned = rule({plant, linear, std::nullopt, std::nullopt});
         if (!tuned) {
             row.error = tuned.error().message;
             return;
         }
         if (tuned->reduced_model) row.model = tuned->reduced_model;
         Pid pid = tuned->controller;
-        if (tuned->nonlinear_integral || (!problem_.with_derivative && pid.Td > 0 && row.method != "imc")) {
-            row.error = method.id + " has no linear " + wanted + " controller.";
+        if (tuned->nonlinear_integral || (!problem_.with_derivative && pid.Td > 0 && row.method != kImc)) {
+            row.error = row.method + " has no linear " + wanted_word() + " controller.";
             return;
         }
         if (!problem_.with_derivative) pid = {.Kp = pid.Kp, .Ti = pid.Ti};
         row.controller = controller_at(problem_, {pid.Kp, pid.Ti, pid.Td, problem_.Tf});
     }
 
-    void by_linear_model(const std::string& method, const MethodOptions& options) {
+    void by_linear_model(const std::string& method, const Rule& rule) {
         LevelOneRow& row = add(method, "linear", "linearised model");
-        settle(row, problem_.system->linearised(), *problem_.linear, options);
+        settle(row, problem_.system->linearised(), *problem_.linear, rule);
     }
 
     void by_step_test() {
-        LevelOneRow& row = add("imc", "step", "step test");
+        LevelOneRow& row = add(kImc, "step", "step test");
         const auto test = simulate_step_test(*problem_.system, problem_.level_one.test_step, control_);
         if (!test) {
             row.error = test.error().message;
@@ -108,12 +128,12 @@ private:
             row.error = linear.error().message;
             return;
         }
-        settle(row, *model, *linear, imc_options("pade"));
+        settle(row, *model, *linear, imc(ImcExpansion::pade));
     }
 
     /// The relay test; where the plant does not oscillate under it, the linearisation's ultimate point.
     void by_oscillation() {
-        LevelOneRow& row = add("ziegler_nichols_ultimate", "relay", "relay test");
+        LevelOneRow& row = add(kZieglerNicholsUltimate, "relay", "relay test");
         const double amplitude = problem_.level_one.relay_amplitude;
         const double swing = amplitude * gain_size(*problem_.linear, plant_time(*problem_.linear));
         const double hysteresis =
@@ -121,7 +141,7 @@ private:
         const auto test = simulate_relay_test(*problem_.system, amplitude, hysteresis, control_);
         if (!test) {
             row.error = test.error().message;
-            by_linear_model("ziegler_nichols_ultimate", {});
+            by_linear_model(kZieglerNicholsUltimate, ziegler_nichols({}));
             return;
         }
         // Of its own the plant swings beyond the hysteresis; where it does not, the hysteresis sets the period.
@@ -129,13 +149,13 @@ private:
         if (hysteresis_share > kMaxHysteresis) {
             row.error =
                 "The plant has no oscillation of its own under a relay: y turns as soon as the relay has switched.";
-            by_linear_model("ziegler_nichols_ultimate", {});
+            by_linear_model(kZieglerNicholsUltimate, ziegler_nichols({}));
             return;
         }
-        MethodOptions options;
-        options.set("Ku", test->reversed ? -test->Ku : test->Ku);
-        options.set("Pu", test->Pu);
-        settle(row, problem_.system->linearised(), *problem_.linear, options);
+        UltimateOptions point;
+        point.Ku = test->reversed ? -test->Ku : test->Ku;
+        point.Pu = test->Pu;
+        settle(row, problem_.system->linearised(), *problem_.linear, ziegler_nichols(point));
     }
 
     /// Where no rule serves, as on many unstable plants: what the nonlinear controller itself makes of y and y', with
@@ -144,7 +164,7 @@ private:
         LieDerivatives at;
         const int r = problem_.relative_degree;
         if (!lie_derivatives(*problem_.system, r, problem_.system->x_steady(), at) || at.of_g == 0) return;
-        LevelOneRow& row = add("emulation", "linear", "the nonlinear controller's own gains");
+        LevelOneRow& row = add(kEmulation, "linear", "the nonlinear controller's own gains");
         const auto& beta = problem_.target.beta;
         row.controller = controller_at(problem_, {1 / (beta[static_cast<std::size_t>(r)] * at.of_g),
                                                   kSlowIntegral * beta[1], r > 1 ? beta[1] : 0, problem_.Tf});

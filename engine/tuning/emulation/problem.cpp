@@ -5,8 +5,10 @@
 
 #include "engine/number_text.h"
 #include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/tuning/emulation/emulation.h"
 #include "engine/tuning/emulation/target.h"
-#include "engine/tuning/method/rule.h"
+#include "engine/tuning/model_based/imc.h"
+#include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright::emulation {
 namespace {
@@ -15,7 +17,6 @@ constexpr double kShareOfInput = 0.05;   // of the nominal input, or of its rang
 constexpr double kTargetTimes = 8;       // the default horizon, in the target's slowest time
 constexpr double kMaxTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
 constexpr double kFilterShare = 0.1;     // the default Tf over the target's time
-constexpr NumberRange kAlpha{0.2, 5};    // the default of Eq. 3
 constexpr double kShareOfTest = 0.4;     // of that step: a simulated test has no noise to stand out of
 constexpr int kMinIntervals = 800, kMaxIntervals = 6400;
 constexpr double kIntervalShare = 0.04;  // of the fastest time constant
@@ -31,15 +32,14 @@ std::string state_names(const NonlinearSystem& system) {
 }
 
 Expected<Scenario> scenario_at(const std::string& path, const std::shared_ptr<const NonlinearSystem>& nominal,
-                               const MethodOptions& options) {
+                               const ScenarioOptions& options) {
     Scenario scenario;
     scenario.system = nominal;
-    scenario.setpoint_step = options.number(path + "/setpoint_step").value_or(0);
+    scenario.setpoint_step = options.setpoint_step;
     std::vector<NamedValue> changed;
-    for (const std::string& name : options.names(path + "/parameters")) {
-        changed.push_back({name, *options.number(path + "/parameters/" + name)});
-        scenario.parameters[name] = changed.back().value;
-    }
+    scenario.parameters = options.parameters;
+    scenario.initial = options.initial;
+    for (const auto& [name, value] : options.parameters) changed.push_back({name, value});
     if (!changed.empty()) {
         auto system = nominal->with(changed);
         if (!system) {
@@ -50,15 +50,14 @@ Expected<Scenario> scenario_at(const std::string& path, const std::shared_ptr<co
     }
     const auto& states = nominal->description().states;
     const auto steady = scenario.system->x_steady();
-    for (const std::string& name : options.names(path + "/initial")) {
-        const auto at = std::ranges::find(states, name, &NamedValue::name);
+    for (const auto& [name, value] : options.initial) {
+        const auto at =
+            std::ranges::find_if(states, [&id = name](const NamedValue& state) { return state.name == id; });
         if (at == states.end())
             return wrong(path + "/initial/" + name,
                          name + " is no state of the plant; its states are " + state_names(*nominal) + ".");
         if (scenario.x0.empty()) scenario.x0.assign(steady.begin(), steady.end());
-        const double value = *options.number(path + "/initial/" + name);
         scenario.x0[static_cast<std::size_t>(at - states.begin())] = value;
-        scenario.initial[name] = value;
     }
     if (scenario.setpoint_step == 0 && scenario.x0.empty())
         return wrong(
@@ -76,10 +75,10 @@ double modest_input(const NonlinearSystem& system, double gain) {
 }
 
 Expected<std::vector<Scenario>> chosen_scenarios(Problem& problem, double modest, double gain,
-                                                 const MethodOptions& options) {
+                                                 const std::vector<ScenarioOptions>& given) {
     std::vector<Scenario> scenarios;
-    for (std::size_t i = 0; i < options.size("scenarios"); ++i) {
-        auto scenario = scenario_at("scenarios/" + std::to_string(i), problem.system, options);
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        auto scenario = scenario_at("scenarios/" + std::to_string(i), problem.system, given[i]);
         if (!scenario) return scenario.error();
         scenarios.push_back(std::move(*scenario));
     }
@@ -91,48 +90,53 @@ Expected<std::vector<Scenario>> chosen_scenarios(Problem& problem, double modest
     return std::vector<Scenario>{step};
 }
 
-Expected<LevelOneOptions> chosen_level_one(const Problem& problem, double modest, const MethodOptions& options) {
+Expected<LevelOneOptions> chosen_level_one(const Problem& problem, double modest, const BoundsFromOptions& options) {
     LevelOneOptions level;
-    for (std::size_t i = 0; i < options.size("bounds_from/methods"); ++i) {
-        const std::string path = "bounds_from/methods/" + std::to_string(i);
-        level.methods.push_back(options.text(path).value_or(""));
-        if (level.methods.back() == "emulation" || find_method(level.methods.back()) == nullptr)
-            return wrong(path, "bounds_from names the method " + level.methods.back() +
-                                   ", which is none of the first level. Give ids of GET /v1/methods, such as imc, simc "
-                                   "or ziegler_nichols_ultimate.");
+    level.methods = options.methods;
+    for (std::size_t i = 0; i < level.methods.size(); ++i) {
+        const std::string& method = level.methods[i];
+        if (method == kEmulation || find_method(method) == nullptr)
+            return wrong("bounds_from/methods/" + std::to_string(i),
+                         "bounds_from names the method " + method +
+                             ", which is none of the first level. Give ids of GET /v1/methods, such as imc, simc "
+                             "or ziegler_nichols_ultimate.");
     }
-    if (level.methods.empty()) level.methods = {"imc", "ziegler_nichols_ultimate"};
-    level.alpha = options.range("bounds_from/alpha").value_or(kAlpha);
+    if (level.methods.empty()) level.methods = {kImc, kZieglerNicholsUltimate};
+    level.alpha = options.alpha;
     if (!(level.alpha.low < 1 && level.alpha.high > 1))
         return wrong("bounds_from/alpha", "alpha is [" + text(level.alpha.low) + ", " + text(level.alpha.high) +
                                               "]; the first must be below 1, the second above 1.");
-    level.lambda = options.number("bounds_from/lambda")
-                       .value_or(problem.relative_degree == 2 ? std::sqrt(problem.target.beta[2])
-                                                              : target_time(problem.target) / problem.relative_degree);
-    level.test_step = options.number("bounds_from/test_step").value_or(kShareOfTest * modest);
+    level.lambda =
+        options.lambda.value_or(problem.relative_degree == 2 ? std::sqrt(problem.target.beta[2])
+                                                             : target_time(problem.target) / problem.relative_degree);
+    level.test_step = options.test_step.value_or(kShareOfTest * modest);
     if (level.test_step == 0)
         return wrong("bounds_from/test_step", "test_step is 0; a test without a step shows nothing.");
-    level.relay_amplitude = options.number("bounds_from/relay_amplitude").value_or(modest);
-    level.relay_hysteresis = options.number("bounds_from/relay_hysteresis");
+    level.relay_amplitude = options.relay_amplitude.value_or(modest);
+    level.relay_hysteresis = options.relay_hysteresis;
     return level;
 }
 
-void choose_bounds(Problem& problem, const MethodOptions& options) {
-    for (const char* name : {"Kp", "Ti", "Td"})
-        if (const auto range = options.range(std::string("bounds/") + name)) problem.bounds[name] = *range;
+void choose_bounds(Problem& problem, const EmulationOptions& options) {
+    const BoundOptions& given = options.bounds;
+    for (const auto& [name, range] : {std::pair("Kp", given.Kp), {"Ti", given.Ti}, {"Td", given.Td}})
+        if (range) problem.bounds[name] = *range;
     if (!problem.with_derivative) {
-        if (problem.bounds.erase("Td") + options.has("Tf") + options.range("Tf").has_value() > 0)
+        if (problem.bounds.erase("Td") + options.Tf.has_value() > 0)
             problem.warnings.push_back({"not-used", "A PI controller has no derivative part: Td and Tf are not used."});
         return;
     }
-    if (const auto range = options.range("Tf")) problem.bounds["Tf"] = *range;
-    problem.Tf = problem.free_Tf() ? std::sqrt(problem.bounds["Tf"].low * problem.bounds["Tf"].high)
-                                   : options.number("Tf").value_or(kFilterShare * target_time(problem.target));
+    const auto* range = options.Tf ? std::get_if<NumberRange>(&*options.Tf) : nullptr;
+    const auto* fixed = options.Tf ? std::get_if<double>(&*options.Tf) : nullptr;
+    if (range != nullptr) problem.bounds["Tf"] = *range;
+    problem.Tf = problem.free_Tf()  ? std::sqrt(problem.bounds["Tf"].low * problem.bounds["Tf"].high)
+                 : fixed != nullptr ? *fixed
+                                    : kFilterShare * target_time(problem.target);
 }
 
-std::optional<Error> choose_horizon(Problem& problem, const MethodOptions& options) {
+std::optional<Error> choose_horizon(Problem& problem, const EmulationOptions& options) {
     const double slowest = slowest_time(problem.target), L = problem.system->dead_time();
-    problem.horizon = options.number("horizon").value_or(kTargetTimes * slowest + L);
+    problem.horizon = options.horizon.value_or(kTargetTimes * slowest + L);
     const double longest = kMaxTargetTimes * slowest + L;
     if (problem.horizon <= longest) return std::nullopt;
     return wrong("horizon", "horizon is " + text(problem.horizon) + ", so long that the response, over after some " +
@@ -140,10 +144,9 @@ std::optional<Error> choose_horizon(Problem& problem, const MethodOptions& optio
                                 text(longest) + " at most.");
 }
 
-std::optional<Error> choose_weights(Problem& problem, double gain, const MethodOptions& options) {
-    const auto wy = options.number("weights/wy"), wu = options.number("weights/wu");
-    problem.wu = wu.value_or(1);
-    problem.wy = problem.remark6 ? 0 : wy.value_or((problem.wu > 0 ? problem.wu : 1) / (gain * gain));
+std::optional<Error> choose_weights(Problem& problem, double gain, const WeightOptions& options) {
+    problem.wu = options.wu;
+    problem.wy = problem.remark6 ? 0 : options.wy.value_or((problem.wu > 0 ? problem.wu : 1) / (gain * gain));
     if (problem.remark6 && !(problem.wu > 0))
         return wrong("weights/wu", "wu is 0, and remark6 compares u alone. Give wu above 0, or formulation full.");
     if (problem.wu == 0 && problem.wy == 0)
@@ -169,7 +172,7 @@ double gain_size(const LinearPlant& plant, double time) {
     return std::isfinite(gain) && gain > 0 ? gain : 1;
 }
 
-Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions& options) {
+Expected<Problem> state_problem(const TuningProblem& plant, const EmulationOptions& options) {
     Problem problem;
     problem.linear = &plant.linear;
     problem.system = {std::shared_ptr<const void>(), plant.nonlinear};  // lives as long as `plant`
@@ -182,22 +185,22 @@ Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions&
     if (!r) return r.error();
     problem.relative_degree = *r;
     problem.zero_dynamics = zero_dynamics(*problem.system);
-    const auto target = chosen_target(plant.linear, *r, options);
+    const auto target = chosen_target(plant.linear, *r, options.target);
     if (!target) return target.error();
     problem.target = *target;
-    problem.with_derivative = chosen_controller(options) == "PID";
-    problem.error_derivative = options.text("derivative_on").value_or("measurement") == "error";
-    problem.remark6 = options.text("formulation").value_or("full") == "remark6";
+    problem.with_derivative = options.controller == ControllerKind::PID;
+    problem.error_derivative = options.derivative_on == DerivativeOn::error;
+    problem.remark6 = options.formulation == Formulation::remark6;
     const double gain = gain_size(plant.linear, plant_time(plant.linear));
     const double modest = modest_input(*problem.system, gain);
-    auto scenarios = chosen_scenarios(problem, modest, gain, options);
+    auto scenarios = chosen_scenarios(problem, modest, gain, options.scenarios);
     if (!scenarios) return scenarios.error();
     problem.scenarios = std::move(*scenarios);
     if (const auto error = choose_horizon(problem, options)) return *error;
-    if (const auto error = choose_weights(problem, gain, options)) return *error;
+    if (const auto error = choose_weights(problem, gain, options.weights)) return *error;
     choose_bounds(problem, options);
     problem.intervals = chosen_intervals(problem);
-    auto level_one = chosen_level_one(problem, modest, options);
+    auto level_one = chosen_level_one(problem, modest, options.bounds_from);
     if (!level_one) return level_one.error();
     problem.level_one = std::move(*level_one);
     return problem;

@@ -9,7 +9,7 @@
 
 #include "engine/plant/nonlinear/lie_derivatives.h"
 #include "engine/simulation/nonlinear/linearising_response.h"
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/emulation/options.h"
 
 namespace tunewright::emulation {
 
@@ -24,12 +24,12 @@ struct Scenario {
 
 /// Where the first level's rules and tests come from.
 struct LevelOneOptions {
-    std::vector<std::string> methods;  ///< ids of the registry
-    NumberRange alpha;                 ///< of Eq. 3, on magnitudes
-    double lambda = 0;                 ///< of imc
-    double test_step = 0;              ///< of u
-    double relay_amplitude = 0;        ///< of u
-    std::optional<double> relay_hysteresis;
+    std::vector<std::string> methods = {};  ///< ids of the registry
+    NumberRange alpha;                      ///< of Eq. 3, on magnitudes
+    double lambda = 0;                      ///< of imc
+    double test_step = 0;                   ///< of u
+    double relay_amplitude = 0;             ///< of u
+    std::optional<double> relay_hysteresis = {};
 };
 
 struct Problem {
@@ -56,7 +56,7 @@ struct Problem {
 
 /// From the options; what they leave out comes from the linearisation (docs/methods.md). Errors: invalid_argument with
 /// the option as `where`; those of the relative degree with `where` = "plant/...".
-Expected<Problem> state_problem(const TuningProblem& plant, const MethodOptions& options);
+Expected<Problem> state_problem(const TuningProblem& plant, const EmulationOptions& options);
 
 /// Magnitude of the linearisation's static gain; of an integrating plant the gain at frequency 1/time.
 double gain_size(const LinearPlant& plant, double time);

@@ -35,16 +35,12 @@ bool paired(const std::vector<std::complex<double>>& poles) {
     });
 }
 
-Expected<TargetResponse> of_given_poles(int r, const MethodOptions& options) {
-    std::vector<std::complex<double>> poles;
-    for (std::size_t i = 0; i < options.size("target/poles"); ++i) {
-        const std::string path = "target/poles/" + std::to_string(i);
-        const auto real = options.number(path), re = options.number(path + "/0"), im = options.number(path + "/1");
-        poles.emplace_back(real ? *real : re.value_or(0), real ? 0 : im.value_or(0));
-        if (!(poles.back().real() < 0))
-            return wrong(path, "A pole of the target has the real part " + text(poles.back().real()) +
-                                   "; it must be below 0, for a target that settles.");
-    }
+Expected<TargetResponse> of_given_poles(int r, const std::vector<std::complex<double>>& poles) {
+    for (std::size_t i = 0; i < poles.size(); ++i)
+        if (!(poles[i].real() < 0))
+            return wrong("target/poles/" + std::to_string(i), "A pole of the target has the real part " +
+                                                                  text(poles[i].real()) +
+                                                                  "; it must be below 0, for a target that settles.");
     if (static_cast<int>(poles.size()) != r)
         return unsuitable("target/poles", "A target of " + std::to_string(poles.size()) + " poles",
                           static_cast<int>(poles.size()), r);
@@ -64,10 +60,9 @@ TargetResponse by_default(const LinearPlant& plant, int r) {
 
 }  // namespace
 
-Expected<TargetResponse> chosen_target(const LinearPlant& plant, int r, const MethodOptions& options) {
-    const auto gamma = options.number("target/gamma"), tau_cl = options.number("target/tau_cl"),
-               xi = options.number("target/xi");
-    const bool poles = options.size("target/poles") > 0;
+Expected<TargetResponse> chosen_target(const LinearPlant& plant, int r, const TargetOptions& options) {
+    const auto &gamma = options.gamma, &tau_cl = options.tau_cl, &xi = options.xi;
+    const bool poles = !options.poles.empty();
     if (gamma.has_value() + (tau_cl || xi) + poles > 1)
         return wrong("target", "target must be one of gamma, tau_cl with xi, and poles; more than one is given.");
     if (gamma && r != 1) return unsuitable("target/gamma", "gamma", 1, r);
@@ -75,7 +70,7 @@ Expected<TargetResponse> chosen_target(const LinearPlant& plant, int r, const Me
     if (xi && !tau_cl) return wrong("target/tau_cl", "xi is given without tau_cl; give both.");
     if (tau_cl && r != 2) return unsuitable("target/tau_cl", "tau_cl", 2, r);
     if (tau_cl) return second_order_target(*tau_cl, xi.value_or(1));
-    if (poles) return of_given_poles(r, options);
+    if (poles) return of_given_poles(r, options.poles);
     return by_default(plant, r);
 }
 

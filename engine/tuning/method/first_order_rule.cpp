@@ -34,11 +34,11 @@ std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule
     return std::nullopt;
 }
 
-Expected<TunedController> tune_first_order(const TuningProblem& problem, const MethodOptions& options,
+Expected<TunedController> tune_first_order(const TuningProblem& problem, const FirstOrderOptions& options,
                                            const FirstOrderRule& rule,
                                            const std::function<Pid(const ReducedModel&)>& settings) {
-    const auto model =
-        rule_model(problem, options, {.preferred = ReductionMethod::tangent, .tangent_time = rule.tangent_time});
+    const auto model = rule_model(problem, options.reduction,
+                                  {.preferred = ReductionMethod::tangent, .tangent_time = rule.tangent_time});
     if (!model) return model.error();
     if (const auto error = unfit(*model, rule)) return *error;
     Pid controller = settings(*model);
@@ -47,14 +47,15 @@ Expected<TunedController> tune_first_order(const TuningProblem& problem, const M
                           rule.name + " gives a negative integral time for L/T = " + text(model->L / model->T1) +
                               ", far outside its range.",
                           "Use simc, amigo or robust.");
-    controller.filter = chosen_filter(options, FilterType::derivative, controller.Td);
+    controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
     return rule_answer(problem, *model, controller, range_warnings(*model, rule));
 }
 
-std::vector<OptionDescription> with_first_order_options(std::vector<OptionDescription> own) {
-    own.push_back(reduction_option("tangent, half_rule where the step response has no tangent."));
-    own.push_back(filter_option("of the derivative part, Td s/(1 + s Tf); the source has none."));
-    return own;
+OptionSet<FirstOrderOptions> first_order_options() {
+    OptionSet<FirstOrderOptions> set;
+    add_reduction(set, "tangent, half_rule where the step response has no tangent.");
+    add_filter(set, "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    return set;
 }
 
 }  // namespace tunewright

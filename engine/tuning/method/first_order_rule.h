@@ -18,6 +18,14 @@ struct FirstOrderRule {
     TangentTime tangent_time = TangentTime::at_63_percent;  ///< T of the tangent that plants of other forms get
 };
 
+/// Options that every such rule has.
+struct FirstOrderOptions {
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+OptionSet<FirstOrderOptions> first_order_options();
+
 /// What such a rule refuses: L = 0, T = 0 and, without an integrating form, an integrator.
 std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule);
 
@@ -25,11 +33,8 @@ std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule
 /// `filter`. Warns "outside-validity" with L/T beyond the rule's range.
 /// Errors: those of reduce(); unsupported for L = 0, T = 0, a negative Ti and, without an integrating form, for
 /// integrating plants.
-Expected<TunedController> tune_first_order(const TuningProblem& problem, const MethodOptions& options,
+Expected<TunedController> tune_first_order(const TuningProblem& problem, const FirstOrderOptions& options,
                                            const FirstOrderRule& rule,
                                            const std::function<Pid(const ReducedModel&)>& settings);
-
-/// Options `reduction` and `filter` as every such rule has them.
-std::vector<OptionDescription> with_first_order_options(std::vector<OptionDescription> own);
 
 }  // namespace tunewright

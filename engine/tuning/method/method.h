@@ -1,8 +1,11 @@
 // What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "engine/controller/pid.h"
@@ -14,6 +17,7 @@
 #include "engine/progress.h"
 #include "engine/tuning/arrieta/arrieta_report.h"
 #include "engine/tuning/emulation/emulation_report.h"
+#include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"
 #include "engine/tuning/rimc/rimc_report.h"
 #include "engine/warning.h"
@@ -80,10 +84,37 @@ struct TuningMethod {
     std::vector<MethodVariant> variants = {};
     bool holds_family = false;      ///< limits hold on all of TuningProblem::family
     bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
-    Expected<TunedController> (*tune)(const TuningProblem&, const MethodOptions&, const RunControl&) = nullptr;
-    /// For a plant known by measured points of its frequency response; null: the method needs a model.
-    Expected<TunedController> (*tune_on_points)(const MeasuredPlant&, const MethodOptions&,
-                                                const RunControl&) = nullptr;
+    std::function<Expected<TunedController>(const TuningProblem&, const MethodOptions&, const RunControl&)> tune;
+    /// For a plant known by measured points of its frequency response; empty: the method needs a model.
+    std::function<Expected<TunedController>(const MeasuredPlant&, const MethodOptions&, const RunControl&)>
+        tune_on_points = {};
+    std::vector<OptionDescription> options_on_points = {};  ///< with other defaults; empty: the same options
+
+    /// The options and the function that takes them as a struct: `solve(problem, options)`, or with the RunControl
+    /// behind them.
+    template <class Options, class Solve>
+    void serve(const OptionSet<Options>& set, Solve solve) {
+        options = set.descriptions();
+        tune = [set, solve](const TuningProblem& problem, const MethodOptions& given, const RunControl& control) {
+            return solved(solve, problem, set.read(given), control);
+        };
+    }
+    template <class Options, class Solve>
+    void serve_on_points(const OptionSet<Options>& set, Solve solve) {
+        options_on_points = set.descriptions();
+        tune_on_points = [set, solve](const MeasuredPlant& plant, const MethodOptions& given,
+                                      const RunControl& control) { return solve(plant, set.read(given), control); };
+    }
+
+private:
+    template <class Solve, class Options>
+    static Expected<TunedController> solved(const Solve& solve, const TuningProblem& problem, const Options& options,
+                                            const RunControl& control) {
+        if constexpr (std::is_invocable_v<Solve, const TuningProblem&, const Options&>)
+            return solve(problem, options);
+        else
+            return solve(problem, options, control);
+    }
 };
 
 /// Every method, in the order in which they are listed. The one place that names them all.

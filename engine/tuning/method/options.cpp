@@ -94,14 +94,27 @@ std::optional<std::string> misfit(const std::vector<OptionDescription>& options,
                                   const OptionValue& value) {
     const std::size_t slash = path.find('/');
     const std::string name = path.substr(0, slash);
-    const auto option = std::ranges::find(options, name, &OptionDescription::name);
-    if (option == options.end()) {
+    const OptionDescription* option = named(options, name);
+    if (option == nullptr) {
         std::vector<std::string> names;
         for (const OptionDescription& known : options) names.push_back(known.name);
         return name + " is none of " + listed(names) + ".";
     }
     if (slash == std::string::npos) return value_misfit(*option, value);
     return part_misfit(*option, path.substr(slash + 1), value);
+}
+
+const OptionDescription* named(const std::vector<OptionDescription>& options, const std::string& name) {
+    const auto at = std::ranges::find(options, name, &OptionDescription::name);
+    return at == options.end() ? nullptr : &*at;
+}
+
+MethodOptions with_defaults(const std::vector<OptionDescription>& options, const MethodOptions& given) {
+    MethodOptions all;
+    for (const OptionDescription& option : options)
+        if (option.default_value) all.set(option.name, *option.default_value);
+    for (const auto& [path, value] : given.values()) all.set(path, value);
+    return all;
 }
 
 std::optional<double> MethodOptions::number(const std::string& path) const { return find<double>(values_, path); }

@@ -65,6 +65,12 @@ private:
     std::map<std::string, OptionValue> values_;
 };
 
+/// The option of this name; null if there is none.
+const OptionDescription* named(const std::vector<OptionDescription>& options, const std::string& name);
+
+/// The given values over the defaults of `options`.
+MethodOptions with_defaults(const std::vector<OptionDescription>& options, const MethodOptions& given);
+
 /// What in the value at `path` ("Ms", "filter/Tf") contradicts the description, as a sentence; empty if it suits.
 std::optional<std::string> misfit(const std::vector<OptionDescription>& options, const std::string& path,
                                   const OptionValue& value);

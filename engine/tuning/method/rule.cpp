@@ -8,8 +8,6 @@
 namespace tunewright {
 namespace {
 
-constexpr double kTfOverTd = 0.1;  // N = 10
-
 bool given_as_model(const Plant& plant) {
     return std::holds_alternative<Fopdt>(plant) || std::holds_alternative<Sopdt>(plant) ||
            std::holds_alternative<Ipdt>(plant);
@@ -17,99 +15,56 @@ bool given_as_model(const Plant& plant) {
 
 }  // namespace
 
-OptionDescription controller_option(std::vector<std::string> choices) {
-    const bool has_PID = std::ranges::find(choices, "PID") != choices.end();
-    OptionDescription option;
-    option.name = "controller";
-    option.type = OptionType::choice;
-    option.sentence = "The controller that is tuned.";
-    option.default_value = has_PID ? std::string("PID") : choices.front();
-    option.choices = std::move(choices);
-    return option;
+Words<ControllerKind> words_of(const std::vector<ControllerKind>& kinds) {
+    Words<ControllerKind> words;
+    for (const ControllerKind kind : kinds)
+        words.emplace_back(kind == ControllerKind::P ? "P" : kind == ControllerKind::PI ? "PI" : "PID", kind);
+    return words;
 }
 
-OptionDescription reduction_option(const std::string& automatic) {
-    OptionDescription method;
-    method.name = "method";
-    method.type = OptionType::choice;
-    method.sentence =
-        "half_rule: Skogestad's half rule, from poles and zeros; tangent: steepest tangent of the step response and "
-        "its 63 % time "
-        "(asymptote of an integrating plant); 123c: Alfaro's two points, 25 % and 75 % of the step response; min_ise, "
-        "min_iae, min_itae: the least integral of the difference of the step responses, "
-        "squared, absolute, or absolute times time. auto: " +
-        automatic;
-    method.default_value = std::string("auto");
-    method.choices = {"auto", "123c", "half_rule", "tangent", "min_ise", "min_iae", "min_itae"};
-    OptionDescription horizon;
-    horizon.name = "horizon";
-    horizon.sentence =
-        "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, with "
-        "the plant's static gain.";
-    horizon.unit = "time";
-    horizon.exclusive_minimum = 0;
-    OptionDescription option;
-    option.name = "reduction";
-    option.type = OptionType::object;
-    option.sentence = "How a plant that is not of the rule's form is reduced to it.";
-    option.fields = {method, horizon};
-    return option;
+OptionSet<ReductionOptions> reduction_options(const std::string& of_auto) {
+    using enum ReductionMethod;
+    Words<ReductionMethod> words;
+    for (const auto method : {automatic, two_point_123c, half_rule, tangent, min_ise, min_iae, min_itae})
+        words.emplace_back(to_string(method), method);
+    OptionSet<ReductionOptions> set;
+    set.choice(&ReductionOptions::method, "method",
+               "half_rule: Skogestad's half rule, from poles and zeros; tangent: steepest tangent of the step response "
+               "and its 63 % time (asymptote of an integrating plant); 123c: Alfaro's two points, 25 % and 75 % of the "
+               "step response; min_ise, min_iae, min_itae: the least integral of the difference of the step responses, "
+               "squared, absolute, or absolute times time. auto: " +
+                   of_auto,
+               words);
+    set.number(&ReductionOptions::horizon, "horizon",
+               "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, "
+               "with the plant's static gain.",
+               {.unit = "time", .exclusive_minimum = 0});
+    return set;
 }
 
-OptionDescription filter_option(const std::string& law) {
-    OptionDescription ratio;
-    ratio.name = "Tf_over_Td";
-    ratio.sentence = "Filter time over derivative time; 0 for no filter.";
-    ratio.default_value = kTfOverTd;
-    ratio.minimum = 0;
-    ratio.maximum = 1;
-    OptionDescription Tf;
-    Tf.name = "Tf";
-    Tf.sentence = "Filter time, fixed.";
-    Tf.unit = "time";
-    Tf.exclusive_minimum = 0;
-    OptionDescription option;
-    option.name = "filter";
-    option.type = OptionType::object;
-    option.sentence = "Filter of a PID controller: " + law;
-    option.fields = {ratio, Tf};
-    option.at_most_fields = 1;
-    return option;
+OptionSet<FilterOptions> filter_options(const FilterOptions& defaults) {
+    OptionSet<FilterOptions> set(defaults);
+    set.number(&FilterOptions::Tf_over_Td, "Tf_over_Td", "Filter time over derivative time; 0 for no filter.",
+               {.minimum = 0, .maximum = 1});
+    set.number(&FilterOptions::Tf, "Tf", "Filter time, fixed.", {.unit = "time", .exclusive_minimum = 0});
+    return set;
 }
 
-OptionDescription mode_option(const std::string& by_default) {
-    OptionDescription option;
-    option.name = "mode";
-    option.type = OptionType::choice;
-    option.sentence = "What the settings were made for: servo (set-point steps) or regulation (load steps).";
-    option.default_value = by_default;
-    option.choices = {"servo", "regulation"};
-    return option;
-}
-
-MethodVariant row(const std::string& name, const std::vector<std::pair<std::string, std::string>>& words) {
-    MethodVariant variant{name, {}};
-    for (const auto& [path, word] : words) variant.options.set(path, word);
-    return variant;
-}
-
-std::string chosen_controller(const MethodOptions& options) { return options.text("controller").value_or("PID"); }
-
-Filter chosen_filter(const MethodOptions& options, FilterType type, double Td) {
-    const double Tf =
-        options.number("filter/Tf").value_or(options.number("filter/Tf_over_Td").value_or(kTfOverTd) * Td);
+Filter chosen_filter(const FilterOptions& options, FilterType type, double Td) {
+    const double Tf = options.Tf.value_or(options.Tf_over_Td * Td);
     return Tf > 0 && Td > 0 ? Filter{type, Tf} : Filter{};
 }
 
-Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options,
+Expected<ReducedModel> rule_model(const TuningProblem& problem, const ReductionOptions& options,
                                   ReductionRequest request) {
-    request.method = reduction_method(options.text("reduction/method").value_or("auto"));
-    request.horizon = options.number("reduction/horizon");
+    request.method = options.method;
+    request.horizon = options.horizon;
     return reduce(problem.linear, request);
 }
 
-Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const MethodOptions& options) {
-    const auto order = chosen_controller(options) == "PID" ? ReducedOrder::second : ReducedOrder::first;
+Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const ReductionOptions& options,
+                                       ControllerKind controller) {
+    const auto order = controller == ControllerKind::PID ? ReducedOrder::second : ReducedOrder::first;
     return rule_model(problem, options, {.order = order, .preferred = ReductionMethod::half_rule});
 }
 

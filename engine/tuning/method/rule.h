@@ -1,40 +1,77 @@
 // What the closed-form rules have in common: their options, the reduced model that they are written for, their answer.
 #pragma once
 
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/reduction/reduction.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/method/option_set.h"
 
 namespace tunewright {
 
-/// Option `controller` with the forms that the source gives; "PID" is the default where it is among them.
-OptionDescription controller_option(std::vector<std::string> choices);
+enum class ControllerKind { P, PI, PID };
+
+/// What a rule's settings were made for: set-point steps or load steps.
+enum class Mode { servo, regulation };
+
+/// How a plant that is not of the rule's form is reduced to it.
+struct ReductionOptions {
+    ReductionMethod method = ReductionMethod::automatic;
+    std::optional<double> horizon = {};  ///< of min_*: where their integral ends; empty: settled
+};
+
+/// Filter of a PID: Tf where it is given, else Tf_over_Td Td; 0 for none.
+struct FilterOptions {
+    double Tf_over_Td = 0.1;  ///< N = 10
+    std::optional<double> Tf = {};
+};
+
+Words<ControllerKind> words_of(const std::vector<ControllerKind>& kinds);
+OptionSet<ReductionOptions> reduction_options(const std::string& of_auto);
+OptionSet<FilterOptions> filter_options(const FilterOptions& defaults);
+
+inline constexpr const char* kControllerOption = "controller";
+
+/// Option `controller` with the forms that the source gives.
+template <class T>
+void add_controller(OptionSet<T>& set, const std::vector<ControllerKind>& kinds) {
+    set.choice(&T::controller, kControllerOption, "The controller that is tuned.", words_of(kinds));
+}
 
 /// Option `reduction {method, horizon}`; `automatic` says what "auto" does for this rule.
-OptionDescription reduction_option(const std::string& automatic);
+template <class T>
+void add_reduction(OptionSet<T>& set, const std::string& automatic) {
+    set.object(&T::reduction, "reduction", "How a plant that is not of the rule's form is reduced to it.",
+               reduction_options(automatic));
+}
 
-/// Option `filter {Tf_over_Td | Tf}` of a PID; `law` says what is filtered.
-OptionDescription filter_option(const std::string& law);
+/// Option `filter {Tf_over_Td | Tf}`; `law` says what is filtered.
+template <class T>
+void add_filter(OptionSet<T>& set, const std::string& law) {
+    const FilterOptions* defaults = detail::content(set.defaults().filter);
+    set.object(&T::filter, "filter", "Filter of a PID controller: " + law,
+               filter_options(defaults ? *defaults : FilterOptions{}), 1);
+}
 
-/// Option `mode`, "servo" (set points) or "regulation" (loads).
-OptionDescription mode_option(const std::string& by_default = "servo");
+/// Option `mode`.
+template <class T>
+void add_mode(OptionSet<T>& set) {
+    set.choice(&T::mode, "mode", "What the settings were made for: servo (set-point steps) or regulation (load steps).",
+               Words<Mode>{{"servo", Mode::servo}, {"regulation", Mode::regulation}});
+}
 
-/// A row of "all": the options that differ from the defaults, all of them words.
-MethodVariant row(const std::string& name, const std::vector<std::pair<std::string, std::string>>& words);
-
-std::string chosen_controller(const MethodOptions& options);  ///< "P", "PI" or "PID"
-
-/// The filter of a PID with this Td: Tf as given or Tf_over_Td Td (default 0.1); 0 gives `none`.
-Filter chosen_filter(const MethodOptions& options, FilterType type, double Td);
+/// The filter of a PID with this Td.
+Filter chosen_filter(const FilterOptions& options, FilterType type, double Td);
 
 /// The model that the rule works on, by option `reduction`. Errors: those of reduce().
-Expected<ReducedModel> rule_model(const TuningProblem& problem, const MethodOptions& options, ReductionRequest request);
+Expected<ReducedModel> rule_model(const TuningProblem& problem, const ReductionOptions& options,
+                                  ReductionRequest request);
 
 /// The same by the half rule, where no other is asked for: of second order for a PID, else of first.
-Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const MethodOptions& options);
+Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const ReductionOptions& options,
+                                       ControllerKind controller);
 
 /// L/(L + T1): 0 lag-dominated, 1 dead-time-dominated; 0 with an integrator.
 double normalised_dead_time(const ReducedModel& model);

@@ -9,8 +9,8 @@ Error wrong(const std::string& where, const std::string& sentence) {
     return {ErrorKind::invalid_argument, where, sentence};
 }
 
-Expected<UltimatePoint> given_by_hand(const MethodOptions& options) {
-    const auto Ku = options.number("Ku"), Pu = options.number("Pu");
+Expected<UltimatePoint> given_by_hand(const UltimateOptions& options) {
+    const auto &Ku = options.Ku, &Pu = options.Pu;
     if (!Pu) return wrong("Pu", "Ku is given without Pu; give both, or neither.");
     if (!Ku) return wrong("Ku", "Pu is given without Ku; give both, or neither.");
     if (*Ku == 0)
@@ -30,34 +30,23 @@ Error no_oscillation(const LinearPlant& plant) {
 
 }  // namespace
 
-std::vector<OptionDescription> with_ultimate_options(std::vector<OptionDescription> own,
-                                                     const std::string& filter_law) {
-    OptionDescription source;
-    source.name = "ultimate";
-    source.type = OptionType::choice;
-    source.sentence =
-        "Where Ku and Pu come from: model (computed from the plant, dead time exact) or relay (the describing "
-        "function's of a recorded relay test).";
-    source.default_value = std::string("model");
-    source.choices = {"model", "relay"};
-    OptionDescription Ku;
-    Ku.name = "Ku";
-    Ku.sentence = "Ultimate gain by hand, with Pu: the proportional gain at which the loop oscillates.";
-    Ku.unit = "u/y";
-    OptionDescription Pu;
-    Pu.name = "Pu";
-    Pu.sentence = "Period of that oscillation.";
-    Pu.unit = "time";
-    Pu.exclusive_minimum = 0;
-    own.insert(own.end(), {source, Ku, Pu, filter_option(filter_law)});
-    return own;
+OptionSet<UltimateOptions> ultimate_options() {
+    OptionSet<UltimateOptions> set;
+    set.choice(&UltimateOptions::ultimate, "ultimate",
+               "Where Ku and Pu come from: model (computed from the plant, dead time exact) or relay (the describing "
+               "function's of a recorded relay test).",
+               Words<UltimateSource>{{"model", UltimateSource::model}, {"relay", UltimateSource::relay}});
+    set.number(&UltimateOptions::Ku, "Ku",
+               "Ultimate gain by hand, with Pu: the proportional gain at which the loop oscillates.", {.unit = "u/y"});
+    set.number(&UltimateOptions::Pu, "Pu", "Period of that oscillation.", {.unit = "time", .exclusive_minimum = 0});
+    return set;
 }
 
-Expected<UltimatePoint> chosen_ultimate_point(const TuningProblem& problem, const MethodOptions& options) {
+Expected<UltimatePoint> chosen_ultimate_point(const TuningProblem& problem, const UltimateOptions& options) {
     // Integral action cannot hold such a plant, whichever rule sets it: the reason is that of the reduction.
     if (problem.linear.integrators() < 0) return reduce(problem.linear, {}).error();
-    if (options.has("Ku") || options.has("Pu")) return given_by_hand(options);
-    if (options.text("ultimate").value_or("model") == "relay") {
+    if (options.Ku || options.Pu) return given_by_hand(options);
+    if (options.ultimate == UltimateSource::relay) {
         if (problem.relay_point) return *problem.relay_point;
         return wrong("ultimate",
                      "ultimate is relay, but there is no recorded relay test with a steady oscillation. Send one as "

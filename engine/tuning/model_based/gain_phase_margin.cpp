@@ -10,43 +10,37 @@
 namespace tunewright {
 namespace {
 
-constexpr double kGainMargin = 3, kPhaseMargin = 60;
 constexpr double pi = std::numbers::pi;
 
-struct Margins {
-    double gain = kGainMargin, phase_deg = kPhaseMargin;
-};
-
-SeriesPid settings(const ReducedModel& model, const Margins& margins) {
-    const double Am = margins.gain, phi = margins.phase_deg * pi / 180, L = model.L;
+SeriesPid settings(const ReducedModel& model, const GainPhaseMarginOptions& margins) {
+    const double Am = margins.gain_margin, phi = margins.phase_margin_deg * pi / 180, L = model.L;
     const double omega = (Am * phi + 0.5 * pi * Am * (Am - 1)) / ((Am * Am - 1) * L);
     return {.Kp = omega * model.T1 / (Am * model.K),
             .Ti = 1 / (2 * omega - 4 * omega * omega * L / pi + 1 / model.T1),
             .Td = model.T2};
 }
 
-Error contradiction(const Margins& margins) {
+Error contradiction(const GainPhaseMarginOptions& margins) {
     return {ErrorKind::invalid_argument, "phase_margin_deg",
-            "A gain margin of " + text(margins.gain) + " with a phase margin of " + text(margins.phase_deg) +
+            "A gain margin of " + text(margins.gain_margin) + " with a phase margin of " +
+                text(margins.phase_margin_deg) +
                 " degrees needs a negative integral time on this model. Ask for a phase margin nearer to 90 (1 - "
                 "1/gain_margin) = " +
-                text(90 * (1 - 1 / margins.gain)) + " degrees."};
+                text(90 * (1 - 1 / margins.gain_margin)) + " degrees."};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = half_rule_model(problem, options);
+Expected<TunedController> tune(const TuningProblem& problem, const GainPhaseMarginOptions& options) {
+    const bool wants_PID = options.controller == ControllerKind::PID;
+    const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
     if (const auto error = unfit(*model, {.name = "Ho, Hang and Cao's rule"})) return *error;
-    const Margins margins{options.number("gain_margin").value_or(kGainMargin),
-                          options.number("phase_margin_deg").value_or(kPhaseMargin)};
-    const SeriesPid series = settings(*model, margins);
-    if (!(series.Ti > 0)) return contradiction(margins);
+    const SeriesPid series = settings(*model, options);
+    if (!(series.Ti > 0)) return contradiction(options);
 
     auto ideal = to_ideal(series);
     if (!ideal) return ideal.error();
     ideal->b = 1;
-    ideal->filter = chosen_filter(options, FilterType::derivative, ideal->Td);
+    ideal->filter = chosen_filter(options.filter, FilterType::derivative, ideal->Td);
     std::vector<Warning> warnings;
     if (wants_PID && series.Td == 0) warnings.push_back(no_second_lag());
     return rule_answer(problem, *model, *ideal, std::move(warnings));
@@ -55,20 +49,6 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
 }  // namespace
 
 TuningMethod gain_phase_margin_method() {
-    OptionDescription gain;
-    gain.name = "gain_margin";
-    gain.sentence = "Gain margin wanted.";
-    gain.default_value = kGainMargin;
-    gain.exclusive_minimum = 1;
-    gain.maximum = 20;
-    OptionDescription phase;
-    phase.name = "phase_margin_deg";
-    phase.sentence = "Phase margin wanted, in degrees.";
-    phase.unit = "deg";
-    phase.default_value = kPhaseMargin;
-    phase.exclusive_minimum = 0;
-    phase.maximum = 89;
-
     TuningMethod method;
     method.id = "gain_phase_margin";
     method.title = "Ho-Hang-Cao, gain and phase margin";
@@ -78,10 +58,15 @@ TuningMethod gain_phase_margin_method() {
     method.source = "Ho, Hang and Cao, Automatica 31 (1995) 497-502";
     method.needs = "fopdt for PI, sopdt for PID, T > 0, L > 0 (others are reduced)";
     method.validity = "margins are met within some percent where L/T is below about 2";
-    method.options = {controller_option({"PI", "PID"}), gain, phase,
-                      reduction_option("half_rule; tangent (first order: PI) where that does not apply."),
-                      filter_option("of the derivative part of the ideal form, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<GainPhaseMarginOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.number(&GainPhaseMarginOptions::gain_margin, "gain_margin", "Gain margin wanted.",
+                   {.exclusive_minimum = 1, .maximum = 20});
+    options.number(&GainPhaseMarginOptions::phase_margin_deg, "phase_margin_deg", "Phase margin wanted, in degrees.",
+                   {.unit = "deg", .exclusive_minimum = 0, .maximum = 89});
+    add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
+    add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,10 +1,21 @@
 // Ho, Hang and Cao's rules for a gain and a phase margin at once.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 
+struct GainPhaseMarginOptions {
+    ControllerKind controller = ControllerKind::PID;
+    double gain_margin = 3;
+    double phase_margin_deg = 60;
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+/// omega_p = (Am phi + pi Am (Am - 1)/2)/((Am^2 - 1) L); series form: Kp = omega_p T1/(Am K), Ti = 1/(2 omega_p - 4
+/// omega_p^2 L/pi + 1/T1), Td = T2.
+///
 /// PI on a first-order, PID (series form, Td = T2, answered in the ideal form) on a second-order model with dead time,
 /// for `gain_margin` and `phase_margin_deg`; the arctangents of the margins' equations are taken as straight lines, so
 /// that both are met within some percent. Source: Ho, Hang & Cao, Automatica 31 (1995) 497-502.

@@ -8,14 +8,14 @@
 namespace tunewright {
 namespace {
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = half_rule_model(problem, options);
+Expected<TunedController> tune(const TuningProblem& problem, const HaalmanOptions& options) {
+    const bool wants_PID = options.controller == ControllerKind::PID;
+    const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
     if (const auto error = unfit(*model, {.name = "Haalman's rule"})) return *error;
     const double Ti = model->T1 + model->T2;
     Pid answer{.Kp = 2 * Ti / (3 * model->K * model->L), .Ti = Ti, .Td = model->T1 * model->T2 / Ti};
-    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
     if (wants_PID && answer.Td == 0) warnings.push_back(no_second_lag());
     if (model->L < 0.1 * model->T1)
@@ -35,10 +35,11 @@ TuningMethod haalman_method() {
     method.source = "Haalman, Control Engineering 12 (1965) 71-73; Åström and Hägglund, Advanced PID Control (2006)";
     method.needs = "fopdt for PI, sopdt for PID, T > 0, L > 0 (others are reduced)";
     method.validity = "L/T above 0.1: it cancels lags, which makes the answer to loads slow below that";
-    method.options = {controller_option({"PI", "PID"}),
-                      reduction_option("half_rule; tangent (first order: PI) where that does not apply."),
-                      filter_option("of the derivative part, Td s/(1 + s Tf); the source has none.")};
-    method.tune = tune;
+    OptionSet<HaalmanOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,10 +1,18 @@
 // Haalman's rule: the plant's lags cancelled, the loop 2/(3 L s) e^(-Ls).
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 
+struct HaalmanOptions {
+    ControllerKind controller = ControllerKind::PID;
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+/// PI: Kp = 2 T/(3 K L), Ti = T; PID: Kp = 2 (T1 + T2)/(3 K L), Ti = T1 + T2, Td = T1 T2/(T1 + T2).
+///
 /// PI on a first-order, PID on a second-order model with dead time. On such a plant the loop is 2/(3 L s) e^(-Ls)
 /// whatever the lags: Ms = 1.9 (without the derivative's filter). Cancelled lags come back in the answer to loads, so
 /// it is slow where they are long against the dead time. Source: Haalman, Control Engineering 12 (1965) 71-73.

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 #include "engine/tuning/model_based/imc_terms.h"
 
 namespace tunewright {
@@ -79,7 +78,7 @@ Error no_pid(const Pid& pid, const ImcFilter& f) {
                 (is_default_order ? "." : ", or filter_order 1.")};
 }
 
-Expected<ReducedModel> model_of(const TuningProblem& problem, const MethodOptions& options, bool& exact) {
+Expected<ReducedModel> model_of(const TuningProblem& problem, const ReductionOptions& options, bool& exact) {
     exact = exact_second_order(problem.linear).has_value();
     if (exact) {
         ReducedModel as_given;
@@ -89,27 +88,30 @@ Expected<ReducedModel> model_of(const TuningProblem& problem, const MethodOption
     return rule_model(problem, options, {.order = ReducedOrder::second, .preferred = ReductionMethod::half_rule});
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+}  // namespace
+
+Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOptions& options) {
     bool exact = false;
-    const auto reduced = model_of(problem, options, exact);
+    const auto reduced = model_of(problem, options.reduction, exact);
     if (!reduced) return reduced.error();
     if (const auto error = unfit(*reduced)) return *error;
     const Model model = exact ? *exact_second_order(problem.linear)
                               : Model{reduced->K, reduced->T1 + reduced->T2, reduced->T1 * reduced->T2, reduced->L};
-    const ImcFilter f{.lambda = options.number("lambda").value_or(std::max(model.L, 0.1 * model.n1)),
-                      .n = static_cast<int>(options.number("filter_order").value_or(model.second_order() ? 2 : 1))};
+    const ImcFilter f{.lambda = options.lambda.value_or(std::max(model.L, 0.1 * model.n1)),
+                      .n = options.filter_order.value_or(model.second_order() ? 2 : 1)};
     if (!(f.lambda > 0))
         return degenerate("plant/L", "The default lambda is the dead time, and the model has none.",
                           "Give lambda, the closed-loop time constant that you want.");
-    const bool pade = options.text("expansion").value_or("maclaurin") == "pade";
+    const bool pade = options.expansion == ImcExpansion::pade;
     Pid pid = pade ? by_pade(model, f) : by_maclaurin(model, f);
     if (!(model.K * pid.Kp > 0) || !(pid.Ti > 0) || !(pid.Td >= 0)) return no_pid(pid, f);
     const bool own_filter = pid.filter.type != FilterType::none;
-    if (own_filter && options.has("filter/Tf") + options.has("filter/Tf_over_Td") > 0)
+    if (own_filter && options.filter)
         return Error{ErrorKind::invalid_argument, "filter",
                      "The pade expansion with filter_order 2 has its own filter time. Leave filter out, or use "
                      "filter_order 1."};
-    if (!own_filter) pid.filter = chosen_filter(options, FilterType::derivative, pid.Td);
+    if (!own_filter)
+        pid.filter = chosen_filter(options.filter.value_or(FilterOptions{}), FilterType::derivative, pid.Td);
     if (pid.Td == 0) pid.filter = {};
 
     std::vector<Warning> warnings;
@@ -123,34 +125,9 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     return answer;
 }
 
-}  // namespace
-
 TuningMethod imc_method() {
-    OptionDescription lambda;
-    lambda.name = "lambda";
-    lambda.sentence =
-        "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. Default: the "
-        "larger of the dead time and a tenth of the lags.";
-    lambda.unit = "time";
-    lambda.exclusive_minimum = 0;
-    OptionDescription order;
-    order.name = "filter_order";
-    order.type = OptionType::integer;
-    order.sentence = "n of that filter, 1 or 2. Default: the model's order.";
-    order.minimum = 1;
-    order.maximum = 2;
-    OptionDescription expansion;
-    expansion.name = "expansion";
-    expansion.type = OptionType::choice;
-    expansion.sentence =
-        "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time replaced by "
-        "a "
-        "fraction first (1/1 on a first-order model, 1 - L s on a second-order one).";
-    expansion.default_value = std::string("maclaurin");
-    expansion.choices = {"maclaurin", "pade"};
-
     TuningMethod method;
-    method.id = "imc";
+    method.id = kImc;
     method.title = "Internal model control";
     method.formula =
         "model K e^(-L s)/(1 + n1 s + n2 s^2); maclaurin: d_k = C(n, k+1) lambda^(k+1) - (-L)^(k+1)/(k+1)!, Ki = 1/(K "
@@ -164,10 +141,20 @@ TuningMethod imc_method() {
         "Process Control (1989); Maclaurin: Liu and Gao, IFAC World Congress (2008)";
     method.needs = "fopdt or stable sopdt, also oscillatory (others are reduced)";
     method.validity = "lambda above about 0.25 L; loads are slow to be taken back where a lag is long";
-    method.options = {lambda, order, expansion,
-                      reduction_option("half_rule; tangent (first order) where that does not apply."),
-                      filter_option("of the derivative part, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<ImcOptions> options;
+    options.number(&ImcOptions::lambda, "lambda",
+                   "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. "
+                   "Default: the larger of the dead time and a tenth of the lags.",
+                   {.unit = "time", .exclusive_minimum = 0});
+    options.number(&ImcOptions::filter_order, "filter_order", "n of that filter, 1 or 2. Default: the model's order.",
+                   {.minimum = 1, .maximum = 2});
+    options.choice(&ImcOptions::expansion, "expansion",
+                   "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time "
+                   "replaced by a fraction first (1/1 on a first-order model, 1 - L s on a second-order one).",
+                   Words<ImcExpansion>{{"maclaurin", ImcExpansion::maclaurin}, {"pade", ImcExpansion::pade}});
+    add_reduction(options, "half_rule; tangent (first order) where that does not apply.");
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
+    method.serve(options, tune_imc);
     return method;
 }
 

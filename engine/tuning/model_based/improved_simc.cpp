@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
@@ -25,17 +24,17 @@ Pid pid(const ReducedModel& model, double tau_c) {
     return {.Kp = Kp + Ki * Td, .Ti = Ti + Td, .Td = Ti * Td / (Ti + Td)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::half_rule});
+Expected<TunedController> tune(const TuningProblem& problem, const ImprovedSimcOptions& options) {
+    const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::half_rule});
     if (!model) return model.error();
     if (model->L <= 0)
         return degenerate("plant/L", "The improvement over SIMC lies in the dead time, and that of the model is 0.",
                           "Use simc with tau_c, the closed-loop time constant that you want.");
-    const bool wants_PID = chosen_controller(options) == "PID";
+    const bool wants_PID = options.controller == ControllerKind::PID;
     const double least = wants_PID ? model->L / 2 : model->L;
-    const double tau_c = options.number("tau_c").value_or(least);
+    const double tau_c = options.tau_c.value_or(least);
     Pid answer = wants_PID ? pid(*model, tau_c) : pi(*model, tau_c);
-    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
     if (tau_c < least)
         warnings.push_back(outside_validity("tau_c = " + text(tau_c) + " is below " + text(least) +
@@ -46,14 +45,6 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
 }  // namespace
 
 TuningMethod improved_simc_method() {
-    OptionDescription tau_c;
-    tau_c.name = "tau_c";
-    tau_c.sentence =
-        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time L for "
-        "PI, L/2 for PID.";
-    tau_c.unit = "time";
-    tau_c.exclusive_minimum = 0;
-
     TuningMethod method;
     method.id = "improved_simc";
     method.title = "Improved SIMC (Grimholt, Skogestad)";
@@ -65,10 +56,16 @@ TuningMethod improved_simc_method() {
         "Grimholt and Skogestad, IFAC Conf. Advances in PID Control (2012); PID: J. Process Control 70 (2018) 36-46";
     method.needs = "fopdt or ipdt with L > 0 (others are reduced)";
     method.validity = "tau_c >= L for PI, >= L/2 for PID";
-    method.options = {controller_option({"PI", "PID"}), tau_c,
-                      reduction_option("half_rule, as in SIMC; tangent where that does not apply."),
-                      filter_option("of the derivative part of the ideal form, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<ImprovedSimcOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.number(
+        &ImprovedSimcOptions::tau_c, "tau_c",
+        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
+        "L for PI, L/2 for PID.",
+        {.unit = "time", .exclusive_minimum = 0});
+    add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
+    add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,10 +1,20 @@
 // Grimholt and Skogestad's improvement of SIMC for plants with much dead time.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 
+struct ImprovedSimcOptions {
+    ControllerKind controller = ControllerKind::PID;
+    std::optional<double> tau_c = {};  ///< desired closed-loop time constant; empty: L for PI, L/2 for PID
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+/// PI: Kp = (T + L/3)/(K (tau_c + L)), Ti = min(T + L/3, 4 (tau_c + L)); PID, series form: Kp = T/(K (tau_c + L)), Ti =
+/// min(T, 4 (tau_c + L)), Td = L/3; integrating: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L).
+///
 /// PI: SIMC with T + L/3 in place of T. PID: SIMC's PI settings with a series derivative time L/3, answered in the
 /// ideal form. On a first-order model (half rule), also integrating, also a pure dead time. Option tau_c, default L for
 /// PI, L/2 for PID. Sources: Grimholt & Skogestad, IFAC Conf. Advances in PID Control (2012) for PI; J. Process Control

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
@@ -42,34 +41,27 @@ std::vector<Warning> remarks(const ReducedModel& model, double lambda, bool want
                              ", the least that the source recommends for this model. Give a larger lambda.")};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
+Expected<TunedController> tune(const TuningProblem& problem, const LambdaOptions& options) {
+    const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators == 0 && model->T1 <= 0)
         return degenerate("plant/T", "Lambda tuning sets Ti = T, and the model is a pure dead time (T = 0).",
                           "Use amigo or robust.");
-    const double lambda = options.number("lambda").value_or(default_lambda(*model));
+    const double lambda = options.lambda.value_or(default_lambda(*model));
     if (lambda <= 0)
         return degenerate("plant/L",
                           "The default lambda of an integrating plant is a multiple of its dead time, which is 0.",
                           "Give lambda, the closed-loop time constant that you want.");
 
-    const bool wants_PID = chosen_controller(options) == "PID";
+    const bool wants_PID = options.controller == ControllerKind::PID;
     Pid controller = wants_PID ? pid(*model, lambda) : pi(*model, lambda);
-    controller.filter = chosen_filter(options, FilterType::derivative, controller.Td);
+    controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
     return rule_answer(problem, *model, controller, remarks(*model, lambda, wants_PID));
 }
 
 }  // namespace
 
 TuningMethod lambda_method() {
-    OptionDescription lambda;
-    lambda.name = "lambda";
-    lambda.sentence =
-        "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.";
-    lambda.unit = "time";
-    lambda.exclusive_minimum = 0;
-
     TuningMethod method;
     method.id = "lambda";
     method.title = "Lambda tuning";
@@ -87,10 +79,15 @@ TuningMethod lambda_method() {
     method.validity =
         "PID: lambda above 0.8 L and 0.1 T; PI: lambda above 0.7 L and lambda + L above 0.2 T; integrating: lambda "
         "above L";
-    method.options = {controller_option({"PI", "PID"}), lambda,
-                      reduction_option("tangent, half_rule where the step response has no tangent."),
-                      filter_option("of the derivative part, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<LambdaOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.number(
+        &LambdaOptions::lambda, "lambda",
+        "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.",
+        {.unit = "time", .exclusive_minimum = 0});
+    add_reduction(options, "tangent, half_rule where the step response has no tangent.");
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,10 +1,22 @@
 // Lambda tuning: the closed loop is asked to be a lag of time constant lambda behind the dead time.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 
+struct LambdaOptions {
+    ControllerKind controller = ControllerKind::PID;
+    std::optional<double>
+        lambda;  ///< desired closed-loop time constant; empty: max(T, L), sqrt(10) L with an integrator
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+/// PI: Kp = T/(K (lambda + L)), Ti = T; PID: Kp = (2 T + L)/(K (2 lambda + L)), Ti = T + L/2, Td = T L/(2 T + L);
+/// integrating PI: Kp = (2 lambda + L)/(K (lambda + L)^2), Ti = 2 lambda + L; integrating PID: Kp = (2 lambda + L)/(K
+/// (lambda + L/2)^2), Ti = 2 lambda + L, Td = (lambda L + L^2/4)/(2 lambda + L).
+///
 /// PI (Ti = T) and PID (dead time as a first-order Pade term, in the design only). Option lambda defaults to max(T, L),
 /// to sqrt(10) L with an integrator (Chien & Fruehauf's choice). PID filter: derivative, Tf = Td/10. Sources: Rivera,
 /// Morari & Skogestad, Ind. Eng. Chem. Process Des. Dev. 25 (1986) 252-265, Table II; Astrom & Hagglund (2006),

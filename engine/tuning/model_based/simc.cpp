@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
@@ -56,18 +55,18 @@ std::optional<Error> unfit(const ReducedModel& model, double tau_c) {
     return std::nullopt;
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const bool wants_PID = chosen_controller(options) == "PID";
-    const auto model = half_rule_model(problem, options);
+Expected<TunedController> tune(const TuningProblem& problem, const SimcOptions& options) {
+    const bool wants_PID = options.controller == ControllerKind::PID;
+    const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
-    const double tau_c = options.number("tau_c").value_or(model->L);
+    const double tau_c = options.tau_c.value_or(model->L);
     if (const auto error = unfit(*model, tau_c)) return *error;
 
     const SeriesPid settings = series(*model, tau_c);
     auto ideal = to_ideal(settings);
     if (!ideal) return ideal.error();
     ideal->b = 1;  // the source gives no weight; what the series form's own b = 1 amounts to is not meant
-    ideal->filter = chosen_filter(options, FilterType::derivative, ideal->Td);
+    ideal->filter = chosen_filter(options.filter, FilterType::derivative, ideal->Td);
     std::vector<Warning> warnings = remarks(*model, tau_c, settings, wants_PID);
     return rule_answer(problem, *model, *ideal, std::move(warnings));
 }
@@ -75,14 +74,6 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
 }  // namespace
 
 TuningMethod simc_method() {
-    OptionDescription tau_c;
-    tau_c.name = "tau_c";
-    tau_c.sentence =
-        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time L (tight "
-        "but robust, Ms about 1.6).";
-    tau_c.unit = "time";
-    tau_c.exclusive_minimum = 0;
-
     TuningMethod method;
     method.id = "simc";
     method.title = "SIMC (Skogestad)";
@@ -94,11 +85,16 @@ TuningMethod simc_method() {
     method.source = "Skogestad, J. Process Control 13 (2003) 291-309, Table 1";
     method.needs = "fopdt for PI, sopdt for PID, ipdt (others are reduced)";
     method.validity = "tau_c >= L; PID where the second lag exceeds the effective dead time";
-    method.options = {
-        controller_option({"PI", "PID"}), tau_c,
-        reduction_option("half_rule, as in the source; tangent (first order: PI) where that does not apply."),
-        filter_option("of the derivative part of the ideal form, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<SimcOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.number(
+        &SimcOptions::tau_c, "tau_c",
+        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
+        "L (tight but robust, Ms about 1.6).",
+        {.unit = "time", .exclusive_minimum = 0});
+    add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
+    add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
+    method.serve(options, tune);
     return method;
 }
 

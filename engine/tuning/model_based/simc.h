@@ -1,10 +1,21 @@
 // SIMC: Skogestad's rules on a half-rule model.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 
+struct SimcOptions {
+    ControllerKind controller = ControllerKind::PID;
+    std::optional<double> tau_c = {};  ///< desired closed-loop time constant; empty: the model's dead time
+    ReductionOptions reduction = {};
+    FilterOptions filter = {};
+};
+
+/// Series form Kp (1 + 1/(s Ti)) (1 + s Td): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td = T2; integrating
+/// with lag T: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti =
+/// Td = 4 (tau_c + L).
+///
 /// PI on a first-order, PID on a second-order model (also integrating, integrating with lag, double integrating).
 /// Option tau_c, the desired closed-loop time constant, defaults to L. The source's series form is answered exactly in
 /// the ideal form, Ti + Td, Ti Td/(Ti + Td) and Kp (1 + Td/Ti), whose derivative is then filtered with Tf = Td/10: a

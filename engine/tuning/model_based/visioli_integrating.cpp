@@ -2,9 +2,6 @@
 
 #include <map>
 
-#include "engine/tuning/method/rule.h"
-#include "engine/tuning/reaction_curve/error_integral_table.h"
-
 namespace tunewright {
 namespace {
 
@@ -12,11 +9,13 @@ struct Row {
     double K_L_Kp, Ti_over_L, Td_over_L;
 };
 
-const std::map<std::string, Row> kTable{
-    {"ise", {1.37, 1.49, 0.59}}, {"itse", {1.36, 1.66, 0.53}}, {"istse", {1.34, 1.83, 0.49}}};
+using enum FittedCriterion;
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
+const std::map<FittedCriterion, Row> kTable{
+    {ise, {1.37, 1.49, 0.59}}, {itse, {1.36, 1.66, 0.53}}, {istse, {1.34, 1.83, 0.49}}};
+
+Expected<TunedController> tune(const TuningProblem& problem, const VisioliIntegratingOptions& options) {
+    const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators != 1)
         return degenerate("plant", "Visioli's rule is for integrating plants, and this one has no integrator.",
@@ -25,10 +24,10 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
         return degenerate("plant/L", "Visioli's rule divides by the dead time, and that of the model is 0.",
                           "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
                           "a fixed filter Tf.");
-    const Row& row = kTable.at(options.text("criterion").value_or("istse"));
+    const Row& row = kTable.at(options.criterion);
     const double L = model->L;
     Pid answer{.Kp = row.K_L_Kp / (model->K * L), .Ti = row.Ti_over_L * L, .Td = row.Td_over_L * L};
-    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     return rule_answer(problem, *model, answer, {});
 }
 
@@ -42,10 +41,11 @@ TuningMethod visioli_integrating_method() {
     method.source = "Visioli, IEE Proc. Control Theory and Applications 148 (2001) 180-184";
     method.needs = "ipdt with L > 0 (other integrating plants are reduced)";
     method.validity = "integrating plants; made for load steps, with no regard to robustness";
-    method.options = {criterion_option({"istse", "itse", "ise"}),
-                      reduction_option("the asymptote of the ramp; half_rule where that leads the step."),
-                      filter_option("of the derivative part, Td s/(1 + s Tf); the source has none.")};
-    method.tune = tune;
+    OptionSet<VisioliIntegratingOptions> options;
+    add_criterion(options, {istse, itse, ise});
+    add_reduction(options, "the asymptote of the ramp; half_rule where that leads the step.");
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    method.serve(options, tune);
     return method;
 }
 

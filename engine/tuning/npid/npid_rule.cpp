@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 #include "engine/tuning/npid/npid_optimum.h"
 
 namespace tunewright {
@@ -37,11 +36,6 @@ constexpr Rule kITAE = {ErrorCriterion::ITAE,
                         "ITAE",
                         {1.0019, -0.9457, 0.8723, 0.1848, 0.3401, 0.9799},
                         {1.0093, -0.5198, 0.7813, 0.2781, 0.2878, 0.7317}};
-
-Filter filter_of(const MethodOptions& options, double Td) {
-    const bool asked = options.has("filter/Tf") || options.has("filter/Tf_over_Td");
-    return asked ? chosen_filter(options, FilterType::derivative, Td) : Filter{};
-}
 
 Pid settings(const Coefficients& c, double K, double T, double L) {
     const double q = L / T;
@@ -77,22 +71,21 @@ std::vector<Warning> remarks(double q) {
     return warnings;
 }
 
-Expected<TunedController> by_rule(const Rule& rule, const TuningProblem& problem, const MethodOptions& options) {
-    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::min_iae});
+Expected<TunedController> by_rule(const Rule& rule, const TuningProblem& problem, const NpidOptions& options) {
+    const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::min_iae});
     if (!model) return model.error();
     if (auto error = unfit(*model)) return *error;
     const double q = model->L / model->T1;
     Pid pid = settings(q <= kTable2To ? rule.short_delay : rule.long_delay, model->K, model->T1, model->L);
-    pid.filter = filter_of(options, pid.Td);
+    pid.filter = chosen_filter(options.filter, FilterType::derivative, pid.Td);
     auto answer = rule_answer(problem, *model, pid, remarks(q));
     if (answer) answer->nonlinear_integral = true;
     return answer;
 }
 
-Expected<TunedController> optimised(const Rule& rule, const TuningProblem& problem, const MethodOptions& options,
+Expected<TunedController> optimised(const Rule& rule, const TuningProblem& problem, const NpidOptions& options,
                                     const RunControl& control) {
-    NpidProblem search{problem.linear, rule.criterion, options.number("filter/Tf_over_Td").value_or(0),
-                       options.number("filter/Tf")};
+    NpidProblem search{problem.linear, rule.criterion, options.filter.Tf_over_Td, options.filter.Tf};
     if (const auto start = by_rule(rule, problem, options)) search.start = start->controller;
     const auto optimum = find_npid_optimum(search, control);
     if (!optimum) return optimum.error();
@@ -108,8 +101,8 @@ Expected<TunedController> optimised(const Rule& rule, const TuningProblem& probl
 }
 
 template <const Rule& rule>
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl& control) {
-    if (options.boolean("optimise").value_or(false)) return optimised(rule, problem, options, control);
+Expected<TunedController> tune(const TuningProblem& problem, const NpidOptions& options, const RunControl& control) {
+    if (options.optimise) return optimised(rule, problem, options, control);
     return by_rule(rule, problem, options);
 }
 
@@ -118,23 +111,9 @@ std::string formula_of(const Coefficients& c) {
            " q, Td/T = " + text(c.a3) + " q^" + text(c.b3);
 }
 
-OptionDescription optimise_option(const std::string& index) {
-    OptionDescription option;
-    option.name = "optimise";
-    option.type = OptionType::boolean;
-    option.sentence = "Search the settings of least " + index +
-                      " after a set-point step on this very plant instead of taking the rule's: any linear plant.";
-    option.default_value = false;
-    return option;
-}
+using Solve = Expected<TunedController>(const TuningProblem&, const NpidOptions&, const RunControl&);
 
-OptionDescription no_filter_by_default() {
-    OptionDescription option = filter_option("of the derivative, Td s/(1 + s Tf); none by default, as in the source.");
-    option.fields.front().default_value = 0.0;
-    return option;
-}
-
-TuningMethod described(const Rule& rule) {
+TuningMethod described(const Rule& rule, Solve* solve) {
     TuningMethod method;
     method.id = rule.id;
     method.title = std::string("Nonlinear PID, ") + rule.index + " (Jin, Son)";
@@ -144,31 +123,20 @@ TuningMethod described(const Rule& rule) {
     method.source = "Jin and Son, Studies in Informatics and Control 28 (2019) 157-166, Tables 2 and 3";
     method.needs = "stable fopdt with L > 0 (others are reduced); with optimise any linear plant";
     method.validity = "L/T from 0.01 to 3, set-point steps of the size delta_r; 0.9 to 1 is open in the source";
-    method.options = {optimise_option(rule.index),
-                      reduction_option("min_iae, as the source's fit of the step response; half_rule where that does "
-                                       "not apply."),
-                      no_filter_by_default()};
+    OptionSet<NpidOptions> options;
+    options.flag(&NpidOptions::optimise, "optimise",
+                 std::string("Search the settings of least ") + rule.index +
+                     " after a set-point step on this very plant instead of taking the rule's: any linear plant.");
+    add_reduction(options, "min_iae, as the source's fit of the step response; half_rule where that does not apply.");
+    add_filter(options, "of the derivative, Td s/(1 + s Tf); none by default, as in the source.");
+    method.serve(options, solve);
     return method;
 }
 
 }  // namespace
 
-TuningMethod npid_ise_method() {
-    TuningMethod method = described(kISE);
-    method.tune = tune<kISE>;
-    return method;
-}
-
-TuningMethod npid_iae_method() {
-    TuningMethod method = described(kIAE);
-    method.tune = tune<kIAE>;
-    return method;
-}
-
-TuningMethod npid_itae_method() {
-    TuningMethod method = described(kITAE);
-    method.tune = tune<kITAE>;
-    return method;
-}
+TuningMethod npid_ise_method() { return described(kISE, tune<kISE>); }
+TuningMethod npid_iae_method() { return described(kIAE, tune<kIAE>); }
+TuningMethod npid_itae_method() { return described(kITAE, tune<kITAE>); }
 
 }  // namespace tunewright

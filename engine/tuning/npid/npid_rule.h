@@ -1,9 +1,15 @@
 // Jin and Son's tuning rules for the nonlinear PID, and its optimum for the plant at hand.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
+
+struct NpidOptions {
+    bool optimise = false;  ///< search this plant's own optimum instead of taking the rule's settings
+    ReductionOptions reduction = {};
+    FilterOptions filter{.Tf_over_Td = 0, .Tf = {}};  ///< of the derivative; none, as in the source
+};
 
 /// K Kp = a1 q^b1, Ti/T = a2 + b2 q, Td/T = a3 q^b3 with q = L/T: fits to optima of ISE, IAE, ITAE after a set-point
 /// step on an FOPDT model, 0.01 <= q <= 3. The source's Table 2 holds up to q = 0.9, Table 3 from 1; in between, which

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
@@ -24,17 +23,19 @@ Pid pid(const ReducedModel& model) {
             .b = normalised_dead_time(model) <= 0.5 ? 0.0 : 1.0};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model = rule_model(problem, options, {.preferred = ReductionMethod::tangent});
+}  // namespace
+
+Expected<TunedController> tune_amigo(const TuningProblem& problem, const AmigoOptions& options) {
+    const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->L <= 0)
         return degenerate("plant/L", "AMIGO divides by the dead time, and that of the model is 0.",
                           "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
                           "a fixed filter Tf.");
 
-    const bool wants_PID = chosen_controller(options) == "PID";
+    const bool wants_PID = options.controller == ControllerKind::PID;
     Pid controller = wants_PID ? pid(*model) : pi(*model);
-    controller.filter = chosen_filter(options, FilterType::measurement_second_order, controller.Td);
+    controller.filter = chosen_filter(options.filter, FilterType::measurement_second_order, controller.Td);
 
     std::vector<Warning> warnings;
     const double tau = normalised_dead_time(*model);
@@ -45,8 +46,6 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
                              "the plant and AMIGO's PID is conservative. Robust can do better."));
     return rule_answer(problem, *model, controller, std::move(warnings));
 }
-
-}  // namespace
 
 TuningMethod amigo_method() {
     TuningMethod method;
@@ -63,10 +62,11 @@ TuningMethod amigo_method() {
     method.needs = "fopdt or ipdt with L > 0 (others are reduced)";
     method.validity =
         "plants with an essentially monotone step response; the PID rule is conservative for L/(L + T) below 0.3";
-    method.options = {controller_option({"PI", "PID"}),
-                      reduction_option("tangent, as in the source; half_rule where the step response has no tangent."),
-                      filter_option("second order on the measurement, as in the source.")};
-    method.tune = tune;
+    OptionSet<AmigoOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    add_reduction(options, "tangent, as in the source; half_rule where the step response has no tangent.");
+    add_filter(options, "second order on the measurement, as in the source.");
+    method.serve(options, tune_amigo);
     return method;
 }
 

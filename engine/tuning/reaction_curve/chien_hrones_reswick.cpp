@@ -1,49 +1,36 @@
 #include "engine/tuning/reaction_curve/chien_hrones_reswick.h"
 
-#include "engine/tuning/method/first_order_rule.h"
-
 namespace tunewright {
 namespace {
 
-Pid regulation(const std::string& controller, double overshoot, double a, double L) {
-    const bool swings = overshoot == 20;
-    if (controller == "P") return {.Kp = (swings ? 0.7 : 0.3) / a};
-    if (controller == "PI") return {.Kp = (swings ? 0.7 : 0.6) / a, .Ti = (swings ? 2.3 : 4) * L};
-    return {.Kp = (swings ? 1.2 : 0.95) / a, .Ti = (swings ? 2 : 2.4) * L, .Td = 0.42 * L};
+Pid regulation(ControllerKind controller, bool overshoots, double a, double L) {
+    if (controller == ControllerKind::P) return {.Kp = (overshoots ? 0.7 : 0.3) / a};
+    if (controller == ControllerKind::PI) return {.Kp = (overshoots ? 0.7 : 0.6) / a, .Ti = (overshoots ? 2.3 : 4) * L};
+    return {.Kp = (overshoots ? 1.2 : 0.95) / a, .Ti = (overshoots ? 2 : 2.4) * L, .Td = 0.42 * L};
 }
 
-Pid servo(const std::string& controller, double overshoot, double a, double T, double L) {
-    const bool swings = overshoot == 20;
-    if (controller == "P") return {.Kp = (swings ? 0.7 : 0.3) / a};
-    if (controller == "PI") return {.Kp = (swings ? 0.6 : 0.35) / a, .Ti = (swings ? 1 : 1.2) * T};
-    return {.Kp = (swings ? 0.95 : 0.6) / a, .Ti = (swings ? 1.4 : 1) * T, .Td = (swings ? 0.47 : 0.5) * L};
+Pid servo(ControllerKind controller, bool overshoots, double a, double T, double L) {
+    if (controller == ControllerKind::P) return {.Kp = (overshoots ? 0.7 : 0.3) / a};
+    if (controller == ControllerKind::PI)
+        return {.Kp = (overshoots ? 0.6 : 0.35) / a, .Ti = (overshoots ? 1 : 1.2) * T};
+    return {.Kp = (overshoots ? 0.95 : 0.6) / a, .Ti = (overshoots ? 1.4 : 1) * T, .Td = (overshoots ? 0.47 : 0.5) * L};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const std::string controller = chosen_controller(options);
-    const bool for_load = options.text("mode").value_or("regulation") == "regulation";
-    const double overshoot = options.text("overshoot").value_or("0") == "20" ? 20 : 0;
-    return tune_first_order(problem, options,
+Expected<TunedController> tune(const TuningProblem& problem, const ChienHronesReswickOptions& options) {
+    const ControllerKind controller = options.controller;
+    const bool for_load = options.mode == Mode::regulation;
+    const bool overshoots = options.overshoot == DesignOvershoot::twenty_percent;
+    return tune_first_order(problem, options.model,
                             {.name = std::string("Chien-Hrones-Reswick") + (for_load ? "" : " for set points"),
                              .least = 0.1,
                              .most = 1,
-                             .has_integrating_form = for_load || controller == "P",
+                             .has_integrating_form = for_load || controller == ControllerKind::P,
                              .tangent_time = TangentTime::by_slope},
                             [&](const ReducedModel& model) {
                                 const double slope = model.integrators == 1 ? model.K : model.K / model.T1;
-                                return for_load ? regulation(controller, overshoot, slope * model.L, model.L)
-                                                : servo(controller, overshoot, slope * model.L, model.T1, model.L);
+                                return for_load ? regulation(controller, overshoots, slope * model.L, model.L)
+                                                : servo(controller, overshoots, slope * model.L, model.T1, model.L);
                             });
-}
-
-OptionDescription overshoot_option() {
-    OptionDescription option;
-    option.name = "overshoot";
-    option.type = OptionType::choice;
-    option.sentence = "Overshoot that the settings were made for, in percent.";
-    option.default_value = std::string("0");
-    option.choices = {"0", "20"};
-    return option;
 }
 
 }  // namespace
@@ -61,15 +48,24 @@ TuningMethod chien_hrones_reswick_method() {
         "fopdt with T > 0 and L > 0, regulation also ipdt (others are reduced; T is then static gain over steepest "
         "slope)";
     method.validity = "L/T from 0.1 to 1";
-    method.options = with_first_order_options(
-        {controller_option({"P", "PI", "PID"}), mode_option("regulation"), overshoot_option()});
-    method.variants = {row("PI, regulation, 0 %", {{"controller", "PI"}}),
-                       row("PI, servo, 0 %", {{"controller", "PI"}, {"mode", "servo"}}),
-                       row("PID, regulation, 0 %", {}),
-                       row("PID, regulation, 20 %", {{"overshoot", "20"}}),
-                       row("PID, servo, 0 %", {{"mode", "servo"}}),
-                       row("PID, servo, 20 %", {{"mode", "servo"}, {"overshoot", "20"}})};
-    method.tune = tune;
+    using enum ControllerKind;
+    using enum DesignOvershoot;
+    OptionSet<ChienHronesReswickOptions> options;
+    add_controller(options, {P, PI, PID});
+    add_mode(options);
+    options.choice(&ChienHronesReswickOptions::overshoot, "overshoot",
+                   "Overshoot that the settings were made for, in percent.",
+                   Words<DesignOvershoot>{{"0", none}, {"20", twenty_percent}});
+    options.embed(&ChienHronesReswickOptions::model, first_order_options());
+    method.variants = {
+        {"PI, regulation, 0 %", options.given_for({.controller = PI})},
+        {"PI, servo, 0 %", options.given_for({.controller = PI, .mode = Mode::servo})},
+        {"PID, regulation, 0 %", {}},
+        {"PID, regulation, 20 %", options.given_for({.overshoot = twenty_percent})},
+        {"PID, servo, 0 %", options.given_for({.mode = Mode::servo})},
+        {"PID, servo, 20 %", options.given_for({.mode = Mode::servo, .overshoot = twenty_percent})},
+    };
+    method.serve(options, tune);
     return method;
 }
 

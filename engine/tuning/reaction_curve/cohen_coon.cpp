@@ -1,21 +1,19 @@
 #include "engine/tuning/reaction_curve/cohen_coon.h"
 
-#include "engine/tuning/method/first_order_rule.h"
-
 namespace tunewright {
 namespace {
 
-Pid settings(const std::string& controller, const ReducedModel& model) {
+Pid settings(ControllerKind controller, const ReducedModel& model) {
     const double L = model.L, q = L / model.T1, unit = 1 / (model.K * q);
-    if (controller == "P") return {.Kp = unit * (1 + q / 3)};
-    if (controller == "PI") return {.Kp = unit * (0.9 + q / 12), .Ti = L * (30 + 3 * q) / (9 + 20 * q)};
+    if (controller == ControllerKind::P) return {.Kp = unit * (1 + q / 3)};
+    if (controller == ControllerKind::PI) return {.Kp = unit * (0.9 + q / 12), .Ti = L * (30 + 3 * q) / (9 + 20 * q)};
     return {.Kp = unit * (4.0 / 3 + q / 4), .Ti = L * (32 + 6 * q) / (13 + 8 * q), .Td = 4 * L / (11 + 2 * q)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    return tune_first_order(problem, options,
+Expected<TunedController> tune(const TuningProblem& problem, const CohenCoonOptions& options) {
+    return tune_first_order(problem, options.model,
                             {.name = "Cohen-Coon", .least = 0.1, .most = 1, .tangent_time = TangentTime::by_slope},
-                            [&](const ReducedModel& model) { return settings(chosen_controller(options), model); });
+                            [&](const ReducedModel& model) { return settings(options.controller, model); });
 }
 
 }  // namespace
@@ -30,8 +28,10 @@ TuningMethod cohen_coon_method() {
     method.source = "Cohen and Coon, Trans. ASME 75 (1953) 827-834";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced; T is then static gain over steepest slope)";
     method.validity = "L/T from 0.1 to 1; aims at quarter-amplitude damping, so expect Ms above 2";
-    method.options = with_first_order_options({controller_option({"P", "PI", "PID"})});
-    method.tune = tune;
+    OptionSet<CohenCoonOptions> options;
+    add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
+    options.embed(&CohenCoonOptions::model, first_order_options());
+    method.serve(options, tune);
     return method;
 }
 

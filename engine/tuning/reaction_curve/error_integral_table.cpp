@@ -13,14 +13,16 @@ Pid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const 
     return pid;
 }
 
-OptionDescription criterion_option(std::vector<std::string> choices) {
-    OptionDescription option;
-    option.name = "criterion";
-    option.type = OptionType::choice;
-    option.sentence = "The error integral whose optima the settings were fitted to.";
-    option.default_value = choices.front();
-    option.choices = std::move(choices);
-    return option;
+const char* to_string(FittedCriterion criterion) {
+    switch (criterion) {
+        case FittedCriterion::ise: return "ise";
+        case FittedCriterion::iae: return "iae";
+        case FittedCriterion::itae: return "itae";
+        case FittedCriterion::itse: return "itse";
+        case FittedCriterion::iste: return "iste";
+        case FittedCriterion::istse: return "istse";
+    }
+    return "";
 }
 
 }  // namespace tunewright

@@ -1,8 +1,11 @@
 // Settings fitted to optima of an error integral over L/T: one shape, many tables.
 #pragma once
 
+#include <vector>
+
+#include "engine/controller/pid.h"
 #include "engine/reduction/reduction.h"
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/option_set.h"
 
 namespace tunewright {
 
@@ -20,7 +23,18 @@ struct ErrorIntegralRow {
 /// `model`: first order, T > 0, L > 0.
 Pid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model);
 
-/// Option `criterion` with these choices, the first as default.
-OptionDescription criterion_option(std::vector<std::string> choices);
+/// Integrals over time: ise of e^2, iae of |e|, itae of t |e|, itse of t e^2, iste and istse (the words of two sources)
+/// of t^2 e^2.
+enum class FittedCriterion { ise, iae, itae, itse, iste, istse };
+
+const char* to_string(FittedCriterion criterion);
+
+/// Option `criterion` with these choices.
+template <class T>
+void add_criterion(OptionSet<T>& set, const std::vector<FittedCriterion>& choices) {
+    Words<FittedCriterion> words;
+    for (const FittedCriterion choice : choices) words.emplace_back(to_string(choice), choice);
+    set.choice(&T::criterion, "criterion", "The error integral whose optima the settings were fitted to.", words);
+}
 
 }  // namespace tunewright

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/first_order_rule.h"
 
 namespace tunewright {
 namespace {
@@ -32,12 +31,12 @@ Pid settings(const Row& row, const ReducedModel& model) {
             .b = std::min(1.0, row.b.at(tau))};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const bool robust = options.text("table_Ms").value_or("1.4") == "1.4";
-    const bool wants_PID = chosen_controller(options) == "PID";
+Expected<TunedController> tune(const TuningProblem& problem, const KappaTauOptions& options) {
+    const bool robust = options.table_Ms == TableMs::Ms_1_4;
+    const bool wants_PID = options.controller == ControllerKind::PID;
     const Row& row = wants_PID ? (robust ? kPID14 : kPID20) : (robust ? kPI14 : kPI20);
     return tune_first_order(
-        problem, options,
+        problem, options.model,
         {.name = wants_PID ? "Kappa-tau's PID" : "Kappa-tau's PI", .least = wants_PID ? 0.4 : 0.1, .most = 4},
         [&](const ReducedModel& model) { return settings(row, model); });
 }
@@ -45,13 +44,6 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
 }  // namespace
 
 TuningMethod kappa_tau_method() {
-    OptionDescription table;
-    table.name = "table_Ms";
-    table.type = OptionType::choice;
-    table.sentence = "The Ms that the table was fitted for.";
-    table.default_value = std::string("1.4");
-    table.choices = {"1.4", "2.0"};
-
     TuningMethod method;
     method.id = "kappa_tau";
     method.title = "Kappa-tau";
@@ -65,10 +57,15 @@ TuningMethod kappa_tau_method() {
     method.validity =
         "plants with an essentially monotone step response; PI: L/T from 0.1 to 4, PID: from 0.4 (below that a plant "
         "of one lag, unlike those of the source's batch, may become unstable)";
-    method.options = with_first_order_options({controller_option({"PI", "PID"}), table});
-    method.variants = {row("PI, Ms 1.4", {{"controller", "PI"}}), row("PID, Ms 1.4", {}),
-                       row("PID, Ms 2", {{"table_Ms", "2.0"}})};
-    method.tune = tune;
+    OptionSet<KappaTauOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.choice(&KappaTauOptions::table_Ms, "table_Ms", "The Ms that the table was fitted for.",
+                   Words<TableMs>{{"1.4", TableMs::Ms_1_4}, {"2.0", TableMs::Ms_2_0}});
+    options.embed(&KappaTauOptions::model, first_order_options());
+    method.variants = {{"PI, Ms 1.4", options.given_for({.controller = ControllerKind::PI})},
+                       {"PID, Ms 1.4", {}},
+                       {"PID, Ms 2", options.given_for({.table_Ms = TableMs::Ms_2_0})}};
+    method.serve(options, tune);
     return method;
 }
 

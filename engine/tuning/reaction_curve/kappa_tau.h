@@ -1,9 +1,17 @@
 // The Kappa-tau rules for step-response models.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/first_order_rule.h"
 
 namespace tunewright {
+
+enum class TableMs { Ms_1_4, Ms_2_0 };
+
+struct KappaTauOptions {
+    ControllerKind controller = ControllerKind::PID;
+    TableMs table_Ms = TableMs::Ms_1_4;  ///< that the table was fitted for
+    FirstOrderOptions model = {};
+};
 
 /// PI and PID in tau = L/(L + T), fitted to designs by dominant poles with Ms of 1.4 or 2 (`table_Ms`) over a batch of
 /// plants: a Kp, Ti/L, Td/L and b are a0 exp(a1 tau + a2 tau^2) with a = K L/T. b above 1 is answered as 1. The ranges

@@ -1,23 +1,21 @@
 #include "engine/tuning/reaction_curve/rovira.h"
 
 #include <map>
-
-#include "engine/tuning/method/first_order_rule.h"
-#include "engine/tuning/reaction_curve/error_integral_table.h"
-
 namespace tunewright {
 namespace {
 
-const std::map<std::string, std::map<std::string, ErrorIntegralRow>> kTable{
-    {"PI", {{"iae", {0.758, -0.861, 1.020, -0.323}}, {"itae", {0.586, -0.916, 1.030, -0.165}}}},
-    {"PID",
-     {{"iae", {1.086, -0.869, 0.740, -0.130, 0.348, 0.914}}, {"itae", {0.965, -0.850, 0.796, -0.1465, 0.308, 0.929}}}},
+using enum ControllerKind;
+using enum FittedCriterion;
+
+const std::map<ControllerKind, std::map<FittedCriterion, ErrorIntegralRow>> kTable{
+    {PI, {{iae, {0.758, -0.861, 1.020, -0.323}}, {itae, {0.586, -0.916, 1.030, -0.165}}}},
+    {PID, {{iae, {1.086, -0.869, 0.740, -0.130, 0.348, 0.914}}, {itae, {0.965, -0.850, 0.796, -0.1465, 0.308, 0.929}}}},
 };
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto& row = kTable.at(chosen_controller(options)).at(options.text("criterion").value_or("itae"));
+Expected<TunedController> tune(const TuningProblem& problem, const RoviraOptions& options) {
+    const auto& row = kTable.at(options.controller).at(options.criterion);
     return tune_first_order(
-        problem, options, {.name = "Rovira", .least = 0.1, .most = 1},
+        problem, options.model, {.name = "Rovira", .least = 0.1, .most = 1},
         [&](const ReducedModel& model) { return error_integral_settings(row, IntegralLaw::line, model); });
 }
 
@@ -34,8 +32,11 @@ TuningMethod rovira_method() {
     method.source = "Rovira, Murrill and Smith, Instruments & Control Systems 42 (1969) 67-69";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 1; made for set-point steps";
-    method.options = with_first_order_options({controller_option({"PI", "PID"}), criterion_option({"itae", "iae"})});
-    method.tune = tune;
+    OptionSet<RoviraOptions> options;
+    add_controller(options, {PI, PID});
+    add_criterion(options, {itae, iae});
+    options.embed(&RoviraOptions::model, first_order_options());
+    method.serve(options, tune);
     return method;
 }
 

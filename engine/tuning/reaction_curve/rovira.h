@@ -1,11 +1,19 @@
 // Rovira, Murrill and Smith's settings for set-point steps.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/first_order_rule.h"
+#include "engine/tuning/reaction_curve/error_integral_table.h"
 
 namespace tunewright {
 
-/// PI and PID with the least IAE or ITAE of a set-point step on a first-order model with dead time; for L/T from 0.1 to
+struct RoviraOptions {
+    ControllerKind controller = ControllerKind::PID;
+    FittedCriterion criterion = FittedCriterion::itae;
+    FirstOrderOptions model = {};
+};
+
+/// Kp = a1 (L/T)^b1/K, Ti = T/(a2 + b2 L/T), Td = a3 T (L/T)^b3: PI and PID with the least IAE or ITAE of a set-point
+/// step on a first-order model with dead time; for L/T from 0.1 to
 /// 1. Source: Rovira, Murrill & Smith, Instruments & Control Systems 42 (1969) 67-69, known to us from the textbooks
 /// that carry its table.
 TuningMethod rovira_method();

@@ -21,7 +21,7 @@ Pid itae(const ReducedModel& model) {
 }
 
 template <Pid (*settings)(const ReducedModel&)>
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+Expected<TunedController> tune(const TuningProblem& problem, const FirstOrderOptions& options) {
     return tune_first_order(problem, options, {.name = "Tavakoli", .least = 0.1, .most = 2}, settings);
 }
 
@@ -35,7 +35,6 @@ TuningMethod described(const std::string& id, const std::string& criterion, cons
         "(2019), Table 1";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2; made for set-point steps";
-    method.options = with_first_order_options({});
     return method;
 }
 
@@ -44,21 +43,21 @@ TuningMethod described(const std::string& id, const std::string& criterion, cons
 TuningMethod tavakoli_ise_method() {
     TuningMethod method =
         described("ise", "ISE", "Kp = (0.3 q + 0.75)/(K (q + 0.05)), Ti = 2.4 L/(q + 0.4), Td = L/(90 q)");
-    method.tune = tune<ise>;
+    method.serve(first_order_options(), tune<ise>);
     return method;
 }
 
 TuningMethod tavakoli_iae_method() {
     TuningMethod method =
         described("iae", "IAE", "Kp = 1/(K (q + 0.2)), Ti = L (0.3 q + 1.2)/(q + 0.08), Td = L/(90 q)");
-    method.tune = tune<iae>;
+    method.serve(first_order_options(), tune<iae>);
     return method;
 }
 
 TuningMethod tavakoli_itae_method() {
     TuningMethod method =
         described("itae", "ITAE", "Kp = 0.8/(K (q + 0.1)), Ti = L (0.3 + 1/q), Td = 0.06 L/(q + 0.04)");
-    method.tune = tune<itae>;
+    method.serve(first_order_options(), tune<itae>);
     return method;
 }
 

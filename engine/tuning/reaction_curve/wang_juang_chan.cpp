@@ -10,7 +10,7 @@ Pid settings(const ReducedModel& model) {
     return {.Kp = (0.7303 + 0.5307 * T / L) * Ti / (K * (T + L)), .Ti = Ti, .Td = 0.5 * L * T / Ti};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+Expected<TunedController> tune(const TuningProblem& problem, const FirstOrderOptions& options) {
     return tune_first_order(problem, options, {.name = "Wang-Juang-Chan", .least = 0.05, .most = 6}, settings);
 }
 
@@ -24,8 +24,7 @@ TuningMethod wang_juang_chan_method() {
     method.source = "Wang, Juang and Chan, Chem. Eng. Communications 132 (1995) 15-34";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.05 to 6; made for set-point steps";
-    method.options = with_first_order_options({});
-    method.tune = tune;
+    method.serve(first_order_options(), tune);
     return method;
 }
 

@@ -1,42 +1,40 @@
 #include "engine/tuning/reaction_curve/zhuang_atherton.h"
 
 #include <map>
-
-#include "engine/tuning/method/first_order_rule.h"
-#include "engine/tuning/reaction_curve/error_integral_table.h"
-
 namespace tunewright {
 namespace {
+
+using enum ControllerKind;
+using enum FittedCriterion;
 
 struct TwoRanges {
     ErrorIntegralRow up_to_1, above_1;
 };
 
-using Tables = std::map<std::string, std::map<std::string, TwoRanges>>;
+using Tables = std::map<ControllerKind, std::map<FittedCriterion, TwoRanges>>;
 
 const Tables kServo{
-    {"PI",
-     {{"ise", {{0.980, -0.892, 0.690, -0.155}, {1.072, -0.560, 0.648, -0.114}}},
-      {"iste", {{0.712, -0.921, 0.968, -0.247}, {0.786, -0.559, 0.883, -0.158}}}}},
-    {"PID",
-     {{"ise", {{1.048, -0.897, 1.195, -0.368, 0.489, 0.888}, {1.154, -0.567, 1.047, -0.220, 0.490, 0.708}}},
-      {"iste", {{1.042, -0.897, 0.987, -0.238, 0.385, 0.906}, {1.142, -0.579, 0.919, -0.172, 0.384, 0.839}}}}},
+    {PI,
+     {{ise, {{0.980, -0.892, 0.690, -0.155}, {1.072, -0.560, 0.648, -0.114}}},
+      {iste, {{0.712, -0.921, 0.968, -0.247}, {0.786, -0.559, 0.883, -0.158}}}}},
+    {PID,
+     {{ise, {{1.048, -0.897, 1.195, -0.368, 0.489, 0.888}, {1.154, -0.567, 1.047, -0.220, 0.490, 0.708}}},
+      {iste, {{1.042, -0.897, 0.987, -0.238, 0.385, 0.906}, {1.142, -0.579, 0.919, -0.172, 0.384, 0.839}}}}},
 };
 
 const Tables kRegulation{
-    {"PI",
-     {{"ise", {{1.279, -0.945, 0.535, 0.586}, {1.346, -0.675, 0.552, 0.438}}},
-      {"iste", {{1.015, -0.957, 0.667, 0.552}, {1.065, -0.673, 0.687, 0.427}}}}},
-    {"PID",
-     {{"ise", {{1.473, -0.970, 1.115, 0.753, 0.550, 0.948}, {1.524, -0.735, 1.130, 0.641, 0.552, 0.851}}},
-      {"iste", {{1.468, -0.970, 0.942, 0.725, 0.443, 0.939}, {1.515, -0.730, 0.957, 0.598, 0.444, 0.847}}}}},
+    {PI,
+     {{ise, {{1.279, -0.945, 0.535, 0.586}, {1.346, -0.675, 0.552, 0.438}}},
+      {iste, {{1.015, -0.957, 0.667, 0.552}, {1.065, -0.673, 0.687, 0.427}}}}},
+    {PID,
+     {{ise, {{1.473, -0.970, 1.115, 0.753, 0.550, 0.948}, {1.524, -0.735, 1.130, 0.641, 0.552, 0.851}}},
+      {iste, {{1.468, -0.970, 0.942, 0.725, 0.443, 0.939}, {1.515, -0.730, 0.957, 0.598, 0.444, 0.847}}}}},
 };
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const bool servo = options.text("mode").value_or("servo") == "servo";
-    const auto& rows =
-        (servo ? kServo : kRegulation).at(chosen_controller(options)).at(options.text("criterion").value_or("iste"));
-    return tune_first_order(problem, options, {.name = "Zhuang-Atherton", .least = 0.1, .most = 2},
+Expected<TunedController> tune(const TuningProblem& problem, const ZhuangAthertonOptions& options) {
+    const bool servo = options.mode == Mode::servo;
+    const auto& rows = (servo ? kServo : kRegulation).at(options.controller).at(options.criterion);
+    return tune_first_order(problem, options.model, {.name = "Zhuang-Atherton", .least = 0.1, .most = 2},
                             [&](const ReducedModel& model) {
                                 return error_integral_settings(model.L <= model.T1 ? rows.up_to_1 : rows.above_1,
                                                                servo ? IntegralLaw::line : IntegralLaw::power, model);
@@ -56,11 +54,15 @@ TuningMethod zhuang_atherton_method() {
     method.source = "Zhuang and Atherton, IEE Proceedings D 140 (1993) 216-224";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2";
-    method.options =
-        with_first_order_options({controller_option({"PI", "PID"}), criterion_option({"iste", "ise"}), mode_option()});
-    method.variants = {row("PI", {{"controller", "PI"}}), row("PID", {}),
-                       row("PID, regulation", {{"mode", "regulation"}})};
-    method.tune = tune;
+    OptionSet<ZhuangAthertonOptions> options;
+    add_controller(options, {PI, PID});
+    add_criterion(options, {iste, ise});
+    add_mode(options);
+    options.embed(&ZhuangAthertonOptions::model, first_order_options());
+    method.variants = {{"PI", options.given_for({.controller = PI})},
+                       {"PID", {}},
+                       {"PID, regulation", options.given_for({.mode = Mode::regulation})}};
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,20 +1,19 @@
 #include "engine/tuning/reaction_curve/ziegler_nichols_step.h"
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
 
-Pid settings(const std::string& controller, double a, double L) {
-    if (controller == "P") return {.Kp = 1 / a};
-    if (controller == "PI") return {.Kp = 0.9 / a, .Ti = L / 0.3};
+Pid settings(ControllerKind controller, double a, double L) {
+    if (controller == ControllerKind::P) return {.Kp = 1 / a};
+    if (controller == ControllerKind::PI) return {.Kp = 0.9 / a, .Ti = L / 0.3};
     return {.Kp = 1.2 / a, .Ti = 2 * L, .Td = 0.5 * L};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto model =
-        rule_model(problem, options, {.preferred = ReductionMethod::tangent, .tangent_time = TangentTime::by_slope});
+Expected<TunedController> tune(const TuningProblem& problem, const ZieglerNicholsStepOptions& options) {
+    const auto model = rule_model(problem, options.reduction,
+                                  {.preferred = ReductionMethod::tangent, .tangent_time = TangentTime::by_slope});
     if (!model) return model.error();
     if (model->L <= 0)
         return degenerate("plant/L", "Ziegler-Nichols divides by the dead time, and that of the model is 0.",
@@ -27,8 +26,8 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
             "Use amigo or robust.");
 
     const double slope = model->integrators == 1 ? model->K : model->K / model->T1;
-    Pid controller = settings(chosen_controller(options), slope * model->L, model->L);
-    controller.filter = chosen_filter(options, FilterType::derivative, controller.Td);
+    Pid controller = settings(options.controller, slope * model->L, model->L);
+    controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
 
     std::vector<Warning> warnings;
     const double ratio = model->L / model->T1;
@@ -52,11 +51,14 @@ TuningMethod ziegler_nichols_step_method() {
     method.validity =
         "L/T from 0.1 to 1 as usually cited (the source gives none); aims at quarter-amplitude damping, Ms is often "
         "above 2";
-    method.options = {controller_option({"P", "PI", "PID"}),
-                      reduction_option("tangent, as in the source, here with T = static gain over steepest slope; "
-                                       "half_rule where there is no tangent."),
-                      filter_option("of the derivative part, Td s/(1 + s Tf).")};
-    method.tune = tune;
+    OptionSet<ZieglerNicholsStepOptions> options;
+    add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
+    add_reduction(
+        options,
+        "tangent, as in the source, here with T = static gain over steepest slope; half_rule where there is no "
+        "tangent.");
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,10 +1,8 @@
 #include "engine/tuning/rimc/rimc.h"
 
-#include <array>
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/rule.h"
 #include "engine/tuning/rimc/rimc_branch.h"
 
 namespace tunewright {
@@ -13,17 +11,19 @@ namespace {
 constexpr double kNearLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
 constexpr double kSlow = 2;          // L/T up to which the source has results
 constexpr int kCurvePoints = 60;
-constexpr std::array kTargets = {"lambda", "Ms", "disturbance_peak", "dead_time_error"};
 
-RimcFilter filter_of(const MethodOptions& options) {
-    return {.linear_fraction = options.text("approximation").value_or("maclaurin") == "linear_fractional",
-            .Tf_over_Td = options.number("Tf_over_Td").value_or(RimcFilter{}.Tf_over_Td)};
+RimcFilter filter_of(const RimcOptions& options) {
+    return {.linear_fraction = options.approximation == RimcApproximation::linear_fractional,
+            .Tf_over_Td = options.Tf_over_Td.value_or(RimcFilter{}.Tf_over_Td)};
 }
 
-std::optional<Error> contradictory(const MethodOptions& options) {
+std::optional<Error> contradictory(const RimcOptions& options) {
     const char* first = nullptr;
-    for (const char* name : kTargets) {
-        if (!options.has(name)) continue;
+    for (const auto& [name, given] : {std::pair("lambda", options.lambda.has_value()),
+                                      {"Ms", options.Ms.has_value()},
+                                      {"disturbance_peak", options.disturbance_peak.has_value()},
+                                      {"dead_time_error", options.dead_time_error.has_value()}}) {
+        if (!given) continue;
         if (first)
             return Error{ErrorKind::invalid_argument, name,
                          std::string(first) + " and " + name +
@@ -31,7 +31,7 @@ std::optional<Error> contradictory(const MethodOptions& options) {
                              "dead_time_error. Give one of them."};
         first = name;
     }
-    if (options.has("Tf_over_Td") && filter_of(options).linear_fraction)
+    if (options.Tf_over_Td && filter_of(options).linear_fraction)
         return Error{ErrorKind::invalid_argument, "Tf_over_Td",
                      "The linear fractional approximation has its own filter time. Leave Tf_over_Td out, or use the "
                      "approximation maclaurin."};
@@ -61,10 +61,10 @@ Error inadmissible(double lambda, const RimcBranch& branch) {
                 " on this model. Give one in that range."};
 }
 
-Expected<double> chosen_lambda(const MethodOptions& options, const Fopdt& model, const RimcBranch& branch) {
-    if (const auto Ms = options.number("Ms")) return branch.lambda_for_Ms(*Ms);
-    if (const auto error = options.number("dead_time_error")) return branch.lambda_for_dead_time_error(*error);
-    if (const auto peak = options.number("disturbance_peak")) {
+Expected<double> chosen_lambda(const RimcOptions& options, const Fopdt& model, const RimcBranch& branch) {
+    if (const auto& Ms = options.Ms) return branch.lambda_for_Ms(*Ms);
+    if (const auto& error = options.dead_time_error) return branch.lambda_for_dead_time_error(*error);
+    if (const auto& peak = options.disturbance_peak) {
         if (*peak * model.K > 0 || *peak > 0) return branch.lambda_for_disturbance_peak(*peak);
         return Error{
             ErrorKind::invalid_argument, "disturbance_peak",
@@ -72,25 +72,24 @@ Expected<double> chosen_lambda(const MethodOptions& options, const Fopdt& model,
                 "; it must not be 0, and negative only where the plant's gain is. Give the size of y's largest "
                 "deviation per unit of load."};
     }
-    const double lambda = options.number("lambda").value_or(model.T);
+    const double lambda = options.lambda.value_or(model.T);
     const auto [low, high] = branch.admissible();
     if (lambda > high || lambda <= low) return inadmissible(lambda, branch);
     return lambda;
 }
 
-RimcReport report_on(const Fopdt& model, double lambda, const RimcBranch& branch, const MethodOptions& options) {
+RimcReport report_on(const Fopdt& model, double lambda, const RimcBranch& branch, const RimcOptions& options) {
     RimcReport report;
     report.full_controller = rimc_controller(model, lambda);
     report.Ms = branch.Ms(lambda);
     report.disturbance_peak = branch.disturbance_peak(lambda);
     report.dead_time_error = branch.dead_time_error(lambda);
     report.stability_limit = branch.stability_limit();
-    if (report.dead_time_error && options.has("dead_time_error"))
-        report.dead_time_error = options.number("dead_time_error");
+    if (report.dead_time_error && options.dead_time_error) report.dead_time_error = options.dead_time_error;
     for (const char* name : {"Ms", "disturbance_peak", "dead_time_error"})
         report.why_null[name] = "With this lambda the PID does not stabilise the model that it was designed for.";
     report.why_null["stability_limit"] = "No lambda that was looked at is at the limit of stability on the model.";
-    if (options.boolean("curve").value_or(false)) report.curve = branch.curve(kCurvePoints);
+    if (options.curve) report.curve = branch.curve(kCurvePoints);
     return report;
 }
 
@@ -116,16 +115,15 @@ void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, doubl
                                             "): the response is slower without being more robust."));
 }
 
-std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch& branch,
-                             const MethodOptions& options) {
+std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch& branch, const RimcOptions& options) {
     std::vector<Warning> warnings;
     warn_of_stability(warnings, model, lambda, branch);
     if (model.L > kSlow * model.T)
         warnings.push_back(outside_validity("L/T is " + text(model.L / model.T) +
                                             ": the design is for plants with a slow time constant; with a dead time "
                                             "beyond 2 T it gains little and its PID follows the design badly."));
-    if (options.has("dead_time_error")) {
-        const double asked = *options.number("dead_time_error"), all = branch.dead_time_error(lambda).value_or(0);
+    if (options.dead_time_error) {
+        const double asked = *options.dead_time_error, all = branch.dead_time_error(lambda).value_or(0);
         if (all < asked * (1 - 1e-6))
             warnings.push_back({"smaller-errors-too",
                                 "Eq. 29 holds for the error " + text(asked) +
@@ -137,9 +135,9 @@ std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch
     return warnings;
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
+Expected<TunedController> tune(const TuningProblem& problem, const RimcOptions& options) {
     if (const auto error = contradictory(options)) return *error;
-    const auto reduced = rule_model(problem, options, {.preferred = ReductionMethod::half_rule});
+    const auto reduced = rule_model(problem, options.reduction, {.preferred = ReductionMethod::half_rule});
     if (!reduced) return reduced.error();
     if (const auto error = unfit(*reduced)) return *error;
 
@@ -156,61 +154,33 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
     return answer;
 }
 
-OptionDescription lambda_option() {
-    OptionDescription lambda;
-    lambda.name = "lambda";
-    lambda.sentence =
-        "Time constant of the closed loop: larger is slower and more robust. Default, if none of Ms, disturbance_peak "
-        "and "
-        "dead_time_error is given: the model's T.";
-    lambda.unit = "time";
-    lambda.exclusive_minimum = 0;
-    return lambda;
-}
-
-std::vector<OptionDescription> target_options() {
-    OptionDescription Ms;
-    Ms.name = "Ms";
-    Ms.sentence = "In place of lambda: the largest |S| of the loop with the model.";
-    Ms.exclusive_minimum = 1;
-    Ms.maximum = 10;
-    OptionDescription peak;
-    peak.name = "disturbance_peak";
-    peak.sentence = "In place of lambda: the largest deviation of y after a unit load step on the model.";
-    peak.unit = "y/u";
-    OptionDescription error;
-    error.name = "dead_time_error";
-    error.sentence =
-        "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain condition "
-        "of "
-        "Eq. 29 (sufficient only): the smallest lambda above which it holds.";
-    error.unit = "time";
-    error.exclusive_minimum = 0;
-    return {Ms, peak, error};
-}
-
-std::vector<OptionDescription> form_options() {
-    OptionDescription ratio;
-    ratio.name = "Tf_over_Td";
-    ratio.sentence = "Time of the derivative's filter over Td; 0 for none.";
-    ratio.default_value = RimcFilter{}.Tf_over_Td;
-    ratio.minimum = 0;
-    ratio.maximum = 1;
-    OptionDescription approximation;
-    approximation.name = "approximation";
-    approximation.type = OptionType::choice;
-    approximation.sentence =
-        "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
-        "linear_fractional: "
-        "(a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with the filter time b1.";
-    approximation.default_value = std::string("maclaurin");
-    approximation.choices = {"maclaurin", "linear_fractional"};
-    OptionDescription curve;
-    curve.name = "curve";
-    curve.type = OptionType::boolean;
-    curve.sentence = "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).";
-    curve.default_value = false;
-    return {ratio, approximation, curve};
+OptionSet<RimcOptions> described_options() {
+    using O = RimcOptions;
+    using enum RimcApproximation;
+    OptionSet<O> set;
+    set.number(&O::lambda, "lambda",
+               "Time constant of the closed loop: larger is slower and more robust. Default, if none of Ms, "
+               "disturbance_peak and dead_time_error is given: the model's T.",
+               {.unit = "time", .exclusive_minimum = 0});
+    set.number(&O::Ms, "Ms", "In place of lambda: the largest |S| of the loop with the model.",
+               {.exclusive_minimum = 1, .maximum = 10});
+    set.number(&O::disturbance_peak, "disturbance_peak",
+               "In place of lambda: the largest deviation of y after a unit load step on the model.", {.unit = "y/u"});
+    set.number(&O::dead_time_error, "dead_time_error",
+               "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain "
+               "condition of Eq. 29 (sufficient only): the smallest lambda above which it holds.",
+               {.unit = "time", .exclusive_minimum = 0});
+    set.number(&O::Tf_over_Td, "Tf_over_Td", "Time of the derivative's filter over Td; 0 for none.",
+               {.minimum = 0, .maximum = 1, .otherwise = RimcFilter{}.Tf_over_Td});
+    set.choice(&O::approximation, "approximation",
+               "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
+               "linear_fractional: (a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with "
+               "the filter time b1.",
+               Words<RimcApproximation>{{"maclaurin", maclaurin}, {"linear_fractional", linear_fractional}});
+    set.flag(&O::curve, "curve",
+             "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).");
+    add_reduction(set, "half_rule; tangent where that does not apply.");
+    return set;
 }
 
 }  // namespace
@@ -227,11 +197,7 @@ TuningMethod rimc_method() {
     method.needs = "fopdt with T > 0 (others are reduced)";
     method.validity =
         "plants with a slow time constant, L up to about 2 T; lambda between the limit of stability and the least Ms";
-    method.options = {lambda_option()};
-    for (auto& option : target_options()) method.options.push_back(std::move(option));
-    for (auto& option : form_options()) method.options.push_back(std::move(option));
-    method.options.push_back(reduction_option("half_rule; tangent where that does not apply."));
-    method.tune = tune;
+    method.serve(described_options(), tune);
     return method;
 }
 

@@ -189,9 +189,10 @@ RimcBranch::Reach RimcBranch::descend(const Figure& figure, double target, bool 
 }
 
 Error RimcBranch::no_branch(const char* option) const {
-    return {ErrorKind::no_feasible_controller, option,
-            "No lambda gives a loop that is stable on the model with L/T = " + text(scaled_.L) +
-                " and this filter. Use a smaller Tf_over_Td, the approximation linear_fraction, or the method robust."};
+    return {
+        ErrorKind::no_feasible_controller, option,
+        "No lambda gives a loop that is stable on the model with L/T = " + text(scaled_.L) +
+            " and this filter. Use a smaller Tf_over_Td, the approximation linear_fractional, or the method robust."};
 }
 
 Expected<double> RimcBranch::lambda_for_Ms(double Ms) const {

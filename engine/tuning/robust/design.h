@@ -13,6 +13,9 @@
 
 namespace tunewright::robust {
 
+/// Which circles the Nyquist curve stays out of: those of Ms and Mt, or the smallest one around both.
+enum class Constraint { circles, m_circle };
+
 enum class Objective { load_iae, load_ie, setpoint_iae, weighted };
 
 /// Tf as a fixed time or as a fraction of Td; neither: no filter (PI).

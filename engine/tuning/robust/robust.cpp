@@ -8,7 +8,6 @@
 #include "engine/tuning/reaction_curve/amigo.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/feasibility.h"
-#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {
 namespace {
@@ -17,22 +16,14 @@ using namespace robust;
 
 constexpr int kMaxRounds = 10;  // of adding the worst plant found inside a region
 
-Objective objective_named(const std::string& name) {
-    if (name == "load_ie") return Objective::load_ie;
-    if (name == "setpoint_iae") return Objective::setpoint_iae;
-    if (name == "weighted") return Objective::weighted;
-    return Objective::load_iae;
-}
-
 /// The filter that the options give, if they do.
-Expected<std::optional<FilterRule>> explicit_filter(const MethodOptions& options, bool pid) {
-    if (const auto Tf = options.number("filter/Tf")) return std::optional(FilterRule{.Tf = *Tf, .Tf_over_Td = {}});
-    const auto ratio = options.number("filter/Tf_over_Td");
-    if (!ratio) return std::optional<FilterRule>();
+Expected<std::optional<FilterRule>> explicit_filter(const RobustFilterOptions& options, bool pid) {
+    if (options.Tf) return std::optional(FilterRule{.Tf = options.Tf, .Tf_over_Td = {}});
+    if (!options.Tf_over_Td) return std::optional<FilterRule>();
     if (!pid)
         return Error{ErrorKind::invalid_argument, "filter/Tf_over_Td",
                      "A PI controller has no Td; give the filter as Tf."};
-    return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = *ratio});
+    return std::optional(FilterRule{.Tf = {}, .Tf_over_Td = options.Tf_over_Td});
 }
 
 constexpr double kMinResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
@@ -59,7 +50,7 @@ Error no_filter_time(const TuningProblem& problem) {
 }
 
 /// The contract's filter rule. Error: `no_filter_time`.
-Expected<FilterRule> filter_rule(const TuningProblem& problem, const MethodOptions& options, bool pid) {
+Expected<FilterRule> filter_rule(const TuningProblem& problem, const RobustFilterOptions& options, bool pid) {
     const auto given = explicit_filter(options, pid);
     if (!given) return given.error();
     if (*given) return **given;
@@ -79,27 +70,25 @@ double first_sign(const LinearPlant& plant) {
     return plant.unstable_poles() % 2 == 0 ? sign : -sign;
 }
 
-bool pid_wanted(const MethodOptions& options) { return options.text("controller").value_or("PID") == "PID"; }
+bool pid_wanted(const RobustOptions& options) { return options.controller == ControllerKind::PID; }
 
 /// All but the plant and the sign of Kp.
-Problem make_problem(const MethodOptions& options, const FilterRule& filter) {
+Problem make_problem(const RobustOptions& options, const FilterRule& filter) {
     Problem problem;
     problem.pid = pid_wanted(options);
     problem.filter = filter;
-    problem.limits.Ms = options.number("Ms").value_or(1.4);
-    problem.limits.Mt = options.number("Mt").value_or(1.4);
-    problem.limits.Mks = options.number("Mks");
-    problem.limits.m_circle = options.text("constraint").value_or("circles") == "m_circle";
-    problem.objective = objective_named(options.text("objective").value_or("load_iae"));
-    problem.rho = options.number("rho").value_or(0.5);
+    problem.limits.Ms = options.Ms;
+    problem.limits.Mt = options.Mt;
+    problem.limits.Mks = options.Mks;
+    problem.limits.m_circle = options.constraint == Constraint::m_circle;
+    problem.objective = options.objective;
+    problem.rho = options.rho;
     return problem;
 }
 
 /// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty where they do not apply.
-PlaneStart amigo_start(const TuningProblem& tuning, bool pid) {
-    MethodOptions options;
-    options.set("controller", std::string(pid ? "PID" : "PI"));
-    const auto tuned = amigo_method().tune(tuning, options, {});
+PlaneStart amigo_start(const TuningProblem& tuning, ControllerKind controller) {
+    const auto tuned = tune_amigo(tuning, {.controller = controller});
     if (!tuned) return std::nullopt;
     return std::pair{tuned->controller.Ti, tuned->controller.Td};
 }
@@ -135,12 +124,12 @@ void add_warnings(TunedController& result, const Problem& problem, const Point& 
 }
 
 /// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
-Expected<Problem> nominal_problem(const TuningProblem& tuning, const MethodOptions& options) {
+Expected<Problem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options) {
     if (tuning.linear.integrators() < 0)
         return Error{ErrorKind::unstable_plant, "",
                      "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
                      "controller without integral action."};
-    const auto filter = filter_rule(tuning, options, pid_wanted(options));
+    const auto filter = filter_rule(tuning, options.filter, pid_wanted(options));
     if (!filter) return filter.error();
     Problem problem = make_problem(options, *filter);
     problem.plant = &tuning.linear;
@@ -157,7 +146,7 @@ std::optional<Error> without_optimum(const Problem& problem) {
                  "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
 }
 
-Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodOptions& options,
+Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustOptions& options,
                                       const RunControl& control) {
     auto posed = nominal_problem(tuning, options);
     if (!posed) return posed.error();
@@ -167,9 +156,10 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
     problem.others = *others;
     if (auto error = without_optimum(problem)) return *error;
     CostSurface surface;
-    const std::string kind = options.text("search").value_or("fast");
-    const bool with_surface = options.boolean("surface").value_or(false);
-    const PlaneStart start = kind == "fast" && !with_surface ? std::nullopt : amigo_start(tuning, problem.pid);
+    const SearchKind kind = options.search;
+    const bool with_surface = options.surface;
+    const PlaneStart start =
+        kind == SearchKind::fast && !with_surface ? std::nullopt : amigo_start(tuning, options.controller);
     TunedController result;
     auto found = verified_search(kind, problem, start, with_surface ? &surface : nullptr, control, nullptr);
     for (int round = 0; found && !found->stopped && tuning.family; ++round) {
@@ -193,14 +183,14 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const MethodO
 }
 
 /// Points have no response over time, so the integrated error Ti/Kp stands for the integral of |e|.
-Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const MethodOptions& options,
+Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const RobustOptions& options,
                                          const RunControl& control) {
     if (!plant.phase_crossover())
         return Error{ErrorKind::unsupported, "plant/omega",
                      "The measured band ends at omega " + text(plant.high()) +
                          ", before the plant's phase has fallen through -180 degrees, so nothing in it bounds the "
                          "gain. Measure higher frequencies."};
-    const auto filter = explicit_filter(options, pid_wanted(options));
+    const auto filter = explicit_filter(options.filter, pid_wanted(options));
     if (!filter) return filter.error();
     const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = 0.1};
     Problem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
@@ -208,15 +198,15 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Metho
     problem.sign = plant.gain_sign();
     problem.objective = Objective::load_ie;
     CostSurface surface;
-    const bool with_surface = options.boolean("surface").value_or(false);
-    const auto found = verified_search(options.text("search").value_or("fast"), problem, std::nullopt,
-                                       with_surface ? &surface : nullptr, control, nullptr);
+    const bool with_surface = options.surface;
+    const auto found =
+        verified_search(options.search, problem, std::nullopt, with_surface ? &surface : nullptr, control, nullptr);
     if (!found) return found.error();
     TunedController result;
     result.controller = controller_at(problem, found->x);
     result.partial = found->stopped;
     if (with_surface) result.surface = surface;
-    if (options.text("objective").value_or("load_ie") != "load_ie")
+    if (options.objective != Objective::load_ie)
         result.warnings.push_back({"objective-replaced",
                                    "A frequency response has no response over time: Kp/Ti is maximised instead of the "
                                    "objective asked for."});
@@ -224,58 +214,45 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Metho
     return result;
 }
 
-OptionDescription limit_option(const char* name, const char* sentence, std::optional<double> default_value) {
-    OptionDescription option{.name = name, .type = OptionType::number, .sentence = sentence};
-    if (default_value) option.default_value = *default_value;
-    option.exclusive_minimum = default_value ? 1 : 0;
-    if (default_value) option.maximum = 4;
-    return option;
+OptionSet<RobustFilterOptions> filter_options() {
+    using O = RobustFilterOptions;
+    OptionSet<O> set;
+    set.number(&O::Tf, "Tf", "Filter time constant, fixed.", {.unit = "time", .exclusive_minimum = 0});
+    set.number(&O::Tf_over_Td, "Tf_over_Td", "Filter time constant as a fraction of Td.",
+               {.exclusive_minimum = 0, .maximum = 10});
+    return set;
 }
 
-std::vector<OptionDescription> option_descriptions() {
-    const auto choice = [](const char* name, const char* sentence, std::vector<std::string> choices) {
-        OptionDescription option{.name = name, .type = OptionType::choice, .sentence = sentence};
-        option.default_value = choices.front();
-        option.choices = std::move(choices);
-        return option;
-    };
-    OptionDescription Tf{
-        .name = "Tf", .type = OptionType::number, .sentence = "Filter time constant, fixed.", .unit = "time"};
-    Tf.exclusive_minimum = 0;
-    OptionDescription ratio{
-        .name = "Tf_over_Td", .type = OptionType::number, .sentence = "Filter time constant as a fraction of Td."};
-    ratio.exclusive_minimum = 0;
-    ratio.maximum = 10;
-    OptionDescription filter{.name = "filter",
-                             .type = OptionType::object,
-                             .sentence =
-                                 "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a "
-                                 "right-half-plane zero or pole excess >= 3, else "
-                                 "Tf = 0.05 times the sum of the lags minus the leads. PI default: none."};
-    filter.fields = {Tf, ratio};
-    filter.at_most_fields = 1;
-    OptionDescription rho{.name = "rho",
-                          .type = OptionType::number,
-                          .sentence = "Weight of the load in the weighted objective; the set point has 1 - rho."};
-    rho.default_value = 0.5;
-    rho.minimum = 0;
-    rho.maximum = 1;
-    OptionDescription surface{.name = "surface",
-                              .type = OptionType::boolean,
-                              .sentence = "Also return the least cost over the (Ti, Td) plane."};
-    surface.default_value = false;
-    return {choice("controller", "PI or PID.", {"PID", "PI"}),
-            limit_option("Ms", "Largest allowed sensitivity max |S|.", 1.4),
-            limit_option("Mt", "Largest allowed complementary sensitivity max |T|.", 1.4),
-            limit_option("Mks", "Largest allowed max |C S|: how strongly u may react.", std::nullopt),
-            choice("constraint", "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
-                   {"circles", "m_circle"}),
-            choice("objective", "What is minimised.", {"load_iae", "load_ie", "setpoint_iae", "weighted"}),
-            rho,
-            choice("search", "fast: scan and quadratic programming. nelder_mead, grid: the paper's searches.",
-                   {"fast", "nelder_mead", "grid"}),
-            surface,
-            filter};
+OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
+    using O = RobustOptions;
+    using enum Objective;
+    constexpr double kMaxLimit = 4;
+    OptionSet<O> set(defaults);
+    add_controller(set, {ControllerKind::PID, ControllerKind::PI});
+    set.number(&O::Ms, "Ms", "Largest allowed sensitivity max |S|.", {.exclusive_minimum = 1, .maximum = kMaxLimit});
+    set.number(&O::Mt, "Mt", "Largest allowed complementary sensitivity max |T|.",
+               {.exclusive_minimum = 1, .maximum = kMaxLimit});
+    set.number(&O::Mks, "Mks", "Largest allowed max |C S|: how strongly u may react.", {.exclusive_minimum = 0});
+    set.choice(&O::constraint, "constraint",
+               "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
+               Words<Constraint>{{"circles", Constraint::circles}, {"m_circle", Constraint::m_circle}});
+    set.choice(
+        &O::objective, "objective",
+        "What is minimised. A plant known by points of its frequency response has no response over time: there it "
+        "is load_ie.",
+        Words<Objective>{
+            {"load_iae", load_iae}, {"load_ie", load_ie}, {"setpoint_iae", setpoint_iae}, {"weighted", weighted}});
+    set.number(&O::rho, "rho", "Weight of the load in the weighted objective; the set point has 1 - rho.",
+               {.minimum = 0, .maximum = 1});
+    set.choice(&O::search, "search", "fast: scan and quadratic programming. nelder_mead, grid: the paper's searches.",
+               Words<SearchKind>{
+                   {"fast", SearchKind::fast}, {"nelder_mead", SearchKind::nelder_mead}, {"grid", SearchKind::grid}});
+    set.flag(&O::surface, "surface", "Also return the least cost over the (Ti, Td) plane.");
+    set.object(&O::filter, "filter",
+               "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a right-half-plane zero or "
+               "pole excess >= 3, else Tf = 0.05 times the sum of the lags minus the leads. PI default: none.",
+               filter_options(), 1);
+    return set;
 }
 
 // Distance between two limits: what matters is how far they lie above 1.
@@ -295,9 +272,8 @@ bool RobustFront::in_order(double M, double load_IAE) const {
 Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& control) {
     constexpr double kNeighbour = 1;
     if (const auto same = known_.find(M); same != known_.end()) return same->second;
-    MethodOptions limits;
-    limits.set("Ms", M);
-    limits.set("Mt", M);
+    RobustOptions limits;
+    limits.Ms = limits.Mt = M;
     auto posed = nominal_problem(problem_, limits);
     if (!posed) return posed.error();
     if (auto error = without_optimum(*posed)) return *error;
@@ -315,10 +291,11 @@ Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& contro
         before = Point{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
     }
     Problem problem = *posed;
-    auto found = verified_search("fast", problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
+    auto found =
+        verified_search(SearchKind::fast, problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
     if (before && (!found || !in_order(M, std::exp(found->log_cost)))) {
         problem = *posed;
-        found = verified_search("fast", problem, std::nullopt, nullptr, control, nullptr);
+        found = verified_search(SearchKind::fast, problem, std::nullopt, nullptr, control, nullptr);
     }
     Expected<Design> design =
         found ? Expected<Design>(Design{controller_at(problem, found->x), std::exp(found->log_cost)})
@@ -339,10 +316,11 @@ TuningMethod robust_method() {
     method.validity =
         "Ms, Mt in (1, 4]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
         "on Mks";
-    method.options = option_descriptions();
-    method.tune = tune_robust;
+    method.serve(described_options({}), tune_robust);
     method.holds_family = true;
-    method.tune_on_points = tune_on_points;
+    RobustOptions on_points;
+    on_points.objective = Objective::load_ie;
+    method.serve_on_points(described_options(on_points), tune_on_points);
     return method;
 }
 

@@ -3,9 +3,28 @@
 
 #include <map>
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/rule.h"
+#include "engine/tuning/robust/design.h"
+#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {
+
+/// Filter of the measurement, second order: Tf, or a fraction of Td; neither: the plant decides.
+struct RobustFilterOptions {
+    std::optional<double> Tf = {}, Tf_over_Td = {};
+};
+
+struct RobustOptions {
+    ControllerKind controller = ControllerKind::PID;  ///< PI or PID
+    double Ms = 1.4, Mt = 1.4;                        ///< limits, in (1, 4]
+    std::optional<double> Mks = {};                   ///< limit on max |C S|
+    robust::Constraint constraint = robust::Constraint::circles;
+    robust::Objective objective = robust::Objective::load_iae;
+    double rho = 0.5;  ///< weight of the load in the weighted objective
+    robust::SearchKind search = robust::SearchKind::fast;
+    bool surface = false;  ///< also return the cost over the (Ti, Td) plane
+    RobustFilterOptions filter = {};
+};
 
 TuningMethod robust_method();
 

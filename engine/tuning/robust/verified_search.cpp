@@ -58,17 +58,17 @@ private:
     int steps_ = 0;
 };
 
-std::optional<Found> search(const std::string& kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
+std::optional<Found> search(SearchKind kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
                             CostSurface* surface, const Report& report) {
-    if (kind == "fast" && surface == nullptr) return fast_search(sweep, problem, report);
+    if (kind == SearchKind::fast && surface == nullptr) return fast_search(sweep, problem, report);
     if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
         const auto points = scan(sweep);
         if (points.empty()) return std::nullopt;
         start = {std::exp(points.front().x[1]), problem.pid ? std::exp(points.front().x[2]) : 0};
     }
-    if (kind == "nelder_mead") return nelder_mead_search(sweep, problem, start->first, start->second, report);
+    if (kind == SearchKind::nelder_mead) return nelder_mead_search(sweep, problem, start->first, start->second, report);
     auto gridded = grid_search(sweep, problem, start->first, start->second, surface, report);
-    return kind == "grid" || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
+    return kind == SearchKind::grid || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
 }
 
 /// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
@@ -158,8 +158,8 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
 
 }  // namespace
 
-Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
-                                CostSurface* surface, const RunControl& control, const Point* before) {
+Expected<Found> verified_search(SearchKind kind, Problem& problem, const PlaneStart& start, CostSurface* surface,
+                                const RunControl& control, const Point* before) {
     const double reference = reference_frequency(problem);
     ProgressReport progress(problem, control);
     const Report report = [&](const Point& x, double cost) { return progress(x, cost); };

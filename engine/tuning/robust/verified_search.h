@@ -12,16 +12,19 @@
 
 namespace tunewright::robust {
 
+/// fast: scan and quadratic programming; nelder_mead, grid: the searches of the paper.
+enum class SearchKind { fast, nelder_mead, grid };
+
 /// Where the plane searches begin, as (Ti, Td); empty: at the best point of a scan.
 using PlaneStart = std::optional<std::pair<double, double>>;
 
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
 /// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
 /// is searched; where that finds nothing, the whole search is made.
-/// `kind`: fast, nelder_mead or grid. `problem` receives the reference optima of a weighted objective and the sign of
+/// `problem` receives the reference optima of a weighted objective and the sign of
 /// Kp that was found to work. Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.
-Expected<Found> verified_search(const std::string& kind, Problem& problem, const PlaneStart& start,
-                                CostSurface* surface, const RunControl& control, const Point* before);
+Expected<Found> verified_search(SearchKind kind, Problem& problem, const PlaneStart& start, CostSurface* surface,
+                                const RunControl& control, const Point* before);
 
 }  // namespace tunewright::robust

@@ -3,20 +3,19 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/ultimate_rule.h"
 
 namespace tunewright {
 namespace {
 
-Pid settings(const std::string& controller, double kappa, const UltimatePoint& at) {
-    if (controller == "PI") return {.Kp = 0.16 * at.Ku, .Ti = at.Pu / (1 + 4.5 * kappa)};
+Pid settings(ControllerKind controller, double kappa, const UltimatePoint& at) {
+    if (controller == ControllerKind::PI) return {.Kp = 0.16 * at.Ku, .Ti = at.Pu / (1 + 4.5 * kappa)};
     return {.Kp = (0.3 - 0.1 * std::pow(kappa, 4)) * at.Ku,
             .Ti = 0.6 * at.Pu / (1 + 2 * kappa),
             .Td = 0.15 * at.Pu * (1 - kappa) / (1 - 0.95 * kappa)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto at = chosen_ultimate_point(problem, options);
+Expected<TunedController> tune(const TuningProblem& problem, const AmigoUltimateOptions& options) {
+    const auto at = chosen_ultimate_point(problem, options.point);
     if (!at) return at.error();
     const LinearPlant& plant = problem.linear;
     const double kappa = gain_ratio(plant, *at);
@@ -25,11 +24,10 @@ Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions
                      "The rule needs a stable or integrating plant whose gain at its ultimate point is at most the "
                      "static gain; 1/(K Ku) is " +
                          text(kappa) + ". Use amigo, ziegler_nichols_ultimate or robust."};
-    const std::string controller = chosen_controller(options);
-    Pid answer = settings(controller, kappa, *at);
-    answer.filter = chosen_filter(options, FilterType::measurement_second_order, answer.Td);
+    Pid answer = settings(options.controller, kappa, *at);
+    answer.filter = chosen_filter(options.filter, FilterType::measurement_second_order, answer.Td);
     std::vector<Warning> warnings;
-    if (controller == "PID" && kappa < 0.1)
+    if (options.controller == ControllerKind::PID && kappa < 0.1)
         warnings.push_back(outside_validity("1/(K Ku) is " + text(kappa) +
                                             ", below 0.1: for plants with so little dead time the ultimate point says "
                                             "too little and the rule may be far from its aim. Check Ms, or use "
@@ -49,9 +47,11 @@ TuningMethod amigo_ultimate_method() {
     method.source = "Åström and Hägglund, J. Process Control 14 (2004) 635-650; Advanced PID Control (2006), chapter 7";
     method.needs = "stable or integrating plants that a proportional gain brings to oscillation, or Ku and Pu";
     method.validity = "plants with an essentially monotone step response; PID: kappa from 0.1 to 1";
-    method.options =
-        with_ultimate_options({controller_option({"PI", "PID"})}, "second order on the measurement, as in the source.");
-    method.tune = tune;
+    OptionSet<AmigoUltimateOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.embed(&AmigoUltimateOptions::point, ultimate_options());
+    add_filter(options, "second order on the measurement, as in the source.");
+    method.serve(options, tune);
     return method;
 }
 

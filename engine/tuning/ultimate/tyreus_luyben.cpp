@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/ultimate_rule.h"
 
 namespace tunewright {
 namespace {
@@ -19,12 +18,13 @@ std::vector<Warning> sluggishness(const TuningProblem& problem, const UltimatePo
                              "made for lag-dominated and integrating plants; use simc or robust.")};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const auto at = chosen_ultimate_point(problem, options);
+Expected<TunedController> tune(const TuningProblem& problem, const TyreusLuybenOptions& options) {
+    const auto at = chosen_ultimate_point(problem, options.point);
     if (!at) return at.error();
-    Pid answer = chosen_controller(options) == "PI" ? Pid{.Kp = at->Ku / 3.2, .Ti = 2.2 * at->Pu}
-                                                    : Pid{.Kp = at->Ku / 2.2, .Ti = 2.2 * at->Pu, .Td = at->Pu / 6.3};
-    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    Pid answer = options.controller == ControllerKind::PI
+                     ? Pid{.Kp = at->Ku / 3.2, .Ti = 2.2 * at->Pu}
+                     : Pid{.Kp = at->Ku / 2.2, .Ti = 2.2 * at->Pu, .Td = at->Pu / 6.3};
+    answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings = ultimate_warnings(problem);
     for (const auto& warning : sluggishness(problem, *at)) warnings.push_back(warning);
     return rule_answer(answer, std::move(warnings));
@@ -42,9 +42,11 @@ TuningMethod tyreus_luyben_method() {
         "Control (1997)";
     method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";
     method.validity = "lag-dominated and integrating plants: 1/(K Ku) up to 0.5";
-    method.options = with_ultimate_options({controller_option({"PI", "PID"})},
-                                           "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.tune = tune;
+    OptionSet<TyreusLuybenOptions> options;
+    add_controller(options, {ControllerKind::PI, ControllerKind::PID});
+    options.embed(&TyreusLuybenOptions::point, ultimate_options());
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    method.serve(options, tune);
     return method;
 }
 

@@ -1,13 +1,19 @@
 // Tyreus and Luyben's rules from the ultimate gain and period.
 #pragma once
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/method/ultimate_rule.h"
 
 namespace tunewright {
 
-/// PI and PID, more damped than Ziegler and Nichols' and with a long integral time: made for lag-dominated and
-/// integrating plants. Sources: Tyreus & Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben,
-/// Essentials of Process Control (1997) (PID).
+struct TyreusLuybenOptions {
+    ControllerKind controller = ControllerKind::PID;
+    UltimateOptions point = {};
+    FilterOptions filter = {};
+};
+
+/// PI: Kp = Ku/3.2, Ti = 2.2 Pu; PID: Kp = Ku/2.2, Ti = 2.2 Pu, Td = Pu/6.3. More damped than Ziegler and Nichols' and
+/// with a long integral time: made for lag-dominated and integrating plants. Sources: Tyreus & Luyben, Ind. Eng. Chem.
+/// Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben, Essentials of Process Control (1997) (PID).
 TuningMethod tyreus_luyben_method();
 
 }  // namespace tunewright

@@ -3,21 +3,27 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/method/ultimate_rule.h"
 
 namespace tunewright {
 namespace {
 
-Pid pid(const std::string& variant, double Ku, double Pu) {
-    if (variant == "pessen") return {.Kp = 0.7 * Ku, .Ti = 0.4 * Pu, .Td = 0.15 * Pu};
-    if (variant == "some_overshoot") return {.Kp = Ku / 3, .Ti = Pu / 2, .Td = Pu / 3};
-    if (variant == "no_overshoot") return {.Kp = 0.2 * Ku, .Ti = Pu / 2, .Td = Pu / 3};
+Words<ZieglerNicholsVariant> variants() {
+    using enum ZieglerNicholsVariant;
+    return {
+        {"classic", classic}, {"pessen", pessen}, {"some_overshoot", some_overshoot}, {"no_overshoot", no_overshoot}};
+}
+
+Pid pid(ZieglerNicholsVariant variant, double Ku, double Pu) {
+    using enum ZieglerNicholsVariant;
+    if (variant == pessen) return {.Kp = 0.7 * Ku, .Ti = 0.4 * Pu, .Td = 0.15 * Pu};
+    if (variant == some_overshoot) return {.Kp = Ku / 3, .Ti = Pu / 2, .Td = Pu / 3};
+    if (variant == no_overshoot) return {.Kp = 0.2 * Ku, .Ti = Pu / 2, .Td = Pu / 3};
     return {.Kp = 0.6 * Ku, .Ti = Pu / 2, .Td = Pu / 8};
 }
 
-Pid settings(const std::string& controller, const std::string& variant, const UltimatePoint& at) {
-    if (controller == "P") return {.Kp = 0.5 * at.Ku};
-    if (controller == "PI") return {.Kp = 0.45 * at.Ku, .Ti = at.Pu / 1.2};
+Pid settings(ControllerKind controller, ZieglerNicholsVariant variant, const UltimatePoint& at) {
+    if (controller == ControllerKind::P) return {.Kp = 0.5 * at.Ku};
+    if (controller == ControllerKind::PI) return {.Kp = 0.45 * at.Ku, .Ti = at.Pu / 1.2};
     return pid(variant, at.Ku, at.Pu);
 }
 
@@ -31,35 +37,25 @@ std::vector<Warning> remarks(const TuningProblem& problem, const UltimatePoint& 
                                            : "it is oscillatory and needs very high gains there."))};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const MethodOptions& options, const RunControl&) {
-    const std::string controller = chosen_controller(options), variant = options.text("variant").value_or("classic");
-    if (controller != "PID" && variant != "classic")
-        return Error{ErrorKind::invalid_argument, "variant",
-                     "variant is " + variant + ", which exists for PID alone, and controller is " + controller +
-                         ". Leave variant out, or ask for PID."};
-    const auto point = chosen_ultimate_point(problem, options);
+}  // namespace
+
+Expected<TunedController> tune_ziegler_nichols_ultimate(const TuningProblem& problem,
+                                                        const ZieglerNicholsUltimateOptions& options) {
+    if (options.controller != ControllerKind::PID && options.variant != ZieglerNicholsVariant::classic)
+        return Error{
+            ErrorKind::invalid_argument, "variant",
+            "variant is " + word_of(variants(), options.variant) + ", which exists for PID alone, and controller is " +
+                word_of(words_of({options.controller}), options.controller) + ". Leave variant out, or ask for PID."};
+    const auto point = chosen_ultimate_point(problem, options.point);
     if (!point) return point.error();
-    Pid answer = settings(controller, variant, *point);
-    answer.filter = chosen_filter(options, FilterType::derivative, answer.Td);
+    Pid answer = settings(options.controller, options.variant, *point);
+    answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     return rule_answer(answer, remarks(problem, *point));
 }
 
-OptionDescription variant_option() {
-    OptionDescription option;
-    option.name = "variant";
-    option.type = OptionType::choice;
-    option.sentence =
-        "Of PID: classic; pessen (Pessen's integral rule); some_overshoot, no_overshoot: less gain, more damping.";
-    option.default_value = std::string("classic");
-    option.choices = {"classic", "pessen", "some_overshoot", "no_overshoot"};
-    return option;
-}
-
-}  // namespace
-
 TuningMethod ziegler_nichols_ultimate_method() {
     TuningMethod method;
-    method.id = "ziegler_nichols_ultimate";
+    method.id = kZieglerNicholsUltimate;
     method.title = "Ziegler-Nichols, ultimate gain";
     method.formula =
         "P: Kp = 0.5 Ku; PI: Kp = 0.45 Ku, Ti = Pu/1.2; PID: Kp = 0.6 Ku, Ti = Pu/2, Td = Pu/8; pessen: 0.7 Ku, 0.4 "
@@ -70,12 +66,19 @@ TuningMethod ziegler_nichols_ultimate_method() {
     method.validity =
         "integrating plants, stable ones with K Ku from 2.25 to 15; aims at quarter-amplitude damping, so expect Ms "
         "above 2";
-    method.options = with_ultimate_options({controller_option({"P", "PI", "PID"}), variant_option()},
-                                           "of the derivative part, Td s/(1 + s Tf); the source has none.");
+    OptionSet<ZieglerNicholsUltimateOptions> options;
+    add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
+    options.choice(
+        &ZieglerNicholsUltimateOptions::variant, "variant",
+        "Of PID: classic; pessen (Pessen's integral rule); some_overshoot, no_overshoot: less gain, more damping.",
+        variants());
+    options.embed(&ZieglerNicholsUltimateOptions::point, ultimate_options());
+    add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
     // Of the variants only the calmest: the others are known for their overshoot.
-    method.variants = {row("PI", {{"controller", "PI"}}), row("PID", {}),
-                       row("PID, no overshoot", {{"variant", "no_overshoot"}})};
-    method.tune = tune;
+    method.variants = {{"PI", options.given_for({.controller = ControllerKind::PI})},
+                       {"PID", {}},
+                       {"PID, no overshoot", options.given_for({.variant = ZieglerNicholsVariant::no_overshoot})}};
+    method.serve(options, tune_ziegler_nichols_ultimate);
     return method;
 }
 

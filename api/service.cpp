@@ -24,8 +24,6 @@ Answer refusal(const Problem& problem) { return {problem.status, to_json(problem
 
 JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
 
-double now(const RunControl& control) { return control.now_ms ? control.now_ms() : 0; }
-
 // What reading the CSV has found belongs to the data's quality too.
 void add_reading(const ReadRecord& read, DataQuality& quality) {
     quality.samples_dropped += read.dropped;
@@ -33,15 +31,6 @@ void add_reading(const ReadRecord& read, DataQuality& quality) {
     if (read.dropped > 0)
         quality.notes.push_back(std::to_string(read.dropped) +
                                 " line(s) of the csv without a time, or with neither u nor y, were left out.");
-}
-
-// The engine speaks of "controller/..."; the request has a list of them.
-Problem at_controller(const Error& error, std::size_t index) {
-    constexpr std::string_view kPrefix = "controller";
-    Error placed = error;
-    if (placed.where.rfind(kPrefix, 0) == 0)
-        placed.where = "controllers/" + std::to_string(index) + placed.where.substr(kPrefix.size());
-    return to_problem(placed);
 }
 
 // What is answered only where it was asked for.
@@ -205,39 +194,10 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
-    EvaluateAnswer answer;
-    std::optional<Tradeoffs> tradeoffs;
-    std::optional<RobustOptima> optima;
-    std::optional<NonlinearSystem> system;
-    if (const auto* equations = std::get_if<NonlinearPlant>(&*request.plant)) {
-        auto made = NonlinearSystem::make(*equations);
-        if (!made) return refusal(to_problem(made.error()));
-        system = std::move(*made);
-        answer.operating_point = operating_point(*system);
-    }
-    const auto nominal = system ? Plant(system->linearised()) : nominal_plant(*request.plant);
-    const EvaluateOptions on_nominal = system ? on_linearisation(*system, request.evaluate) : request.evaluate;
-    if (request.evaluate.tradeoff) tradeoffs.emplace(nominal, on_nominal);
-    if (request.evaluate.optimum_at_Ms.value_or(false) && nominal)
-        optima.emplace(TuningProblem{*nominal, *LinearPlant::make(*nominal), {}, {}}, on_nominal);
-    for (std::size_t i = 0; i < request.controllers.size(); ++i) {
-        if (control.stop.stop_requested())
-            return refusal(to_problem({ErrorKind::timeout,
-                                       {},
-                                       "The time allowed was over after " + std::to_string(i) +
-                                           " controllers; send fewer, or fewer points."}));
-        const double start = now(control);
-        auto evaluation = system ? evaluate(*system, request.controllers[i], request.evaluate)
-                                 : evaluate(*request.plant, request.controllers[i], request.evaluate);
-        if (!evaluation) return refusal(at_controller(evaluation.error(), i));
-        TuningEntry& entry = answer.controllers.emplace_back();
-        if (tradeoffs) entry.tradeoff = tradeoffs->of(request.controllers[i], std::nullopt);
-        if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
-        evaluation->compute_ms = now(control) - start;
-        entry.evaluation = std::move(*evaluation);
-    }
+    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, control);
+    if (!result) return refusal(to_problem(result.error()));
     Writer out;
-    evaluate_answer_contract().write(answer, out);
+    evaluate_answer_contract().write(*result, out);
     return {200, out.take()};
 }
 

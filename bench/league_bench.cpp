@@ -8,7 +8,7 @@ namespace {
 
 TuningRequest league(double L_over_T) {
     TuningRequest request;
-    request.plant = Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T});
+    request.subject = std::get<Subject>(Subject::make(Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T})));
     request.tune = {{.method = "all", .options = {}}};
     return request;
 }

@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_nonlinear.h"
+#include "engine/plant/nonlinear/linearised_plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
@@ -65,10 +66,11 @@ BENCHMARK(pi_loop_limited)->Unit(benchmark::kMicrosecond);
 
 void evaluation(benchmark::State& state) {
     const auto system = reactor("T");
+    const NonlinearSubject subject{system, *linearised_plant(system)};
     EvaluateOptions options;
     options.setpoint_step = 10;
     for (auto _ : state) {
-        const auto evaluation = evaluate(system, Pid{.Kp = 4.8, .Ti = 0.194}, options);
+        const auto evaluation = evaluate_nonlinear(subject, Pid{.Kp = 4.8, .Ti = 0.194}, options);
         if (!evaluation || !evaluation->performance.load.IAE) state.SkipWithError("no figures");
         benchmark::DoNotOptimize(evaluation);
     }

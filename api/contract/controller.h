@@ -4,7 +4,7 @@
 #include <string>
 
 #include "api/describe/union.h"
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 
 namespace tunewright::api {
 

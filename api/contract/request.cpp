@@ -3,9 +3,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
-#include "engine/loop/loop.h"
-#include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/evaluation/evaluate.h"
 
 namespace tunewright::api {
 namespace {
@@ -81,48 +79,17 @@ const Description<NoiseOptions>& noise_contract() {
     return description;
 }
 
-// What the computations' form of the plant refuses; the reader stands at it. Empty after a fault, which the reader then
-// has.
-std::optional<LinearPlant> check_linear(const Plant& plant, Reader& reader) {
-    auto linear = LinearPlant::make(plant);
-    if (linear) return std::move(*linear);
-    reader.fault_below(linear.error().where, 1, linear.error().message);
+// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
+std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader) {
+    auto made = Subject::make(plant);
+    if (auto* subject = std::get_if<Subject>(&made)) return std::move(*subject);
+    for (const Error& fault : std::get<std::vector<Error>>(made)) reader.fault_below(fault.where, 0, fault.message);
     return std::nullopt;
 }
 
-// The plants on which a loop must exist.
-std::vector<LinearPlant> check_plant(const PlantModel& model, Reader& reader) {
-    const Reader::At at(reader, "plant");
-    std::vector<LinearPlant> plants;
-    if (const Plant* plant = std::get_if<Plant>(&model)) {
-        if (auto linear = check_linear(*plant, reader)) plants.push_back(std::move(*linear));
-        return plants;
-    }
-    if (std::holds_alternative<FrequencyResponse>(model)) return plants;
-    if (const auto* equations = std::get_if<NonlinearPlant>(&model)) {
-        const auto system = NonlinearSystem::make(*equations);
-        auto linear = system ? linearised_plant(*system) : system.error();
-        if (linear)
-            plants.push_back(std::move(*linear));
-        else
-            reader.fault_below(linear.error().where, 1, linear.error().message);
-        return plants;
-    }
-    const auto& members = std::get<PlantSet>(model).plants;
-    const Reader::At list(reader, "plants");
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        const Reader::At member(reader, i);
-        if (auto linear = check_linear(members[i], reader)) plants.push_back(std::move(*linear));
-    }
-    return plants;
-}
-
 // Whether every plant forms a loop with the controller, at which the reader stands.
-void check_loops(const std::vector<LinearPlant>& plants, const Controller& controller, Reader& reader) {
-    for (const auto& plant : plants) {
-        const auto loop = Loop::make(plant, gains(controller));
-        if (!loop) return reader.fault_below(loop.error().where, 1, loop.error().message);
-    }
+void check_loops(const Subject& subject, const Controller& controller, Reader& reader) {
+    if (const auto fault = loop_fault(subject, controller)) reader.fault_below(fault->where, 1, fault->message);
 }
 
 template <class Request>
@@ -150,18 +117,19 @@ void check_job(const Json&, JobRequest& request, Reader& reader) {
                         "uncertainty, such as {\"K\": [0.8, 1.2]}.");
     }
     if (!request.plant) return;
-    const auto plants = check_plant(*request.plant, reader);
-    if (!request.baseline) return;
+    request.subject = subject_of(*request.plant, reader);
+    if (!request.subject || !request.baseline) return;
     const Reader::At at(reader, "baseline");
-    check_loops(plants, *request.baseline, reader);
+    check_loops(*request.subject, *request.baseline, reader);
 }
 
 void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
-    const auto plants = check_plant(*request.plant, reader);
+    request.subject = subject_of(*request.plant, reader);
+    if (!request.subject) return;
     const Reader::At list(reader, "controllers");
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
         const Reader::At at(reader, i);
-        check_loops(plants, request.controllers[i], reader);
+        check_loops(*request.subject, request.controllers[i], reader);
     }
 }
 
@@ -292,7 +260,7 @@ const Description<IdentifyRequest>& identify_request_contract() {
 
 TuningRequest to_engine(JobRequest request) {
     TuningRequest out;
-    out.plant = std::move(request.plant);
+    out.subject = std::move(request.subject);
     if (request.record) out.record = std::move(request.read.record);
     out.identify = request.identify;
     out.tune = std::move(request.tune);

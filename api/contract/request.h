@@ -10,6 +10,7 @@ struct JobRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
+    std::optional<Subject> subject;  ///< that `plant` describes
     std::optional<GivenRecord> record;
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
@@ -24,6 +25,7 @@ struct EvaluateRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
+    std::optional<Subject> subject;  ///< that `plant` describes
     std::vector<Controller> controllers;
     EvaluateOptions evaluate;
 };

@@ -88,6 +88,12 @@ Codec<double> number(NumberRule rule) {
             [rule](SchemaBook&) { return number_schema(rule); }};
 }
 
+Codec<double> engine_ruled(NumberRule rule) {
+    Codec<double> codec = number();
+    codec.schema = number(std::move(rule)).schema;
+    return codec;
+}
+
 Codec<int> integer(int minimum, int maximum) {
     const NumberRule rule{.minimum = minimum, .maximum = maximum};
     return {[rule](const Json& value, int& target, Reader& reader) {

@@ -47,6 +47,9 @@ Json number_schema(const NumberRule& rule);
 std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader);
 
 Codec<double> number(NumberRule rule = {});
+
+/// A number whose rule the engine holds, with its own sentence: the schema shows the rule, reading takes any number.
+Codec<double> engine_ruled(NumberRule rule);
 Codec<int> integer(int minimum, int maximum);
 Codec<bool> boolean();
 Codec<std::string> text(std::size_t longest);

@@ -1,5 +1,7 @@
 #include "api/describe/reader.h"
 
+#include <algorithm>
+
 #include "api/json/parse.h"
 
 namespace tunewright::api {
@@ -21,6 +23,13 @@ void Reader::fault_below(std::string_view where, int skipped, std::string detail
     if (skipped > 0) return fault_below(rest, skipped - 1, std::move(detail));
     const At at(*this, first);
     fault_below(rest, 0, std::move(detail));
+}
+
+bool Reader::clean_at(std::string_view name) const {
+    const std::string place = pointer() + "/" + pointer_segment(name);
+    return std::none_of(faults_.begin(), faults_.end(), [&](const FieldError& fault) {
+        return fault.pointer == place || fault.pointer.starts_with(place + "/");
+    });
 }
 
 std::string Reader::pointer() const {

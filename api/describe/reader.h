@@ -37,6 +37,9 @@ public:
     std::string pointer() const;
     std::string name() const;
 
+    /// Whether nothing was found at or below the member `name` of this place.
+    bool clean_at(std::string_view name) const;
+
     std::size_t count() const { return count_; }
     bool clean_since(std::size_t count) const { return count_ == count; }
 

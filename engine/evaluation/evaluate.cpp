@@ -1,231 +1,42 @@
 #include "engine/evaluation/evaluate.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "engine/evaluation/evaluate_request.h"
-#include "engine/evaluation/family_figures.h"
-#include "engine/evaluation/frequency_traces.h"
-#include "engine/evaluation/measured_response.h"
-#include "engine/evaluation/nonlinear_figures.h"
-#include "engine/evaluation/performance_figures.h"
-#include "engine/evaluation/robustness_figures.h"
-#include "engine/loop/measured_loop.h"
-#include "engine/number_text.h"
-#include "engine/plant/nonlinear/nonlinear_system.h"
-#include "engine/simulation/limited/limited_response.h"
-#include "engine/simulation/linear/indices.h"
-#include "engine/simulation/linear/linear_response.h"
-#include "engine/simulation/nonlinear/npid_response.h"
+#include "engine/evaluation/evaluate_linear.h"
+#include "engine/evaluation/evaluate_measured.h"
+#include "engine/evaluation/evaluate_nonlinear.h"
+#include "engine/loop/loop.h"
 
 namespace tunewright {
-namespace {
 
-constexpr const char* kNoTime =
-    "The plant is known by points of its frequency response alone, which have no response over time.";
-constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
-constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
-constexpr double kSettledForFigures = 3e-7;
-constexpr int kMaxNonlinearSteps = 20000;  // a stalled integral may need any number
-
-Error at_field(Error error, const char* prefix) {
-    if (error.where.empty()) error.where = prefix;
-    return error;
+Expected<Evaluation> evaluate(const Subject& subject, const Controller& controller, const EvaluateOptions& options) {
+    return subject.visit(
+        OfKinds{[&](const LinearSubject& plant) { return evaluate_linear(plant, controller, options); },
+                [&](const MeasuredPlant& plant) { return evaluate_measured(plant, controller, options); },
+                [&](const NonlinearSubject& plant) { return evaluate_nonlinear(plant, controller, options); }});
 }
-
-Equivalents equivalents_of(const Controller& controller) {
-    Equivalents equivalents;
-    equivalents.parallel = gains(controller);
-    const auto ideal = to_ideal(controller);
-    if (!ideal) {
-        equivalents.why_no_series = ideal.error().message;
-        return equivalents;
-    }
-    if (auto series = to_series(*ideal))
-        equivalents.series = *series;
-    else
-        equivalents.why_no_series = series.error().message;
-    return equivalents;
-}
-
-/// What the loop itself says; `add_performance` adds what its responses do.
-Verification verify(const Loop& loop, const Peaks& peaks) {
-    Verification v;
-    const LoopGrid other = make_loop_grid(loop, 0.2, 17);
-    v.ms_grid_difference = std::abs(find_sensitivity_peak(loop, other).value / peaks.S.value - 1);
-    if (const auto pole = rightmost_pole(loop)) v.stability_methods_agree = pole->real() < 0;
-    return v;
-}
-
-/// The load's error against its integral to infinity, which theory knows.
-void verify_integral(Verification& v, const StepResponse& load, const std::optional<double>& IAE, bool linear) {
-    if (!IAE || !load.error_integral_final) return;
-    const double exact = *load.error_integral_final;
-    if (exact == 0) return;
-    v.load_error_keeps_sign = *IAE == std::abs(exact);
-    if (linear) v.ie_identity = std::abs(load.nodes.back().error_integral / exact - 1);
-}
-
-MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::optional<double> delta_r,
-                         const StepInputs& inputs, const EvaluateOptions& o) {
-    ResponseOptions options;
-    options.tolerance = kFinalTolerance;
-    options.settled = kSettledForFigures;
-    options.horizon = o.horizon;
-    if (delta_r) {
-        options.tolerance = kNonlinearTolerance;
-        options.max_steps = kMaxNonlinearSteps;
-    }
-    const auto run = [&](const ResponseOptions& how) {
-        if (delta_r) return simulate_npid(plant, loop.gains(), *delta_r, inputs, how);
-        if (!o.actuator) return simulate_linear(plant, loop.gains(), inputs, how);
-        return simulate_limited(plant, loop.gains(), inputs, {o.actuator->min, o.actuator->max}, how);
-    };
-    return measure(run, options, inputs.r);
-}
-
-/// What the limits did, where they did something.
-void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const ActuatorLimits& limits,
-                    const char* step) {
-    for (const auto& node : response.nodes) {
-        if (node.u < limits.max && node.u > limits.min) continue;
-        evaluation.warnings.push_back(
-            {"actuator-limited", std::string("The actuator reaches its limit after the ") + step +
-                                     " step; Ms, Mt and the margins hold for the unlimited loop."});
-        return;
-    }
-}
-
-/// Adds the time domain to a stable loop's evaluation.
-void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o,
-                     const Peaks& peaks) {
-    const auto* npid = std::get_if<Npid>(&evaluation.controller);
-    const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
-    const MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
-                           of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
-    const StepResponse &setpoint = of_setpoint.response, &load = of_load.response;
-    const bool to_infinity = !o.horizon.has_value();
-    evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
-    evaluation.performance.load = load_figures(load, to_infinity);
-    if (o.noise) evaluation.performance.noise = noise_figures(loop, *o.noise);
-    evaluation.verification = verify(loop, peaks);
-    evaluation.verification.setpoint_errors = of_setpoint.errors;
-    evaluation.verification.load_errors = of_load.errors;
-    evaluation.verification.iae_step_halving = of_load.errors.IAE;
-    if (to_infinity && !o.actuator)
-        verify_integral(evaluation.verification, load, evaluation.performance.load.IAE, !delta_r);
-    if (!as_promised(of_setpoint) || !as_promised(of_load))
-        evaluation.warnings.push_back(
-            {"coarse-figures",
-             "Halving the time steps still moves an index by more than is promised, or could not be tried; "
-             "verification tells by how much."});
-    if (delta_r) {
-        evaluation.nonlinear = nonlinear_figures(loop, *delta_r);
-        warn_of_nonlinearity(evaluation, setpoint, load, o);
-    } else if (o.actuator) {
-        warn_of_limits(evaluation, setpoint, *o.actuator, "set-point");
-        warn_of_limits(evaluation, load, *o.actuator, "load");
-    }
-    if (!setpoint.settles || !load.settles)
-        evaluation.warnings.push_back(
-            {"does-not-settle",
-             "The response does not settle within the time computed; figures that need it are empty."});
-    if (o.points < 2) return;
-    const double horizon = o.horizon ? *o.horizon : o.trace_horizon.value_or(covering_horizon(setpoint, load));
-    evaluation.responses = Responses{trace_of(setpoint, horizon, o.points), trace_of(load, horizon, o.points),
-                                     setpoint.settles && load.settles};
-}
-
-void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
-    evaluation.robustness = unstable_robustness(count);
-    evaluation.performance = no_performance("The closed loop is not stable.");
-    evaluation.warnings.push_back(
-        {"unstable-loop", "This controller does not stabilise the plant" +
-                              (count.unstable_poles > 0 ? " (" + std::to_string(count.unstable_poles) +
-                                                              " closed-loop poles in the right half-plane)"
-                                                        : std::string()) +
-                              "; do not use it."});
-}
-
-/// In percent, rounded down and never to all or to nothing.
-std::string share(double fraction) {
-    if (fraction > 0.999) return "more than 99.9 %";
-    if (fraction < 0.001) return "less than 0.1 %";
-    return text(std::floor(1000 * fraction + 1e-9) / 10) + " %";
-}
-
-void add_region(Evaluation& evaluation, const PlantFamily& family) {
-    evaluation.region = region_figures(family, gains(evaluation.controller));
-    if (!evaluation.robustness.stable || evaluation.region->worst_Ms) return;
-    evaluation.warnings.push_back(
-        {"unstable-in-region", "The loop is stable on the nominal plant but not on every plant that it must serve: " +
-                                   share(evaluation.region->stable_fraction) +
-                                   " of those looked at are stable, and worst_plant is not. Ask for less, or use "
-                                   "robust, which holds its limits on all of them."});
-}
-
-}  // namespace
 
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
-    if (const auto* equations = std::get_if<NonlinearPlant>(&plant)) {
-        const auto system = NonlinearSystem::make(*equations);
-        if (!system) return system.error();
-        return evaluate(*system, controller, options);
-    }
-    const auto* points = std::get_if<FrequencyResponse>(&plant);
-    if (points == nullptr) {
-        const auto* set = std::get_if<PlantSet>(&plant);
-        return evaluate(set ? family_of(*set) : family_of(std::get<Plant>(plant)), controller, options);
-    }
-    const auto measured = MeasuredPlant::make(*points);
-    if (!measured) return measured.error();
-    return evaluate(*measured, controller, options);
+    const auto made = Subject::make(plant);
+    if (const auto* faults = std::get_if<std::vector<Error>>(&made)) return faults->front();
+    return evaluate(std::get<Subject>(made), controller, options);
 }
 
-Expected<Evaluation> evaluate(const MeasuredPlant& plant, const Controller& controller,
-                              const EvaluateOptions& options) {
-    if (auto error = refuse_evaluation(controller, options)) return *error;
-    const auto loop = MeasuredLoop::make(plant, gains(controller));
-    if (!loop) return at_field(loop.error(), "controller");
-    if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
-
-    Evaluation evaluation;
-    evaluation.controller = resolved(controller, options);
-    evaluation.equivalents = equivalents_of(controller);
-    evaluation.performance = no_performance(kNoTime);
-    if (options.noise) evaluation.performance.noise = NoisePerformance{{}, {}, {{"u_std", kNoTime}, {"gain", kNoTime}}};
-    const StabilityCount count = loop->count_unstable_poles();
-    if (count.stable())
-        evaluation.robustness = robustness_of(loop->peaks(), loop->margins());
-    else
-        mark_unstable(evaluation, count);
-    if (std::holds_alternative<Npid>(controller)) warn_of_linear_part(evaluation);
-    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, options.points);
-    return evaluation;
+std::optional<Error> loop_fault(const Subject& subject, const Controller& controller) {
+    const auto fault_with = [&](const LinearPlant& plant) -> std::optional<Error> {
+        const auto loop = Loop::make(plant, gains(controller));
+        return loop ? std::nullopt : std::optional(loop.error());
+    };
+    if (subject.linear() == nullptr) return std::nullopt;
+    if (auto fault = fault_with(*subject.linear())) return fault;
+    if (subject.family() == nullptr) return std::nullopt;
+    for (const PlantRegion& region : subject.family()->regions)
+        if (const auto plant = LinearPlant::make(region.nominal()))
+            if (auto fault = fault_with(*plant)) return fault;
+    return std::nullopt;
 }
 
-Expected<Evaluation> evaluate(const PlantFamily& family, const Controller& controller, const EvaluateOptions& options) {
-    if (auto error = refuse_evaluation(controller, options)) return *error;
-    const auto plant = LinearPlant::make(family.nominal());
-    if (!plant) return at_field(plant.error(), "plant");
-    const auto loop = Loop::make(*plant, gains(controller));
-    if (!loop) return at_field(loop.error(), "controller");
-
-    Evaluation evaluation;
-    evaluation.controller = resolved(controller, options);
-    evaluation.equivalents = equivalents_of(controller);
-    const StabilityCount count = count_unstable_poles(*loop);
-    const LoopGrid grid = make_peak_grid(*loop);
-    if (count.stable()) {
-        const Peaks peaks = find_peaks(*loop, grid);
-        evaluation.robustness = robustness_of(peaks, find_margins(*loop, grid));
-        add_performance(evaluation, *plant, *loop, options, peaks);
-    } else {
-        mark_unstable(evaluation, count);
-    }
-    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
-    if (!family.single()) add_region(evaluation, family);
-    return evaluation;
+EvaluateOptions on_linearisation(const Subject& subject, EvaluateOptions options) {
+    const NonlinearSystem* system = subject.equations();
+    return system ? limited_as(*system, std::move(options)) : options;
 }
 
 }  // namespace tunewright

@@ -1,17 +1,16 @@
-// The evaluation of a controller on a nonlinear plant: the linearisation's, with the plant's own responses in place of
-// the linear ones.
+#include "engine/evaluation/evaluate_nonlinear.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "engine/evaluation/evaluate.h"
-#include "engine/evaluation/evaluate_request.h"
+#include "engine/evaluation/evaluate_linear.h"
+#include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/nonlinear_figures.h"
 #include "engine/evaluation/performance_figures.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 
@@ -119,7 +118,7 @@ void add_performance(Evaluation& evaluation, const Runs& runs, const EvaluateOpt
 
 }  // namespace
 
-EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions options) {
+EvaluateOptions limited_as(const NonlinearSystem& plant, EvaluateOptions options) {
     const OutputLimits limits = input_limits(plant, actuator_of(options));
     options.actuator.reset();
     if (std::isfinite(limits.min) || std::isfinite(limits.max))
@@ -127,28 +126,23 @@ EvaluateOptions on_linearisation(const NonlinearSystem& plant, EvaluateOptions o
     return options;
 }
 
-Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& controller,
-                              const EvaluateOptions& options) {
+Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const Controller& controller,
+                                        const EvaluateOptions& options) {
     if (auto error = refuse_evaluation(controller, options)) return *error;
-    const auto plant = linearised_plant(system);
-    if (!plant) return plant.error();
-    const auto loop = Loop::make(*plant, gains(controller));
-    if (!loop) {
-        Error error = loop.error();
-        if (error.where.empty()) error.where = "controller";
-        return error;
-    }
+    const NonlinearSystem& system = subject.system;
+    const auto loop = Loop::make(subject.linear, gains(controller));
+    if (!loop) return of_controller(loop.error());
     const bool stable = count_unstable_poles(*loop).stable();
     std::optional<double> horizon = options.horizon;
-    if (!horizon && !stable) horizon = kUnstableHorizon * own_time(*plant);
+    if (!horizon && !stable) horizon = kUnstableHorizon * own_time(subject.linear);
     const Runs runs = simulate(system, resolved(controller, options), options, horizon);
 
-    EvaluateOptions of_linear = on_linearisation(system, options);
+    EvaluateOptions of_linear = limited_as(system, options);
     if (!horizon && runs.complete()) {
         horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
         of_linear.trace_horizon = horizon;
     }
-    auto evaluation = evaluate(family_of(Plant(system.linearised())), controller, of_linear);
+    auto evaluation = evaluate_linear({family_of(Plant(system.linearised())), subject.linear}, controller, of_linear);
     if (!evaluation) return evaluation;
     evaluation->linear = LinearisedResponse{evaluation->performance, std::move(evaluation->responses)};
     evaluation->responses.reset();

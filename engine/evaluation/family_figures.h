@@ -1,7 +1,7 @@
 // How one controller serves every plant of a family.
 #pragma once
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/plant/uncertain/plant_family.h"
 
 namespace tunewright {

@@ -1,7 +1,7 @@
 // The loop's curves over frequency, thinned out for drawing.
 #pragma once
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/loop/frequency_grid.h"
 #include "engine/loop/measured_loop.h"
 

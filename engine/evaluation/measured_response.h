@@ -8,7 +8,7 @@
 
 #include <functional>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {

@@ -1,7 +1,7 @@
 // What the evaluation says of a nonlinear PID beyond its linear part.
 #pragma once
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/loop/loop.h"
 #include "engine/simulation/linear/linear_response.h"
 

@@ -1,7 +1,7 @@
 // The time-domain figures of the contract from simulated responses, and the traces that show them.
 #pragma once
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/loop/loop.h"
 #include "engine/simulation/linear/linear_response.h"
 

@@ -1,7 +1,7 @@
 // Peaks and margins as the contract tells them.
 #pragma once
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"

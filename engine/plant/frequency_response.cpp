@@ -34,7 +34,9 @@ std::optional<Error> check_point(const FrequencyResponse& points, std::size_t i)
     return std::nullopt;
 }
 
-std::optional<Error> check(const FrequencyResponse& points) {
+}  // namespace
+
+std::optional<Error> points_fault(const FrequencyResponse& points) {
     const std::size_t n = points.omega.size();
     for (const auto& [name, size] : {std::pair{"re", points.re.size()}, {"im", points.im.size()}})
         if (size != n)
@@ -49,6 +51,8 @@ std::optional<Error> check(const FrequencyResponse& points) {
         if (auto error = check_point(points, i)) return error;
     return std::nullopt;
 }
+
+namespace {
 
 /// Slope at the middle of three points: of the parabola through them.
 double middle_slope(double x0, double x1, double x2, double y0, double y1, double y2) {
@@ -67,7 +71,7 @@ double slope_at(const std::vector<double>& x, const std::vector<double>& y, std:
 }  // namespace
 
 Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
-    if (auto error = check(points)) return *error;
+    if (auto error = points_fault(points)) return *error;
     MeasuredPlant plant;
     plant.unstable_poles_ = points.unstable_poles;
     plant.integrators_ = points.integrators;

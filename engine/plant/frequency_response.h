@@ -17,12 +17,15 @@ struct FrequencyResponse {
     int integrators = 0;
 };
 
+/// The first fault of the points themselves, invalid_argument with `where` = "plant/<field>": columns of unequal
+/// length, fewer than 8 points, omega not ascending or not > 0, numbers that are not finite, P = 0.
+std::optional<Error> points_fault(const FrequencyResponse& points);
+
 /// The points as a function of frequency: cubic in ln omega for ln |P| and for the unwrapped phase (Hermite, slopes
 /// from the parabola through three neighbours).
 class MeasuredPlant {
 public:
-    /// Errors: invalid_argument with `where` = "plant/<field>": columns of unequal length, fewer than 8 points, omega
-    /// not ascending or not > 0, numbers that are not finite, P = 0; unsupported where the points lie so far apart that
+    /// Errors: points_fault(); unsupported where the points lie so far apart that
     /// the phase cannot be followed (2 rad or more between neighbours) before it has fallen through -180 degrees, or
     /// where the lowest frequency is too high to tell the sign of the static gain (phase nearer to 90 than to 0 or 180
     /// degrees, integrators taken off).

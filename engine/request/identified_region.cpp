@@ -9,36 +9,25 @@ namespace {
 
 constexpr double kNoticeable = 1.01;  // of a limit, before a warning
 
-// What a method lets itself be asked for as Ms, if it does.
-std::optional<double> Ms_limit(const TuningMethod& method, const MethodOptions& options) {
-    if (const auto given = options.number("Ms")) return given;
-    const auto at = std::ranges::find(method.options, "Ms", &OptionDescription::name);
-    if (at == method.options.end() || !at->default_value) return std::nullopt;
-    const double* value = std::get_if<double>(&*at->default_value);
-    return value ? std::optional(*value) : std::nullopt;
-}
-
 }  // namespace
 
-bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned) {
+bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit) {
     if (!evaluation.region) return false;
-    const auto limit = Ms_limit(*planned.method, planned.options);
-    return !evaluation.region->worst_Ms || (limit && *evaluation.region->worst_Ms > kNoticeable * *limit);
+    return !evaluation.region->worst_Ms || (Ms_limit && *evaluation.region->worst_Ms > kNoticeable * *Ms_limit);
 }
 
-void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified) {
+void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified) {
     constexpr double kFar = 2;  // times the limit
     if (identified)
         for (Warning& warning : evaluation.warnings)
             if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
-    const auto limit = Ms_limit(*planned.method, planned.options);
-    if (!evaluation.region || !evaluation.region->worst_Ms || !limit) return;
+    if (!evaluation.region || !evaluation.region->worst_Ms || !Ms_limit) return;
     const double worst = *evaluation.region->worst_Ms;
-    if (worst <= kNoticeable * *limit) return;
+    if (worst <= kNoticeable * *Ms_limit) return;
     evaluation.warnings.push_back(
         {"above-limit-in-region",
-         "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*limit) + " asked for.",
-         identified && worst > kFar * *limit ? WarningLevel::bad : WarningLevel::warning});
+         "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*Ms_limit) + " asked for.",
+         identified && worst > kFar * *Ms_limit ? WarningLevel::bad : WarningLevel::warning});
 }
 
 std::string with_variant(const std::string& title, const std::string& variant) {

@@ -4,10 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/uncertain/plant_family.h"
-#include "engine/request/plan.h"
 
 namespace tunewright {
 
@@ -15,12 +14,12 @@ namespace tunewright {
 /// not tell from its own. Error: numerical_failure where the covariance is no covariance.
 Expected<PlantFamily> identified_region(const IdentifiedModel& model);
 
-/// Whether some plant of the region is unstable, or beyond the limit that the method was asked for.
-bool breaks_limit(const Evaluation& evaluation, const PlannedRow& planned);
+/// Whether some plant of the region is unstable, or beyond the limit on Ms that the method was asked for, if it was.
+bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit);
 
 /// Warns where the region's worst Ms is above the limit. With a model from a record (`identified`) what the region
 /// shows is the answer's own doubt, not only the user's: then the warnings may be of level bad.
-void warn_of_region(Evaluation& evaluation, const PlannedRow& planned, bool identified);
+void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified);
 
 /// "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
 std::string with_variant(const std::string& title, const std::string& variant);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/request/plan.h"
 #include "engine/tuning/method/options.h"
 

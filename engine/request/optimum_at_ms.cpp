@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
@@ -26,7 +27,7 @@ Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control)
     if (!design) return design.error();
     // To infinity and without limits the loop is linear, and the search has simulated it.
     if (!options_.horizon && !options_.actuator) return design->load_IAE * std::abs(options_.load_step);
-    const auto evaluation = evaluate(problem_.plant, design->controller, options_);
+    const auto evaluation = evaluate(PlantModel(problem_.plant), design->controller, options_);
     if (!evaluation) return evaluation.error();
     const auto& load = evaluation->performance.load;
     if (load.IAE) return *load.IAE;

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/progress.h"
 #include "engine/tuning/method/method.h"

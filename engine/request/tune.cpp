@@ -4,11 +4,11 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
-#include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/league.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 
 namespace tunewright {
 namespace {
@@ -40,9 +40,8 @@ public:
 
 private:
     std::optional<Error> find_plant();
-    std::optional<Error> take_plant(const PlantModel& plant);
-    std::optional<Error> take_equations(const NonlinearPlant& plant);
-    std::optional<Error> state_problem();
+    std::optional<Error> take_record();
+    void state_problem();
     Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
     std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
@@ -53,7 +52,7 @@ private:
     TuningEntry baseline();
     Expected<Evaluation> evaluated(const Controller& controller);
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings);
-    void add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule);
+    void add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own);
     Error placed(Error error, const std::string& where) const;
     void keep_best(const TuningEntry& entry);
     RunControl share(double from, double to) const;
@@ -63,12 +62,10 @@ private:
 
     const TuningRequest& request_;
     const RunControl& control_;
-    PlantFamily family_;               // what every controller is judged on
+    std::optional<Subject> subject_;   // what every controller is judged on
     std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
-    std::optional<TuningProblem> problem_;      // what methods work on, unless
-    std::optional<MeasuredPlant> measured_;     // the plant is known by points alone
-    std::optional<NonlinearSystem> nonlinear_;  // what family_ is the linearisation of, if it is one
+    std::optional<TuningProblem> problem_;  // what methods work on, unless the plant is known by points alone
     std::optional<BestSoFar> best_;
     std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
     std::vector<std::pair<Pid, Evaluation>> evaluated_;
@@ -92,49 +89,31 @@ RunControl Run::share(double from, double to) const {
     return part;
 }
 
-std::optional<Error> Run::take_equations(const NonlinearPlant& plant) {
-    auto system = NonlinearSystem::make(plant);
-    if (!system) return system.error();
-    result_.operating_point = operating_point(*system);
-    family_ = family_of(Plant(system->linearised()));
-    nonlinear_ = std::move(*system);
-    return std::nullopt;
-}
-
-std::optional<Error> Run::take_plant(const PlantModel& plant) {
-    if (const auto* points = std::get_if<FrequencyResponse>(&plant)) {
-        auto measured = MeasuredPlant::make(*points);
-        if (!measured) return measured.error();
-        measured_ = std::move(*measured);
-        return std::nullopt;
-    }
-    if (const auto* equations = std::get_if<NonlinearPlant>(&plant)) return take_equations(*equations);
-    const auto* set = std::get_if<PlantSet>(&plant);
-    family_ = set ? family_of(*set) : family_of(std::get<Plant>(plant));
-    if (!family_.single()) held_ = family_;
+std::optional<Error> Run::take_record() {
+    report(0, "identify", "Fitting models to the record.");
+    auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
+    if (!model) return model.error();
+    auto region = identified_region(*model);
+    if (!region && request_.identified_region == IdentifiedRegion::held) return region.error();
+    auto subject = Subject::of_family(region ? *region : family_of(model->plant));
+    if (!subject) return placed(subject.error(), "");
+    subject_ = std::move(*subject);
+    if (request_.identified_region == IdentifiedRegion::held) held_ = *region;
+    if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
+        dead_time_std_ = at->second;
+    result_.model = std::move(*model);
     return std::nullopt;
 }
 
 std::optional<Error> Run::find_plant() {
-    if (request_.plant.has_value() == request_.record.has_value())
+    if (request_.subject.has_value() == request_.record.has_value())
         return Error{ErrorKind::invalid_argument, "",
-                     request_.plant ? "Both plant and record are given; give one of them."
-                                    : "Neither plant nor record is given; give one of them."};
-    if (request_.plant) {
-        return take_plant(*request_.plant);
-    }
-    report(0, "identify", "Fitting models to the record.");
-    auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
-    if (!model) return model.error();
-    family_ = family_of(model->plant);
-    if (auto region = identified_region(*model))
-        family_ = *region;
-    else if (request_.identified_region == IdentifiedRegion::held)
-        return region.error();
-    if (request_.identified_region == IdentifiedRegion::held) held_ = family_;
-    if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
-        dead_time_std_ = at->second;
-    result_.model = std::move(*model);
+                     request_.subject ? "Both plant and record are given; give one of them."
+                                      : "Neither plant nor record is given; give one of them."};
+    if (request_.record) return take_record();
+    subject_ = request_.subject;
+    if (subject_->family() != nullptr) held_ = *subject_->family();
+    if (subject_->equations() != nullptr) result_.operating_point = operating_point(*subject_->equations());
     return std::nullopt;
 }
 
@@ -155,9 +134,7 @@ Expected<Evaluation> Run::evaluated(const Controller& controller) {
     if (pid != nullptr)
         for (const auto& [known, evaluation] : evaluated_)
             if (known == *pid) return evaluation;
-    auto evaluation = measured_    ? evaluate(*measured_, controller, request_.evaluate)
-                      : nonlinear_ ? evaluate(*nonlinear_, controller, request_.evaluate)
-                                   : evaluate(family_, controller, request_.evaluate);
+    auto evaluation = evaluate(*subject_, controller, request_.evaluate);
     if (evaluation && pid != nullptr) evaluated_.emplace_back(*pid, *evaluation);
     return evaluation;
 }
@@ -173,36 +150,34 @@ void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::v
     entry.evaluation = std::move(*evaluation);
 }
 
-// Of a servo/regulation rule always, of other controllers where asked for.
-void Run::add_tradeoff(TuningEntry& entry, const std::optional<ArrietaReport>& rule) {
-    if (!entry.evaluation || !(rule || request_.evaluate.tradeoff)) return;
-    if (!tradeoffs_) tradeoffs_.emplace(measured_ ? std::nullopt : std::optional(family_.nominal()), request_.evaluate);
-    const Controller& controller = entry.evaluation->controller;
-    if (!rule) {
-        entry.tradeoff = tradeoffs_->of(controller, entry.reduced_model);
-        return;
+// The method's own, completed, and what was asked for of every controller.
+void Run::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
+    if (!entry.evaluation) return;
+    if (!tradeoffs_) tradeoffs_.emplace(subject_->nominal(), request_.evaluate);
+    if (own) {
+        own->complete({*subject_, request_.evaluate, *tradeoffs_}, *entry.evaluation);
+        entry.reports.push_back(std::move(own));
     }
-    entry.tradeoff = tradeoffs_->of_rule(controller, *rule);
-    if (const auto warning = missed_degradation(*rule, *entry.tradeoff)) entry.evaluation->warnings.push_back(*warning);
+    if (request_.evaluate.tradeoff && entry.report_as<TradeoffReport>() == nullptr)
+        entry.reports.push_back(
+            std::make_shared<TradeoffReport>(tradeoffs_->of(entry.evaluation->controller, entry.reduced_model)));
 }
 
-std::optional<Error> Run::state_problem() {
-    const Plant& nominal = family_.nominal();
-    auto linear = nonlinear_ ? linearised_plant(*nonlinear_) : LinearPlant::make(nominal);
-    if (!linear) return placed(linear.error(), "");
-    problem_ = TuningProblem{nominal, std::move(*linear), dead_time_std_, held_};
-    if (nonlinear_) problem_->nonlinear = &*nonlinear_;
+void Run::state_problem() {
+    const LinearPlant* linear = subject_->linear();
+    if (linear == nullptr) return;
+    problem_ = TuningProblem{*subject_->nominal(), *linear, dead_time_std_, held_};
+    problem_->nonlinear = subject_->equations();
     if (result_.model && result_.model->limit_cycle)
         problem_->relay_point = result_.model->limit_cycle->describing_function;
-    return std::nullopt;
 }
 
 Expected<TunedController> Run::tuned_with(const PlannedRow& planned, const RunControl& control) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
-    if (!measured_) return method.tune(*problem_, options, control);
-    if (method.tune_on_points) return method.tune_on_points(*measured_, options, control);
+    if (problem_) return method.tune(*problem_, options, control);
+    if (method.tune_on_points) return method.tune_on_points(*subject_->measured(), options, control);
     return Error{ErrorKind::unsupported, "",
                  "The method " + method.id +
                      " needs a model of the plant; points of a frequency response serve the method robust."};
@@ -214,8 +189,7 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
     entry.title = planned.title;
     entry.source = planned.method->source;
     const auto& on_points = planned.method->options_on_points;
-    entry.options =
-        with_defaults(measured_ && !on_points.empty() ? on_points : planned.method->options, planned.options);
+    entry.options = with_defaults(problem_ || on_points.empty() ? planned.method->options : on_points, planned.options);
     const double started = now_ms();
     auto tuned = tuned_with(planned, share(from, to));
     if (!tuned) {
@@ -223,15 +197,12 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
         return entry;
     }
     entry.reduced_model = tuned->reduced_model;
-    entry.surface = tuned->surface;
-    entry.emulation = std::move(tuned->emulation);
-    if (entry.emulation && request_.evaluate.points == 0) entry.emulation->drop_traces();
-    if (tuned->rimc) entry.rimc = rimc_entry(*tuned->rimc, problem_->plant, problem_->linear, request_.evaluate);
+    entry.Ms_limit = tuned->Ms_limit;
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
-    add_tradeoff(entry, tuned->arrieta);
+    add_reports(entry, tuned->report);
     if (entry.evaluation) {
-        warn_of_region(*entry.evaluation, planned, result_.model.has_value());
+        warn_of_region(*entry.evaluation, entry.Ms_limit, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
         entry.evaluation->compute_ms = now_ms() - started;
     }
@@ -244,10 +215,11 @@ std::vector<TuningEntry> Run::entries(const PlannedRow& planned, double from, do
     std::vector<TuningEntry> entries;
     entries.push_back(entry(planned, from, to));
     const bool may = result_.model && request_.identified_region == IdentifiedRegion::where_needed &&
-                     planned.method->holds_family && !family_.single();
+                     planned.method->holds_family && subject_->family() != nullptr;
     const auto& nominal = entries.front().evaluation;
-    if (!may || !nominal || result_.partial || stopped() || !breaks_limit(*nominal, planned)) return entries;
-    problem_->family = family_;
+    if (!may || !nominal || result_.partial || stopped() || !breaks_limit(*nominal, entries.front().Ms_limit))
+        return entries;
+    problem_->family = *subject_->family();
     TuningEntry held = entry(planned, to, to);
     problem_->family = held_;
     if (!held.evaluation || result_.partial) return entries;
@@ -266,7 +238,7 @@ TuningEntry Run::baseline() {
     entry.source = "the settings given in the request";
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
-    add_tradeoff(entry, std::nullopt);
+    add_reports(entry, nullptr);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))
@@ -328,7 +300,7 @@ bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double 
 
 // The column "how far from the optimum at the same Ms".
 void Run::compare_with_optima(double from) {
-    RobustOptima optima(*problem_, nonlinear_ ? on_linearisation(*nonlinear_, request_.evaluate) : request_.evaluate);
+    RobustOptima optima(*problem_, on_linearisation(*subject_, request_.evaluate));
     const double share_of_one = (1 - from) / static_cast<double>(result_.controllers.size());
     for (TuningEntry& entry : result_.controllers) {
         if (stopped()) {
@@ -343,15 +315,14 @@ void Run::compare_with_optima(double from) {
 
 bool Run::wants_optima() const {
     const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
-    return !measured_ && request_.evaluate.optimum_at_Ms.value_or(league);
+    return problem_ && request_.evaluate.optimum_at_Ms.value_or(league);
 }
 
 Expected<TuningResult> Run::result() {
     auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
-    if (!measured_)
-        if (const auto error = state_problem()) return *error;
+    state_problem();
     if (!problem_ || !problem_->nonlinear)
         std::erase_if(*planned, [](const PlannedRow& row) { return row.of_all && row.method->all_if_nonlinear; });
 

@@ -5,15 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/evaluation/operating_point.h"
-#include "engine/evaluation/tradeoff_entry.h"
 #include "engine/identification/identify.h"
+#include "engine/plant/subject.h"
 #include "engine/progress.h"
-#include "engine/request/optimum_at_ms.h"
+#include "engine/request/entry.h"
 #include "engine/request/plan.h"
-#include "engine/request/rimc_entry.h"
-#include "engine/tuning/method/method.h"
 
 namespace tunewright {
 
@@ -25,30 +23,13 @@ enum class IdentifiedRegion {
 };
 
 struct TuningRequest {
-    std::optional<PlantModel> plant;  ///< exactly one of plant and record
+    std::optional<Subject> subject;  ///< exactly one of subject and record
     std::optional<Record> record;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
-};
-
-/// One line of the answer: a method's controller with its evaluation, or why there is none.
-struct TuningEntry {
-    std::string method;  ///< "baseline" for today's settings
-    std::string title;
-    std::string source;
-    bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
-    MethodOptions options;     ///< given, over the defaults
-    std::optional<Plant> reduced_model;
-    std::optional<CostSurface> surface;
-    std::optional<RimcEntry> rimc;
-    std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
-    std::optional<TradeoffEntry> tradeoff;
-    std::optional<EmulationReport> emulation;
-    std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
-    std::optional<Error> error;
 };
 
 struct TuningResult {

@@ -213,7 +213,7 @@ TEST(Requests, RecordsGoToTheEngineWithTheirTimes) {
     EXPECT_EQ(request.record->y0, 4);
     EXPECT_EQ(request.record->kind, RecordKind::step);
     EXPECT_EQ(request.identify.model, ModelChoice::ipdt_lag);
-    EXPECT_FALSE(request.plant.has_value());
+    EXPECT_FALSE(request.subject.has_value());
 }
 
 TEST(Requests, RecordsTakeTheirSetPointAndLimitsToTheEngine) {

@@ -4,11 +4,18 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_nonlinear.h"
 #include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearised_plant.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {
 namespace {
+
+Expected<Evaluation> evaluate(const NonlinearSystem& system, const Controller& controller,
+                              const EvaluateOptions& options) {
+    return evaluate_nonlinear({system, *linearised_plant(system)}, controller, options);
+}
 
 const Warning* warning(const Evaluation& evaluation, const std::string& code) {
     for (const auto& w : evaluation.warnings)

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -17,7 +18,7 @@ const Fopdt kPlant{.K = 2, .T = 10, .L = 3};
 
 TuningResult league(const Plant& plant, MethodOptions options = {}) {
     TuningRequest request;
-    request.plant = plant;
+    request.subject = test::subject_of(plant);
     request.tune = {{.method = "all", .options = std::move(options)}};
     request.baseline = Pid{.Kp = 0.5, .Ti = 10};
     request.evaluate.points = 0;
@@ -127,7 +128,7 @@ TEST(League, TheOptimumIsThatOfTheRobustMethodAtTheSameMs) {
     const TuningEntry& simc = entry_of(result, "simc");
     const double Ms = *simc.evaluation->robustness.Ms;
     TuningRequest request;
-    request.plant = Plant(kPlant);
+    request.subject = test::subject_of(Plant(kPlant));
     request.tune[0].options.set("Ms", Ms);
     request.tune[0].options.set("Mt", Ms);
     const auto robust = tune(request, {});
@@ -138,7 +139,7 @@ TEST(League, TheOptimumIsThatOfTheRobustMethodAtTheSameMs) {
 
 TEST(League, TheOptimumColumnCanBeLeftOutOfAllAndAskedForOfOne) {
     TuningRequest request;
-    request.plant = Plant(kPlant);
+    request.subject = test::subject_of(Plant(kPlant));
     request.evaluate.optimum_at_Ms = true;
     const auto one = tune(request, {});
     ASSERT_TRUE(one);
@@ -152,7 +153,7 @@ TEST(League, TheOptimumColumnCanBeLeftOutOfAllAndAskedForOfOne) {
 
 TEST(League, ReasonsThatMethodsShareAreToldOnceWhereNoneWorks) {
     TuningRequest request;
-    request.plant = Plant(TransferFunction{.num = {1, 0}, .den = {1, 2, 1}, .L = 1});
+    request.subject = test::subject_of(Plant(TransferFunction{.num = {1, 0}, .den = {1, 2, 1}, .L = 1}));
     request.tune = {{.method = "all", .options = {}}};
     const auto result = tune(request, {});
     ASSERT_FALSE(result);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -59,7 +60,7 @@ const Units kUnits[] = {{1e-9, 1e-9}, {1e-9, 1}, {1e-9, 1e9}, {1e-3, 1}, {0.3, 1
 
 Expected<TuningResult> answer(const Case& c, Units s, const std::string& method, const std::string& controller) {
     TuningRequest request;
-    request.plant = c.plant(s);
+    request.subject = test::subject_of(c.plant(s));
     request.tune = {MethodRequest{.method = method, .options = {}}};
     request.tune[0].options.set("controller", controller);
     request.evaluate.points = 0;

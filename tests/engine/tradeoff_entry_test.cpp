@@ -1,5 +1,5 @@
 // The trade-off between servo and regulation of any controller: what the optima are, how figures scale, what is empty.
-#include "engine/evaluation/tradeoff_entry.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -83,7 +85,7 @@ TEST(Tradeoffs, OnAFirstOrderPlantModelAndPlantAreTheSame) {
 
 TEST(Tradeoffs, TheSteppedSizesOfTheEvaluationDoNotMatter) {
     TuningRequest request;
-    request.plant = Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3};
+    request.subject = test::subject_of(Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3});
     request.tune = {MethodRequest{.method = "simc", .options = {}}};
     request.baseline = Pid{.Kp = 0.5, .Ti = 8};
     request.evaluate.points = 0;
@@ -94,13 +96,14 @@ TEST(Tradeoffs, TheSteppedSizesOfTheEvaluationDoNotMatter) {
     request.evaluate.horizon = 3;
     const auto other = tune(request, {});
     for (std::size_t i = 0; i < 2; ++i) {
-        ASSERT_TRUE(unit->controllers[i].tradeoff) << i;
-        EXPECT_EQ(*unit->controllers[i].tradeoff->plant.J_rd, *other->controllers[i].tradeoff->plant.J_rd);
+        ASSERT_TRUE(unit->controllers[i].report_as<TradeoffReport>()) << i;
+        EXPECT_EQ(*unit->controllers[i].report_as<TradeoffReport>()->plant.J_rd,
+                  *other->controllers[i].report_as<TradeoffReport>()->plant.J_rd);
     }
     // SIMC's PID works on the second-order plant itself; the trade-off is about a first-order model of it.
-    EXPECT_TRUE(std::holds_alternative<Fopdt>(*unit->controllers[0].tradeoff->fopdt));
+    EXPECT_TRUE(std::holds_alternative<Fopdt>(*unit->controllers[0].report_as<TradeoffReport>()->fopdt));
     request.evaluate.tradeoff = false;
-    EXPECT_FALSE(tune(request, {})->controllers[0].tradeoff);
+    EXPECT_FALSE(tune(request, {})->controllers[0].report_as<TradeoffReport>());
 }
 
 void expect_empty(const TradeoffFigures& figures, const char* words) {
@@ -162,7 +165,7 @@ TEST(Tradeoffs, WithoutAModelThePlantKeepsItsOwnFigures) {
 TEST(Tradeoffs, WarnWhereTable2MissesItsLevel) {
     const auto entry_for = [](double L) {
         TuningRequest request;
-        request.plant = Fopdt{1, 1, L};
+        request.subject = test::subject_of(Fopdt{1, 1, L});
         request.tune = {MethodRequest{.method = "arrieta_degradation", .options = {}}};
         request.tune[0].options.set("degradation", 0.45);
         request.evaluate.points = 0;

@@ -18,8 +18,8 @@ ROOMS = {
     "simulation": {"loop", "plant", "controller", "numerics"},
     "reduction": {"simulation", "loop", "plant", "numerics"},
     "identification": {"simulation", "loop", "plant", "numerics"},
-    "tuning": {"reduction", "simulation", "loop", "plant", "controller", "numerics"},
-    "evaluation": {"tuning", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
+    "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
+    "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
     "request": {"evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant", "controller",
                 "numerics"},
 }

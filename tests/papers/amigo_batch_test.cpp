@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 #include "tests/engine/tuning/reference_batch.h"
 
 namespace tunewright {
@@ -12,7 +13,7 @@ void expect_reference(const nlohmann::json& row, const std::string& controller, 
     SCOPED_TRACE(row.at("id").get<std::string>() + " " + reference_case);
     const auto& reference = row.at(reference_case);
     TuningRequest request;
-    request.plant = test::plant_of(row);
+    request.subject = test::subject_of(test::plant_of(row));
     request.tune = {MethodRequest{.method = "amigo", .options = {}}};
     request.tune[0].options.set("controller", controller);
     request.evaluate.points = 0;

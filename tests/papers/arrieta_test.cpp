@@ -6,9 +6,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/reduction/reduction.h"
 #include "engine/request/tune.h"
 #include "engine/tuning/arrieta/arrieta_rule.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
+#include "tests/engine/plant/subject_of.h"
 #include "tests/test_data.h"
 
 namespace tunewright {
@@ -35,7 +38,7 @@ MethodRequest request(const char* method, const std::vector<std::pair<const char
 
 TuningEntry entry(const Plant& plant, const MethodRequest& method) {
     TuningRequest request;
-    request.plant = plant;
+    request.subject = test::subject_of(plant);
     request.tune = {method};
     request.evaluate.points = 0;
     const auto result = tune(request, {});
@@ -91,8 +94,9 @@ TEST(Arrieta, Table4ComesOutWithEachColumnOnItsPlant) {
     for (const char* level : kLevels) {
         const Json& row = reference()["table4"][level]["published"];
         const auto answer = by_degradation(kProcess, std::stod(level));
-        ASSERT_TRUE(answer.tradeoff);
-        const TradeoffFigures &model = answer.tradeoff->model, &plant = answer.tradeoff->plant;
+        ASSERT_TRUE(answer.report_as<TradeoffReport>());
+        const TradeoffFigures &model = answer.report_as<TradeoffReport>()->model,
+                              &plant = answer.report_as<TradeoffReport>()->plant;
         EXPECT_NEAR(*model.Ms / row["Ms_r"].get<double>(), 1, 5e-4) << level;
         EXPECT_NEAR(*model.Deg, row["Deg_r"].get<double>(), 1e-3) << level;
         EXPECT_NEAR(*plant.J_r / row["J_r"].get<double>(), 1, 5e-4) << level;
@@ -109,14 +113,14 @@ TEST(Arrieta, EveryFigureOfTheExampleOnBothPlantsAgreesWithTheRecomputedOnes) {
     for (const char* level : kLevels) {
         const Json& all = reference()["table4"][level]["all"];
         const auto on_model = by_degradation(kModel, std::stod(level));
-        const TradeoffFigures& f = on_model.tradeoff->model;
+        const TradeoffFigures& f = on_model.report_as<TradeoffReport>()->model;
         EXPECT_NEAR(*f.Ms / all["model"]["Ms"].get<double>(), 1, 1e-5);
         EXPECT_NEAR(*f.J_r / all["model"]["Jr"].get<double>(), 1, 1e-4);
         EXPECT_NEAR(*f.J_d / all["model"]["Jd"].get<double>(), 1, 1e-4);
         EXPECT_NEAR(*f.J_rd / all["model"]["Jrd"].get<double>(), 1, 1e-3);
         EXPECT_NEAR(*f.Deg, all["model"]["Deg"].get<double>(), 5e-4);
         const auto on_process = by_degradation(kProcess, std::stod(level));
-        const TradeoffFigures& g = on_process.tradeoff->plant;
+        const TradeoffFigures& g = on_process.report_as<TradeoffReport>()->plant;
         EXPECT_NEAR(*g.Ms / all["process"]["Ms"].get<double>(), 1, 1e-3);
         EXPECT_NEAR(*g.J_r / all["process"]["Jr"].get<double>(), 1, 1e-3);
         EXPECT_NEAR(*g.J_d / all["process"]["Jd"].get<double>(), 1, 1e-3);
@@ -167,22 +171,22 @@ TEST(Arrieta, TheMethodTakesTheTableAtItsLevelsAndEquation9InBetween) {
     for (const auto& [tau, row] : reference()["tau_scan"].items()) {
         const auto at_level = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", 1.6}}));
         EXPECT_NEAR(*at_level.evaluation->robustness.Ms / row["Ms_table1"]["1.6"].get<double>(), 1, 1e-3);
-        EXPECT_EQ(*at_level.tradeoff->constants, "Table 1, column Ms = 1.6");
+        EXPECT_EQ(*at_level.report_as<TradeoffReport>()->constants, "Table 1, column Ms = 1.6");
         const auto between = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", 1.7}}));
         EXPECT_NEAR(*between.evaluation->robustness.Ms / row["Ms_eq9_b3_c3"]["1.7"].get<double>(), 1, 1e-3);
-        EXPECT_EQ(between.tradeoff->constants->substr(0, 16), "Eq. 9 at Ms = 1.");
-        EXPECT_TRUE(
-            between.tradeoff->constants->ends_with("c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic "
-                                                   "through Table 1)"));
-        EXPECT_EQ(*between.tradeoff->Ms_design, 1.7);
+        EXPECT_EQ(between.report_as<TradeoffReport>()->constants->substr(0, 16), "Eq. 9 at Ms = 1.");
+        EXPECT_TRUE(between.report_as<TradeoffReport>()->constants->ends_with(
+            "c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic "
+            "through Table 1)"));
+        EXPECT_EQ(*between.report_as<TradeoffReport>()->Ms_design, 1.7);
         const auto printed =
             entry(scaled_model(tau), request("arrieta_ms", {{"Ms", 1.7}, {"c3", std::string("printed")}}));
         EXPECT_NEAR(*printed.evaluation->robustness.Ms / row["Ms_eq9_b3"]["1.7"].get<double>(), 1, 1e-3);
-        EXPECT_TRUE(printed.tradeoff->constants->ends_with("c3 as printed"));
+        EXPECT_TRUE(printed.report_as<TradeoffReport>()->constants->ends_with("c3 as printed"));
         const auto free = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", std::string("free")}}));
         EXPECT_NEAR(*free.evaluation->robustness.Ms / row["free"]["Ms"].get<double>(), 1, 1e-3);
-        EXPECT_EQ(*free.tradeoff->model.I_perf, 1);
-        EXPECT_FALSE(free.tradeoff->Ms_design);
+        EXPECT_EQ(*free.report_as<TradeoffReport>()->model.I_perf, 1);
+        EXPECT_FALSE(free.report_as<TradeoffReport>()->Ms_design);
     }
 }
 
@@ -191,7 +195,7 @@ TEST(Arrieta, OptimaAndDegradationsOverTheRangeAgreeWithTheRecomputedOnes) {
     for (const auto& [tau, row] : reference()["tau_scan"].items()) {
         for (const auto& [level, Deg] : row["Deg_table2"].items()) {
             const auto answer = by_degradation(scaled_model(tau), std::stod(level));
-            const TradeoffFigures& f = answer.tradeoff->model;
+            const TradeoffFigures& f = answer.report_as<TradeoffReport>()->model;
             EXPECT_NEAR(*f.J_r_opt / row["Jr_o"].get<double>(), 1, 5e-4) << tau;
             EXPECT_NEAR(*f.J_d_opt / row["Jd_o"].get<double>(), 1, 5e-4) << tau;
             EXPECT_NEAR(*f.Ms / row["Ms_table2"][level].get<double>(), 1, 1e-3) << tau << " " << level;
@@ -199,7 +203,8 @@ TEST(Arrieta, OptimaAndDegradationsOverTheRangeAgreeWithTheRecomputedOnes) {
         }
         for (const auto& [Ms, I_perf] : row["Iperf_table1"].items()) {
             const auto answer = entry(scaled_model(tau), request("arrieta_ms", {{"Ms", std::stod(Ms)}}));
-            EXPECT_NEAR(*answer.tradeoff->model.I_perf / I_perf.get<double>(), 1, 2e-3) << tau << " " << Ms;
+            EXPECT_NEAR(*answer.report_as<TradeoffReport>()->model.I_perf / I_perf.get<double>(), 1, 2e-3)
+                << tau << " " << Ms;
         }
         const Fopdt model = scaled_model(tau);
         const TradeoffScale scale(*LinearPlant::make(model), reference_controllers(model));
@@ -217,13 +222,13 @@ TEST(Arrieta, ExactHasTheDegradationAskedFor) {
         for (const double asked : {0.3, 0.4, 0.5}) {
             const auto answer = by_degradation(scaled_model(tau), asked, true);
             ASSERT_TRUE(answer.evaluation) << tau << " " << asked;
-            EXPECT_NEAR(*answer.tradeoff->model.Deg, asked, 1e-7);
+            EXPECT_NEAR(*answer.report_as<TradeoffReport>()->model.Deg, asked, 1e-7);
             const Performance& p = answer.evaluation->performance;
             const double J_rd =
                 std::hypot(*p.setpoint.IAE - row["Jr_o"].get<double>(), *p.load.IAE - row["Jd_o"].get<double>());
             EXPECT_NEAR(1 - row["free"]["Jrd"].get<double>() / J_rd, asked, 1e-3) << tau << " " << asked;
             // Eq. 9 aims at Ms within a few per cent.
-            EXPECT_NEAR(*answer.evaluation->robustness.Ms / *answer.tradeoff->Ms_design, 1, 0.03);
+            EXPECT_NEAR(*answer.evaluation->robustness.Ms / *answer.report_as<TradeoffReport>()->Ms_design, 1, 0.03);
         }
     }
 }
@@ -231,15 +236,15 @@ TEST(Arrieta, ExactHasTheDegradationAskedFor) {
 TEST(Arrieta, TheProfileIsWhatTheMethodsAnswerOneByOne) {
     auto method = request("arrieta_degradation", {{"degradation", 0.35}, {"profile", true}});
     const auto answer = entry(kProcess, method);
-    ASSERT_TRUE(answer.tradeoff->profile);
-    const TradeoffProfile& profile = *answer.tradeoff->profile;
+    ASSERT_TRUE(answer.report_as<TradeoffReport>()->profile);
+    const TradeoffProfile& profile = *answer.report_as<TradeoffReport>()->profile;
     ASSERT_EQ(profile.by_Ms.size(), 13u);
     ASSERT_EQ(profile.by_degradation.size(), 5u);
     EXPECT_EQ(profile.by_Ms.front().level, 1.4);
     EXPECT_EQ(profile.by_Ms.back().level, 2);
     EXPECT_EQ(profile.by_degradation.front().Deg, 0);
     for (const ProfilePoint& point : profile.by_degradation) {
-        const TradeoffFigures f = by_degradation(kProcess, point.level).tradeoff->model;
+        const TradeoffFigures f = by_degradation(kProcess, point.level).report_as<TradeoffReport>()->model;
         EXPECT_DOUBLE_EQ(point.J_r, *f.J_r);
         EXPECT_DOUBLE_EQ(point.J_d, *f.J_d);
         EXPECT_DOUBLE_EQ(point.Ms, *f.Ms);
@@ -250,7 +255,7 @@ TEST(Arrieta, TheProfileIsWhatTheMethodsAnswerOneByOne) {
         EXPECT_GT(profile.by_Ms[i].Ms, profile.by_Ms[i - 1].Ms);
         EXPECT_GT(profile.by_Ms[i].I_perf, profile.by_Ms[i - 1].I_perf);
     }
-    EXPECT_FALSE(by_degradation(kProcess, 0.35).tradeoff->profile);
+    EXPECT_FALSE(by_degradation(kProcess, 0.35).report_as<TradeoffReport>()->profile);
 }
 
 }  // namespace

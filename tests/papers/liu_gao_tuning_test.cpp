@@ -8,6 +8,8 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "engine/tuning/rimc/rimc_report.h"
+#include "tests/engine/plant/subject_of.h"
 #include "tests/test_data.h"
 
 namespace tunewright {
@@ -103,7 +105,7 @@ TEST(LiuGao, Figure2ComesOutForThePid) {
             const auto answer = tuned(
                 "rimc", plant, {{"lambda", 5 * row["lam_tau"].get<double>()}, {"Tf_over_Td", filtered ? 0.1 : 0.0}});
             ASSERT_TRUE(answer.has_value()) << row << answer.error().message;
-            const auto& peak = answer->rimc->disturbance_peak;
+            const auto& peak = answer->report_as<RimcReport>()->disturbance_peak;
             const Json& expected = row[filtered ? "dp_pid_filtered" : "dp_pid_ideal_derivative"];
             if (expected.is_null()) continue;  // unstable, or not settled when it was recomputed
             ASSERT_TRUE(peak.has_value()) << row;
@@ -115,13 +117,15 @@ TEST(LiuGao, Figure2ComesOutForThePid) {
 TEST(LiuGao, Figure2ComesOutForTheFullController) {
     for (const Json& row : reference()["fig2_dp_over_kp"]) {
         TuningRequest request;
-        request.plant = Fopdt{.K = 1, .T = 1, .L = row["theta_tau"]};
+        request.subject = test::subject_of(Fopdt{.K = 1, .T = 1, .L = row["theta_tau"]});
         request.tune = {{"rimc", {}}};
         request.tune[0].options.set("lambda", row["lam_tau"].get<double>());
         request.evaluate.points = 0;
         const auto result = tune(request, {});
         ASSERT_TRUE(result.has_value()) << row << result.error().message;
-        EXPECT_NEAR(*result->controllers[0].rimc->full_controller->load.peak, row["dp_exact_controller"], 1e-6) << row;
+        EXPECT_NEAR(*result->controllers[0].report_as<RimcReport>()->full_controller->load.peak,
+                    row["dp_exact_controller"], 1e-6)
+            << row;
     }
 }
 
@@ -135,7 +139,7 @@ TEST(LiuGao, RobustStabilityBoundsHoldWithinHalfAPercent) {
                       {{"dead_time_error", row["dtheta"].get<double>()}, {"Tf_over_Td", filtered ? 0.1 : 0.0}});
             ASSERT_TRUE(answer.has_value()) << row << answer.error().message;
             const double expected = row[filtered ? "lam_min_pid_filtered_0p1" : "lam_min_pid_ideal_derivative"];
-            EXPECT_NEAR(answer->rimc->full_controller.lambda / expected, 1, tolerance) << row;
+            EXPECT_NEAR(answer->report_as<RimcReport>()->controller.lambda / expected, 1, tolerance) << row;
         }
     }
 }
@@ -147,12 +151,12 @@ TEST(LiuGao, LimitsOfTheModelLoopAreWhereTheyWereRecomputed) {
             const auto answer = tuned("rimc", plant, {{"Ms", Ms}});
             ASSERT_TRUE(answer.has_value()) << row << answer.error().message;
             const double expected = row[Ms == 2 ? "lam_Ms_2p0" : "lam_Ms_1p6"];
-            EXPECT_NEAR(answer->rimc->full_controller.lambda / expected, 1, 1e-4) << row;
+            EXPECT_NEAR(answer->report_as<RimcReport>()->controller.lambda / expected, 1, 1e-4) << row;
         }
         for (const bool filtered : {false, true}) {
             const auto answer = tuned("rimc", plant, {{"Tf_over_Td", filtered ? 0.1 : 0.0}});
             const double expected = row[filtered ? "lam_stable_filtered_0p1" : "lam_stable_ideal_derivative"];
-            EXPECT_NEAR(*answer->rimc->stability_limit / expected, 1, 0.005) << row;
+            EXPECT_NEAR(*answer->report_as<RimcReport>()->stability_limit / expected, 1, 0.005) << row;
         }
     }
 }
@@ -160,15 +164,15 @@ TEST(LiuGao, LimitsOfTheModelLoopAreWhereTheyWereRecomputed) {
 TEST(LiuGao, ThePrintedLambdaIsUnstableOnItsOwnModelWithTheFilterAndSaysSo) {
     const auto filtered = tuned("rimc", kModel, {{"lambda", 0.9}});
     ASSERT_TRUE(filtered.has_value());
-    EXPECT_FALSE(filtered->rimc->Ms.has_value());
-    EXPECT_NEAR(*filtered->rimc->stability_limit / kModel.T, 0.0417, 5e-5);
+    EXPECT_FALSE(filtered->report_as<RimcReport>()->Ms.has_value());
+    EXPECT_NEAR(*filtered->report_as<RimcReport>()->stability_limit / kModel.T, 0.0417, 5e-5);
     ASSERT_EQ(filtered->warnings.size(), 1u);
     EXPECT_EQ(filtered->warnings[0].code, "unstable-model-loop");
     EXPECT_NE(filtered->warnings[0].detail.find("0.04123"), std::string::npos);
     EXPECT_NE(filtered->warnings[0].detail.find("0.04168"), std::string::npos);
 
     const auto ideal = tuned("rimc", kModel, {{"lambda", 0.9}, {"Tf_over_Td", 0.0}});
-    EXPECT_NEAR(*ideal->rimc->stability_limit / kModel.T, 0.0362, 5e-5);
+    EXPECT_NEAR(*ideal->report_as<RimcReport>()->stability_limit / kModel.T, 0.0362, 5e-5);
     ASSERT_EQ(ideal->warnings.size(), 1u);
     EXPECT_EQ(ideal->warnings[0].code, "near-stability-limit");
 }

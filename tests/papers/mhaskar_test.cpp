@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "engine/tuning/emulation/emulation_report.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/engine/tuning/emulation_support.h"
 #include "tests/test_data.h"
@@ -67,7 +68,7 @@ TEST(Mhaskar, OptimaOfTheSecondLevelAreTheRecomputedOnes) {
         const double tolerance = row["approx"].get<bool>() ? 1e-4 : 2e-3;
         for (std::size_t i = 0; i < row["params"].size(); ++i)
             EXPECT_NEAR(settings(answer->controller)[i] / row["params"][i].get<double>(), 1, tolerance) << i;
-        const EmulationReport& report = *answer->emulation;
+        const EmulationReport& report = *answer->report_as<EmulationReport>();
         EXPECT_LE(report.J, row["J"].get<double>() * (1 + 3e-5));
         EXPECT_NEAR(report.J / row["J"].get<double>(), 1, row["tol_rel_J"].get<double>());
         EXPECT_NEAR(report.J_u / row["int_du2"].get<double>(), 1, 2e-3);
@@ -90,10 +91,10 @@ TEST(Mhaskar, HowFlatTheOptimaAreIsTheRecomputedHessians) {
         ASSERT_TRUE(answer) << answer.error().message;
         const double tolerance = row["approx"].get<bool>() ? 2e-3 : 0.25;
         for (std::size_t i = 0; i < row["params"].size(); ++i) {
-            EXPECT_NEAR(answer->emulation->flatness_alone.at(names[i]) /
+            EXPECT_NEAR(answer->report_as<EmulationReport>()->flatness_alone.at(names[i]) /
                             row["halfwidth_J_plus_5pct_others_fixed"][i].get<double>(),
                         1, tolerance);
-            EXPECT_NEAR(answer->emulation->flatness.at(names[i]) /
+            EXPECT_NEAR(answer->report_as<EmulationReport>()->flatness.at(names[i]) /
                             row["halfwidth_J_plus_5pct_others_reoptimised"][i].get<double>(),
                         1, tolerance);
         }
@@ -107,18 +108,18 @@ TEST(Mhaskar, AParameterMovedByItsFlatnessAloneRaisesJByFivePercent) {
         const TuningProblem& problem = reactor(is_T(row["name"])).problem;
         const auto answer = emulated(problem, options_of(row));
         ASSERT_TRUE(answer) << answer.error().message;
-        if (!answer->emulation->active_bounds.empty()) continue;
+        if (!answer->report_as<EmulationReport>()->active_bounds.empty()) continue;
         const auto J_at = [&](std::vector<double> point) {
             MethodOptions options = options_of(row);
             for (std::size_t i = 0; i < row["params"].size(); ++i)
                 set_range(options, std::string("bounds/") + names[i], point[i], point[i] + 1e-9 * std::abs(point[i]));
-            return emulated(problem, options).value().emulation->J;
+            return emulated(problem, options).value().report_as<EmulationReport>()->J;
         };
         for (std::size_t i = 0; i < row["params"].size(); ++i) {
             std::vector<double> up = settings(answer->controller), down = up;
-            up[i] += answer->emulation->flatness_alone.at(names[i]);
-            down[i] -= answer->emulation->flatness_alone.at(names[i]);
-            EXPECT_NEAR(0.5 * (J_at(up) + J_at(down)) / answer->emulation->J, 1.05, 2e-3);
+            up[i] += answer->report_as<EmulationReport>()->flatness_alone.at(names[i]);
+            down[i] -= answer->report_as<EmulationReport>()->flatness_alone.at(names[i]);
+            EXPECT_NEAR(0.5 * (J_at(up) + J_at(down)) / answer->report_as<EmulationReport>()->J, 1.05, 2e-3);
         }
     }
 }
@@ -160,11 +161,11 @@ TEST(Mhaskar, TableIIsProposedGainIsReachedItsIntegralTimeIsAMisprint) {
         const auto there = emulated(reactor(true).problem, as_printed);
         ASSERT_TRUE(there) << there.error().message;
         if (r == 10) {
-            EXPECT_NEAR(there->emulation->J_u /
+            EXPECT_NEAR(there->report_as<EmulationReport>()->J_u /
                             reference()["table2_J_full_r10_tf2"]["printed 5.38/2.1"]["int_du2"].get<double>(),
                         1, 1e-3);
         }
-        EXPECT_FALSE(there->emulation->fit.adequate);
+        EXPECT_FALSE(there->report_as<EmulationReport>()->fit.adequate);
     }
 }
 
@@ -201,7 +202,7 @@ TEST(Mhaskar, ThreeStepsAreAveraged) {
     EXPECT_NEAR(answer->controller.Kp / -1044.50371, 1, 1e-4);
     EXPECT_NEAR(answer->controller.Ti / 1.20320721, 1, 1e-4);
     EXPECT_NEAR(answer->controller.Td / 0.0982479678, 1, 1e-4);
-    EXPECT_NEAR(answer->emulation->J / 86.09413919, 1, 1e-6);
+    EXPECT_NEAR(answer->report_as<EmulationReport>()->J / 86.09413919, 1, 1e-6);
 }
 
 const LevelOneRow* row_of(const EmulationReport& report, const std::string& method, const std::string& test) {
@@ -216,7 +217,7 @@ TEST(Mhaskar, ImcOnTheDefaultStepTestIsTableIIIsFirstRow) {
     options.set("formulation", std::string("remark6"));
     const auto answer = emulated(reactor(false).problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    const LevelOneRow* step = row_of(*answer->emulation, "imc", "step");
+    const LevelOneRow* step = row_of(*answer->report_as<EmulationReport>(), "imc", "step");
     ASSERT_TRUE(step && step->controller) << (step ? step->error : "no row");
     const auto imc_I = settings(std::get<Pid>(*step->controller));
     EXPECT_NEAR(imc_I[0] / -1342.7, 1, 0.01);
@@ -232,12 +233,12 @@ TEST(Mhaskar, TheFirstLevelsImcRowsAreTableIIIs) {
     options.set("formulation", std::string("remark6"));
     const auto answer = emulated(reactor(false).problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    const LevelOneRow* linear = row_of(*answer->emulation, "imc", "linear");
+    const LevelOneRow* linear = row_of(*answer->report_as<EmulationReport>(), "imc", "linear");
     ASSERT_TRUE(linear && linear->controller) << (linear ? linear->error : "no row");
     const auto imc_II = settings(std::get<Pid>(*linear->controller));
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(imc_II[i] / reference()["level1"]["IMC_II_lambda_0p2"][i].get<double>(), 1, 1e-6);
-    const LevelOneRow* step = row_of(*answer->emulation, "imc", "step");
+    const LevelOneRow* step = row_of(*answer->report_as<EmulationReport>(), "imc", "step");
     ASSERT_TRUE(step && step->controller) << (step ? step->error : "no row");
     const auto imc_I = settings(std::get<Pid>(*step->controller));
     for (std::size_t i = 0; i < 3; ++i)

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/uncertain/plant_region.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright::records {
 namespace {
@@ -55,7 +57,7 @@ void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement&
 /// Of the default design for the true plant.
 std::optional<double> least_load_IAE(const TruePlant& plant) {
     TuningRequest request;
-    request.plant = PlantModel(Plant(plant.zpk()));
+    request.subject = test::subject_of(PlantModel(Plant(plant.zpk())));
     request.evaluate.points = 0;
     const auto result = tune(request, {});
     if (!result || result->controllers.empty() || !result->controllers.front().evaluation) return std::nullopt;

@@ -1,7 +1,8 @@
 #include "api/contract/plant/plant.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "engine/plant/linear/plant_rules.h"
 
 namespace tunewright::api {
 namespace {
@@ -9,8 +10,9 @@ namespace {
 constexpr std::size_t kMaxOrder = 50;
 constexpr FieldOptions kOptional{};
 
-NumberRule gain_rule() { return {.not_zero = true, .cure = "A plant with gain 0 cannot be controlled."}; }
-NumberRule dead_time_rule() { return {.minimum = 0, .cure = "A dead time cannot be negative."}; }
+// What numbers must keep (plant_rules.h), as the schema shows it.
+Codec<double> gain() { return engine_ruled({.not_zero = true}); }
+Codec<double> dead_time() { return engine_ruled({.minimum = 0}); }
 
 using Range = std::optional<FactorRange>;
 
@@ -22,15 +24,9 @@ Codec<Range> factors() {
                 FactorRange range;
                 for (const std::size_t i : {0, 1}) {
                     const Reader::At at(reader, i);
-                    const auto read = read_number(value[i], {.exclusive_minimum = 0}, reader);
+                    const auto read = read_number(value[i], {}, reader);
                     if (!read) return;
                     (i == 0 ? range.low : range.high) = *read;
-                }
-                if (!(range.low <= 1 && range.high >= 1)) {
-                    return reader.fault(reader.name() + " is [" + full_digits(range.low) + ", " +
-                                        full_digits(range.high) +
-                                        "]; these are factors of the nominal value, which must lie between them: low "
-                                        "<= 1 <= high.");
                 }
                 target = range;
             },
@@ -72,20 +68,35 @@ Codec<Uncertainty> uncertainty(const std::string& type) {
                                [](const Uncertainty& given) { return given.empty(); });
 }
 
+// What the engine says of the members that could be read. Of B and C it speaks beside A.
+template <class T>
+void report_faults(const Json& value, T& plant, Reader& reader) {
+    const auto read = [&](const std::string& name) { return value.contains(name) && reader.clean_at(name); };
+    std::vector<Error> faults;
+    for (Error& fault : plant_faults(plant)) {
+        const std::string below = fault.where.substr(fault.where.find('/') + 1),
+                          name = below.substr(0, below.find('/'));
+        const bool beside_A = name == "B" || name == "C";
+        if (read(name) && (!beside_A || read("A"))) faults.push_back(std::move(fault));
+    }
+    for (const Error& fault : faults) reader.fault_below(fault.where, 1, fault.message);
+}
+
 template <class T>
 Description<T>& with_dead_time(Description<T>& description, bool required) {
     return description
-        .field("L", &T::L, number(dead_time_rule()), "Dead time at the plant's input, >= 0; exact everywhere.",
+        .field("L", &T::L, dead_time(), "Dead time at the plant's input, >= 0; exact everywhere.",
                {.required = required, .unit = "time"})
         .field("uncertainty", &T::uncertainty, uncertainty<T>(description.name()),
-               "How far parameters may lie from their nominal values; robust then holds its limits everywhere.");
+               "How far parameters may lie from their nominal values; robust then holds its limits everywhere.")
+        .check_presence(report_faults<T>);
 }
 
 const Description<Fopdt>& fopdt() {
     static const auto description = [] {
         Description<Fopdt> d("Fopdt", "First order plus dead time: K e^(-Ls)/(T s + 1).");
         d.tag("type", "fopdt")
-            .field("K", &Fopdt::K, number(gain_rule()), "Static gain, any sign.", {.required = true, .unit = "y/u"})
+            .field("K", &Fopdt::K, gain(), "Static gain, any sign.", {.required = true, .unit = "y/u"})
             .field(
                 "T", &Fopdt::T, number(),
                 "Time constant; negative: an unstable plant (k/(tau s - 1) is K = -k, T = -tau); 0: a pure dead time.",
@@ -99,7 +110,7 @@ const Description<Sopdt>& sopdt() {
     static const auto description = [] {
         Description<Sopdt> d("Sopdt", "Second order plus dead time with real lags: K e^(-Ls)/((T1 s + 1)(T2 s + 1)).");
         d.tag("type", "sopdt")
-            .field("K", &Sopdt::K, number(gain_rule()), "Static gain, any sign.", {.required = true, .unit = "y/u"})
+            .field("K", &Sopdt::K, gain(), "Static gain, any sign.", {.required = true, .unit = "y/u"})
             .field("T1", &Sopdt::T1, number(),
                    "First time constant; negative: unstable. (Oscillatory plants: T and zeta instead of T1 and T2.)",
                    {.required = true, .unit = "time"})
@@ -114,9 +125,8 @@ const Description<OscillatorySopdt>& oscillatory_sopdt() {
         Description<OscillatorySopdt> d(
             "OscillatorySopdt", "Second order plus dead time with any damping: K e^(-Ls)/(T^2 s^2 + 2 zeta T s + 1).");
         d.tag("type", "sopdt")
-            .field("K", &OscillatorySopdt::K, number(gain_rule()), "Static gain, any sign.",
-                   {.required = true, .unit = "y/u"})
-            .field("T", &OscillatorySopdt::T, number({.exclusive_minimum = 0}),
+            .field("K", &OscillatorySopdt::K, gain(), "Static gain, any sign.", {.required = true, .unit = "y/u"})
+            .field("T", &OscillatorySopdt::T, engine_ruled({.exclusive_minimum = 0}),
                    "1/T is the undamped angular frequency.", {.required = true, .unit = "time"})
             .field("zeta", &OscillatorySopdt::zeta, number(), "Relative damping; below 0 the plant is unstable.",
                    {.required = true});
@@ -130,31 +140,12 @@ const Description<Ipdt>& ipdt() {
     static const auto description = [] {
         Description<Ipdt> d("Ipdt", "Integrator plus dead time, with an optional lag: K e^(-Ls)/(s (T s + 1)).");
         d.tag("type", "ipdt")
-            .field("K", &Ipdt::K, number(gain_rule()), "Slope of y per unit of u, any sign.",
+            .field("K", &Ipdt::K, gain(), "Slope of y per unit of u, any sign.",
                    {.required = true, .unit = "y/(u time)"});
         with_dead_time(d, true).field("T", &Ipdt::T, number(), "Lag.", {.unit = "time"});
         return d.example({{"type", "ipdt"}, {"K", 0.05}, {"L", 4}});
     }();
     return description;
-}
-
-// Degree of a polynomial in descending powers; -1 for the zero polynomial.
-int degree(const std::vector<double>& polynomial) {
-    for (std::size_t i = 0; i < polynomial.size(); ++i) {
-        if (polynomial[i] != 0) return static_cast<int>(polynomial.size() - i) - 1;
-    }
-    return -1;
-}
-
-void check_transfer_function(const Json&, TransferFunction& plant, Reader& reader) {
-    const int above = degree(plant.num), below = degree(plant.den);
-    if (below < 0) reader.fault_at("den", "den has only zeros; it must have a coefficient different from 0.");
-    if (above < 0) reader.fault_at("num", "num has only zeros; a plant with gain 0 cannot be controlled.");
-    if (below >= 0 && above > below) {
-        reader.fault_at("num", "num has degree " + std::to_string(above) + " and den degree " + std::to_string(below) +
-                                   "; the plant must be proper (degree of num <= degree of den). Coefficients stand in "
-                                   "descending powers of s.");
-    }
 }
 
 const Description<TransferFunction>& transfer_function() {
@@ -165,9 +156,8 @@ const Description<TransferFunction>& transfer_function() {
                    {.required = true})
             .field("den", &TransferFunction::den, numbers(1, kMaxOrder + 1), "Denominator, descending powers of s.",
                    {.required = true});
-        return with_dead_time(d, false)
-            .check(check_transfer_function)
-            .example({{"type", "transfer_function"}, {"num", {1}}, {"den", {1, 3, 3, 1}}, {"L", 0.5}});
+        return with_dead_time(d, false).example(
+            {{"type", "transfer_function"}, {"num", {1}}, {"den", {1, 3, 3, 1}}, {"L", 0.5}});
     }();
     return description;
 }
@@ -218,45 +208,15 @@ Codec<std::vector<std::complex<double>>> roots() {
             }};
 }
 
-// Pairs must be written exactly alike: a real plant has exactly conjugate roots.
-void check_conjugates(const char* field, const std::vector<std::complex<double>>& roots, Reader& reader) {
-    std::vector<bool> paired(roots.size(), false);
-    for (std::size_t i = 0; i < roots.size(); ++i) {
-        if (roots[i].imag() == 0 || paired[i]) continue;
-        bool found = false;
-        for (std::size_t j = i + 1; j < roots.size() && !found; ++j) {
-            if (!paired[j] && roots[j] == std::conj(roots[i])) paired[j] = found = true;
-        }
-        if (!found) {
-            const Reader::At at(reader, field);
-            const Reader::At element(reader, i);
-            reader.fault(reader.name() + " is [" + full_digits(roots[i].real()) + ", " + full_digits(roots[i].imag()) +
-                         "]; complex ones must come in conjugate pairs. Add [" + full_digits(roots[i].real()) + ", " +
-                         full_digits(-roots[i].imag()) + "].");
-            return;
-        }
-    }
-}
-
-void check_zpk(const Json&, Zpk& plant, Reader& reader) {
-    check_conjugates("zeros", plant.zeros, reader);
-    check_conjugates("poles", plant.poles, reader);
-    if (plant.zeros.size() > plant.poles.size()) {
-        reader.fault_at("zeros", "zeros has " + std::to_string(plant.zeros.size()) + " elements and poles " +
-                                     std::to_string(plant.poles.size()) +
-                                     "; the plant must be proper (no more zeros than poles).");
-    }
-}
-
 const Description<Zpk>& zpk() {
     static const auto description = [] {
         Description<Zpk> d("Zpk", "K prod(s - z)/prod(s - p) e^(-Ls), proper.");
         d.tag("type", "zpk")
-            .field("K", &Zpk::K, number(gain_rule()), "Factor in front; not the static gain.", {.required = true})
+            .field("K", &Zpk::K, gain(), "Factor in front; not the static gain.", {.required = true})
             .field("zeros", &Zpk::zeros, roots(), "Zeros: numbers, or [re, im] in conjugate pairs.", {.unit = "1/time"})
             .field("poles", &Zpk::poles, roots(), "Poles: numbers, or [re, im] in conjugate pairs.",
                    {.required = true, .unit = "1/time"});
-        return with_dead_time(d, false).check(check_zpk).example(
+        return with_dead_time(d, false).example(
             {{"type", "zpk"},
              {"K", 6},
              {"zeros", {-1}},
@@ -305,24 +265,6 @@ Codec<double> direct_term() {
     return codec;
 }
 
-void check_state_space(const Json&, StateSpace& plant, Reader& reader) {
-    const std::size_t n = plant.A.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        if (plant.A[i].size() == n) continue;
-        const Reader::At at(reader, "A");
-        const Reader::At row(reader, i);
-        reader.fault("A has " + std::to_string(n) + " rows, and row " + std::to_string(i) + " has " +
-                     std::to_string(plant.A[i].size()) + " numbers; A must be square.");
-    }
-    const auto length = [&](const char* name, std::size_t size) {
-        if (size != n)
-            reader.fault_at(name, std::string(name) + " has " + std::to_string(size) + " numbers and A " +
-                                      std::to_string(n) + " rows; they must be equally many.");
-    };
-    length("B", plant.B.size());
-    length("C", plant.C.size());
-}
-
 const Description<StateSpace>& state_space() {
     static const auto description = [] {
         Description<StateSpace> d("StateSpace", "x' = A x + B u(t - L), y = C x + D u(t - L).");
@@ -332,12 +274,10 @@ const Description<StateSpace>& state_space() {
             .field("B", &StateSpace::B, vector(), "Input column, n numbers.", {.required = true})
             .field("C", &StateSpace::C, vector(), "Output row, n numbers.", {.required = true})
             .field("D", &StateSpace::D, direct_term(), "Direct term.", kOptional);
-        return with_dead_time(d, false)
-            .check(check_state_space)
-            .example({{"type", "state_space"},
-                      {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
-                      {"B", {1, 0}},
-                      {"C", {0, 1}}});
+        return with_dead_time(d, false).example({{"type", "state_space"},
+                                                 {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
+                                                 {"B", {1, 0}},
+                                                 {"C", {0, 1}}});
     }();
     return description;
 }

@@ -20,10 +20,9 @@ const Description<PlantSet>& plant_set() {
     return description;
 }
 
-// What belongs together in the points: MeasuredPlant::make knows it.
+// What belongs together in the points.
 void check_points(const Json&, FrequencyResponse& points, Reader& reader) {
-    const auto measured = MeasuredPlant::make(points);
-    if (!measured) reader.fault_below(measured.error().where, 1, measured.error().message);
+    if (const auto fault = points_fault(points)) reader.fault_below(fault->where, 1, fault->message);
 }
 
 const Description<FrequencyResponse>& frequency_response() {
@@ -34,7 +33,7 @@ const Description<FrequencyResponse>& frequency_response() {
         Description<F> d("FrequencyResponse",
                          "Measured points of P(j omega). Figures over time are null, and robust maximises Kp/Ti.");
         d.tag("type", "frequency_response")
-            .field("omega", &F::omega, numbers(kMin, kMax, {.exclusive_minimum = 0}),
+            .field("omega", &F::omega, numbers(kMin, kMax),
                    "Angular frequencies, ascending; they must reach beyond the phase crossover.",
                    {.required = true, .unit = "rad/time"})
             .field("re", &F::re, numbers(kMin, kMax), "Real parts, one a frequency.", {.required = true, .unit = "y/u"})

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "api/describe/description.h"
-#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation.h"
 
 namespace tunewright::api {
 

@@ -4,13 +4,11 @@
 #include "api/contract/data_quality.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
-#include "api/contract/result/emulation.h"
+#include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
 #include "api/contract/result/limit_cycle.h"
 #include "api/contract/result/operating_point.h"
 #include "api/contract/result/optimum_at_ms.h"
-#include "api/contract/result/rimc.h"
-#include "api/contract/result/tradeoff.h"
 
 namespace tunewright::api {
 namespace {
@@ -28,33 +26,25 @@ void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluatio
         });
 }
 
-Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
-
-const Description<CostSurface>& surface_contract() {
-    static const auto description = [] {
-        Description<CostSurface> d("CostSurface", "The least cost over the (Ti, Td) plane.");
-        d.field("Ti", &CostSurface::Ti, trace(), "Integral times.", {.unit = "time"})
-            .field("Td", &CostSurface::Td, trace(), "Derivative times.", {.unit = "time"})
-            .field(
-                "cost", {},
-                [](const CostSurface& surface, Writer& out) {
-                    out.begin_array();
-                    for (const auto& row : surface.cost) {
-                        out.begin_array();
-                        for (const auto& cost : row) cost ? out.trace_number(*cost) : out.null();
-                        out.end_array();
-                    }
-                    out.end_array();
-                },
-                [](SchemaBook&) {
-                    return Json{{"type", "array"},
-                                {"items", {{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}}};
-                },
-                "cost[i][j] belongs to Ti[i] and Td[j]; null where no gain keeps the limits.");
-        return d;
-    }();
-    return description;
+// One of the entry's reports; left out where there is none of this kind.
+void report_field(Description<TuningEntry>& d, const ReportContract& contract) {
+    const auto find = [is = contract.is](const TuningEntry& entry) -> const MethodReport* {
+        for (const auto& report : entry.reports)
+            if (is(*report)) return report.get();
+        return nullptr;
+    };
+    d.field(
+        contract.field, {},
+        [find, write = contract.write](const TuningEntry& entry, Writer& out) { write(*find(entry), out); },
+        contract.schema, contract.sentence, {}, [find](const TuningEntry& entry) { return find(entry) == nullptr; });
 }
+
+void add_reports(Description<TuningEntry>& d, bool last) {
+    for (const ReportContract& report : report_contracts())
+        if (report.last == last) report_field(d, report);
+}
+
+Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
 
 const OperatingPoint* pointer(const std::optional<OperatingPoint>& point) { return point ? &*point : nullptr; }
 
@@ -113,16 +103,10 @@ const Description<TuningEntry>& entry_contract() {
                          "How the figures were checked.");
         evaluation_field(d, "region", &Evaluation::region, maybe(answer(region_contract())),
                          "On every plant that the controller must serve; left out where that is one.");
-        d.field("surface", &TuningEntry::surface, maybe(answer(surface_contract())),
-                "Cost over the (Ti, Td) plane, where asked for.");
-        d.field("rimc", &TuningEntry::rimc, maybe(answer(rimc_contract())),
-                "Of the method rimc: what its design achieves on the model.");
+        add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");
-        d.field("tradeoff", &TuningEntry::tradeoff, maybe(answer(tradeoff_contract())),
-                "Servo against regulation: of the methods arrieta_*, and of any controller with evaluate.tradeoff.");
-        d.field("emulation", &TuningEntry::emulation, maybe(answer(emulation_contract())),
-                "Of the method emulation: both levels, and the nonlinear controller's own run.");
+        add_reports(d, true);
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },
@@ -288,11 +272,11 @@ const Description<ResultAnswer>& result_contract() {
     return description;
 }
 
-const Description<EvaluateAnswer>& evaluate_answer_contract() {
+const Description<EvaluationResult>& evaluate_answer_contract() {
     static const auto description = [] {
-        Description<EvaluateAnswer> d("EvaluateAnswer", "The controllers in the order sent.");
-        add_operating_point<EvaluateAnswer>(d, [](const EvaluateAnswer& a) { return pointer(a.operating_point); });
-        d.field("controllers", &EvaluateAnswer::controllers, list_of(answer(entry_contract())),
+        Description<EvaluationResult> d("EvaluateAnswer", "The controllers in the order sent.");
+        add_operating_point<EvaluationResult>(d, [](const EvaluationResult& a) { return pointer(a.operating_point); });
+        d.field("controllers", &EvaluationResult::controllers, list_of(answer(entry_contract())),
                 "One entry a controller.");
         return d;
     }();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/contract/record.h"
+#include "engine/request/evaluate_all.h"
 #include "engine/request/tune.h"
 
 namespace tunewright::api {
@@ -15,17 +16,12 @@ struct ResultAnswer {
     std::string request_hash;
 };
 
-struct EvaluateAnswer {
-    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
-    std::vector<TuningEntry> controllers;           ///< without a method
-};
-
 struct IdentifyAnswer {
     IdentifiedModel model;
 };
 
 const Description<ResultAnswer>& result_contract();
-const Description<EvaluateAnswer>& evaluate_answer_contract();
+const Description<EvaluationResult>& evaluate_answer_contract();
 const Description<IdentifyAnswer>& identify_answer_contract();
 
 }  // namespace tunewright::api

@@ -5,6 +5,7 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/arrieta/degradation_search.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 
 namespace tunewright {
 namespace {
@@ -33,7 +34,7 @@ Expected<ReducedModel> model_for(const TuningProblem& problem, const ReductionOp
 }
 
 Expected<TunedController> answer(const TuningProblem& problem, const ReducedModel& model,
-                                 const ArrietaConstants& constants, ArrietaReport report,
+                                 const ArrietaConstants& constants, ArrietaSettings report,
                                  std::vector<Warning> warnings) {
     const double tau = model.L / model.T1;
     const Pid pid = arrieta_pid(constants, report.model);
@@ -48,11 +49,11 @@ Expected<TunedController> answer(const TuningProblem& problem, const ReducedMode
                              ", outside 0.1 to 2, for which the rule was fitted: Ms and degradation may be far "
                              "from those asked for."));
     auto tuned = rule_answer(problem, model, pid, std::move(warnings));
-    if (tuned) tuned->arrieta = std::move(report);
+    if (tuned) tuned->report = std::make_shared<TradeoffReport>(std::move(report));
     return tuned;
 }
 
-ArrietaReport report_on(const ReducedModel& model, bool profile) {
+ArrietaSettings report_on(const ReducedModel& model, bool profile) {
     return {.model = {.K = model.K, .T = model.T1, .L = model.L},
             .constants = {},
             .Ms_design = {},
@@ -60,10 +61,10 @@ ArrietaReport report_on(const ReducedModel& model, bool profile) {
             .profile = profile};
 }
 
-Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const ArrietaMsOptions& options) {
+Expected<TunedController> settings_for_Ms(const TuningProblem& problem, const ArrietaMsOptions& options) {
     const auto model = model_for(problem, options.reduction);
     if (!model) return model.error();
-    ArrietaReport report = report_on(*model, options.profile);
+    ArrietaSettings report = report_on(*model, options.profile);
     if (!options.Ms) {
         report.constants = "Table 1, column without a limit on Ms";
         return answer(problem, *model, arrieta_free(), report, {});
@@ -84,8 +85,15 @@ Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const Arrieta
     return answer(problem, *model, constants, report, {});
 }
 
+Expected<TunedController> tune_by_Ms(const TuningProblem& problem, const ArrietaMsOptions& options) {
+    auto tuned = settings_for_Ms(problem, options);
+    if (tuned) tuned->Ms_limit = options.Ms;
+    return tuned;
+}
+
 Expected<TunedController> tune_exactly(const TuningProblem& problem, const ReducedModel& model, double degradation,
-                                       ArrietaReport report, std::vector<Warning> warnings, const RunControl& control) {
+                                       ArrietaSettings report, std::vector<Warning> warnings,
+                                       const RunControl& control) {
     const auto Ms = Ms_of_degradation(report.model, degradation, control.stop);
     if (!Ms) return Ms.error();
     report.Ms_design = *Ms;
@@ -105,7 +113,7 @@ Expected<TunedController> tune_by_degradation(const TuningProblem& problem, cons
                                               const RunControl& control) {
     const auto model = model_for(problem, options.reduction);
     if (!model) return model.error();
-    ArrietaReport report = report_on(*model, options.profile);
+    ArrietaSettings report = report_on(*model, options.profile);
     const double degradation = options.degradation;
     const std::optional<bool>& exact = options.exact;
     const ArrietaConstants* column = arrieta_column(arrieta_degradation_levels(), degradation);

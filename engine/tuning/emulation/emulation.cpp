@@ -82,7 +82,7 @@ Expected<TunedController> tune(const TuningProblem& plant, const EmulationOption
     warnings.insert(warnings.end(), problem.warnings.begin(), problem.warnings.end());
     auto answer = rule_answer(controller_at(problem, design->point), std::move(warnings));
     if (!answer) return answer;
-    answer->emulation = std::move(report);
+    answer->report = std::make_shared<EmulationReport>(std::move(report));
     answer->partial = control.stop.stop_requested();
     return answer;
 }

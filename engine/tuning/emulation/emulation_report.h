@@ -10,6 +10,7 @@
 #include "engine/controller/pid.h"
 #include "engine/plant/plant.h"
 #include "engine/tuning/method/options.h"
+#include "engine/tuning/method/report.h"
 
 namespace tunewright {
 
@@ -49,7 +50,7 @@ struct EmulatedScenario {
     std::string ended;     ///< why the PID's run ended early; empty: it did not
 };
 
-struct EmulationReport {
+struct EmulationReport : MethodReport {
     std::string formulation;    ///< full or remark6
     double J = 0, J_u = 0;      ///< J = wy J_y + wu J_u
     std::optional<double> J_y;  ///< empty with remark6
@@ -67,8 +68,9 @@ struct EmulationReport {
     std::vector<LevelOneRow> level1;
     std::vector<EmulatedScenario> scenarios;
 
-    /// All but what was emulated in the first scenario.
-    void drop_traces() {
+    /// Without points, leaves out all traces but what was emulated in the first scenario.
+    void complete(const ReportContext& context, Evaluation&) override {
+        if (context.options.points > 0) return;
         for (LevelOneRow& row : level1) row.t = row.y = row.u = {};
         for (EmulatedScenario& run : scenarios) {
             run.y = run.u = {};

@@ -2,6 +2,9 @@
 // bounds that follow from them (Eq. 3).
 #pragma once
 
+#include <vector>
+
+#include "engine/tuning/emulation/emulation_report.h"
 #include "engine/tuning/emulation/search/parameters.h"
 
 namespace tunewright::emulation {

@@ -1,6 +1,7 @@
 // What is told of the emulating controller and of the runs that it was chosen from.
 #pragma once
 
+#include "engine/tuning/emulation/emulation_report.h"
 #include "engine/tuning/emulation/remark6.h"
 #include "engine/tuning/emulation/search/criterion.h"
 

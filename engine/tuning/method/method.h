@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -15,34 +16,29 @@
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/uncertain/plant_family.h"
 #include "engine/progress.h"
-#include "engine/tuning/arrieta/arrieta_report.h"
-#include "engine/tuning/emulation/emulation_report.h"
 #include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"
-#include "engine/tuning/rimc/rimc_report.h"
+#include "engine/tuning/method/report.h"
 #include "engine/warning.h"
 
 namespace tunewright {
 
 class NonlinearSystem;
 
-/// The least cost over the (Ti, Td) plane, from `robust` with "surface": true. cost[i][j] belongs to Ti[i], Td[j];
-/// empty: no feasible Kp.
-struct CostSurface {
-    std::vector<double> Ti, Td;
-    std::vector<std::vector<std::optional<double>>> cost;
-};
-
 struct TunedController {
     Pid controller;
     bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
-    std::optional<CostSurface> surface;
-    std::optional<RimcReport> rimc;
-    std::optional<ArrietaReport> arrieta;
-    std::optional<EmulationReport> emulation;
-    bool partial = false;  ///< stopped early: the best feasible design so far
+    std::shared_ptr<MethodReport> report;  ///< what the method tells beside the controller; may be null
+    std::optional<double> Ms_limit;        ///< that was asked for
+    bool partial = false;                  ///< stopped early: the best feasible design so far
+
+    /// The report, if it is of this type; else null.
+    template <class Report>
+    const Report* report_as() const {
+        return dynamic_cast<const Report*>(report.get());
+    }
 };
 
 /// The controller that the method answers.

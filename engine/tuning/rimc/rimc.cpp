@@ -4,6 +4,7 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/rimc/rimc_branch.h"
+#include "engine/tuning/rimc/rimc_report.h"
 
 namespace tunewright {
 namespace {
@@ -78,9 +79,11 @@ Expected<double> chosen_lambda(const RimcOptions& options, const Fopdt& model, c
     return lambda;
 }
 
-RimcReport report_on(const Fopdt& model, double lambda, const RimcBranch& branch, const RimcOptions& options) {
-    RimcReport report;
-    report.full_controller = rimc_controller(model, lambda);
+std::shared_ptr<RimcReport> report_on(const Fopdt& model, double lambda, const RimcBranch& branch,
+                                      const RimcOptions& options) {
+    auto made = std::make_shared<RimcReport>();
+    RimcReport& report = *made;
+    report.controller = rimc_controller(model, lambda);
     report.Ms = branch.Ms(lambda);
     report.disturbance_peak = branch.disturbance_peak(lambda);
     report.dead_time_error = branch.dead_time_error(lambda);
@@ -90,7 +93,7 @@ RimcReport report_on(const Fopdt& model, double lambda, const RimcBranch& branch
         report.why_null[name] = "With this lambda the PID does not stabilise the model that it was designed for.";
     report.why_null["stability_limit"] = "No lambda that was looked at is at the limit of stability on the model.";
     if (options.curve) report.curve = branch.curve(kCurvePoints);
-    return report;
+    return made;
 }
 
 void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, double lambda, const RimcBranch& branch) {
@@ -150,7 +153,9 @@ Expected<TunedController> tune(const TuningProblem& problem, const RimcOptions& 
     if (!pid) return inadmissible(*lambda, branch);
 
     auto answer = rule_answer(problem, *reduced, *pid, remarks(model, *lambda, branch, options));
-    if (answer) answer->rimc = report_on(model, *lambda, branch, options);
+    if (!answer) return answer;
+    answer->report = report_on(model, *lambda, branch, options);
+    answer->Ms_limit = options.Ms;
     return answer;
 }
 

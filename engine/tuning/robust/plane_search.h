@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/tuning/method/method.h"
+#include "engine/tuning/robust/cost_surface.h"
 #include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {

@@ -176,8 +176,9 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
     }
     if (!found) return found.error();
     result.controller = controller_at(problem, found->x);
+    result.Ms_limit = options.Ms;
     result.partial = found->stopped;
-    if (with_surface) result.surface = surface;
+    if (with_surface) result.report = std::make_shared<CostSurface>(surface);
     add_warnings(result, problem, found->x);
     return result;
 }
@@ -204,8 +205,9 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
     if (!found) return found.error();
     TunedController result;
     result.controller = controller_at(problem, found->x);
+    result.Ms_limit = options.Ms;
     result.partial = found->stopped;
-    if (with_surface) result.surface = surface;
+    if (with_surface) result.report = std::make_shared<CostSurface>(surface);
     if (options.objective != Objective::load_ie)
         result.warnings.push_back({"objective-replaced",
                                    "A frequency response has no response over time: Kp/Ti is maximised instead of the "

@@ -8,6 +8,7 @@
 
 #include "engine/expected.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/robust/cost_surface.h"
 #include "engine/tuning/robust/design.h"
 
 namespace tunewright::robust {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/identification/fit/excited_band.h"
 #include "engine/request/tune.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/fit/response.h"
 #include "engine/identification/identify.h"

@@ -8,6 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/tuning/arrieta/arrieta_rule.h"
 #include "engine/tuning/arrieta/tradeoff.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 #include "engine/tuning/method/method.h"
 
 namespace tunewright {
@@ -104,7 +105,7 @@ TEST(ArrietaRule, TheSmallestMsWithTheDegradationIsTaken) {
         const Fopdt model{1, 1, tau};
         const auto answer = tuned(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", true}});
         ASSERT_TRUE(answer);
-        const double Ms = *answer->arrieta->Ms_design;
+        const double Ms = *answer->report_as<TradeoffReport>()->rule->Ms_design;
         for (int i = 0; i < 40; ++i) {
             const double smaller = 1.4 + (Ms - 1e-4 - 1.4) * i / 39;
             EXPECT_GT(degradation_on(model, arrieta_pid(arrieta_equation_9(smaller, ArrietaC3::refitted), model)), 0.4);
@@ -139,11 +140,12 @@ TEST(ArrietaRule, ThePrintedC3IsTakenWhereItIsAskedFor) {
     const double b3 = 1.3870 * 1.99 * 1.99 - 4.7810 * 1.99 + 4.9470;
     const double power = a3 * std::pow(0.1, b3);
     EXPECT_NEAR(as_printed->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4733 * 1.99 + 0.4032, 1e-12);
-    EXPECT_THAT(as_printed->arrieta->constants, HasSubstr("c3 as printed"));
+    EXPECT_THAT(as_printed->report_as<TradeoffReport>()->rule->constants, HasSubstr("c3 as printed"));
     const auto by_default = tuned(model, "arrieta_ms", {{"Ms", 1.99}});
     EXPECT_NEAR(by_default->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4320 * 1.99 + 0.3330, 1e-12);
     EXPECT_EQ(by_default->controller.Td, tuned(model, "arrieta_ms", refitted)->controller.Td);
-    EXPECT_THAT(by_default->arrieta->constants, HasSubstr("c3 = 0.1331 M^2 - 0.4320 M + 0.3330"));
+    EXPECT_THAT(by_default->report_as<TradeoffReport>()->rule->constants,
+                HasSubstr("c3 = 0.1331 M^2 - 0.4320 M + 0.3330"));
 }
 
 // Over the whole range, in between the levels too: the Ms achieved on the model is the one asked for within 2.5 %.

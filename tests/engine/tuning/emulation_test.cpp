@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/tuning/emulation/emulation_report.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/engine/tuning/emulation_support.h"
 
@@ -76,7 +77,7 @@ TEST(Emulation, OptimaOnAConicalTankAreThoseOfAnIndependentSearch) {
         ASSERT_TRUE(answer) << answer.error().message;
         EXPECT_NEAR(answer->controller.Kp / Kp, 1, 2e-3);
         EXPECT_NEAR(answer->controller.Ti / Ti, 1, 2e-3);
-        EXPECT_NEAR(answer->emulation->J / J, 1, 3e-5);
+        EXPECT_NEAR(answer->report_as<EmulationReport>()->J / J, 1, 3e-5);
     }
 }
 
@@ -98,7 +99,7 @@ TEST(Emulation, OptimaOnAPendulumAreThoseOfAnIndependentSearch) {
         EXPECT_NEAR(answer->controller.Kp / row.Kp, 1, 2e-3);
         EXPECT_NEAR(answer->controller.Ti / row.Ti, 1, 2e-3);
         EXPECT_NEAR(answer->controller.Td / row.Td, 1, 2e-3);
-        EXPECT_NEAR(answer->emulation->J / row.J, 1, 3e-5);
+        EXPECT_NEAR(answer->report_as<EmulationReport>()->J / row.J, 1, 3e-5);
     }
 }
 
@@ -114,9 +115,9 @@ TEST(Emulation, OnAFirstOrderPlantThePiIsTheNonlinearController) {
         ASSERT_TRUE(answer) << answer.error().message;
         EXPECT_NEAR(answer->controller.Kp, -2, 2e-6);
         EXPECT_NEAR(answer->controller.Ti, 5, 5e-6);
-        EXPECT_LT(answer->emulation->fit.u_left, 1e-10);
-        EXPECT_TRUE(answer->emulation->fit.adequate);
-        EXPECT_EQ(answer->emulation->relative_degree, 1);
+        EXPECT_LT(answer->report_as<EmulationReport>()->fit.u_left, 1e-10);
+        EXPECT_TRUE(answer->report_as<EmulationReport>()->fit.adequate);
+        EXPECT_EQ(answer->report_as<EmulationReport>()->relative_degree, 1);
     }
 }
 
@@ -140,7 +141,7 @@ TEST(Emulation, OnASecondOrderPlantAFreeFilterFindsTheExactPid) {
         EXPECT_NEAR(answer->controller.Ti / (Kp / Ki), 1, 1e-3);
         EXPECT_NEAR(answer->controller.Td / ((Ki * 4 - Kp * Tf) / Kp), 1, 1e-3);
         EXPECT_EQ(answer->controller.c, 1);
-        EXPECT_LT(answer->emulation->fit.u_left, 1e-7);
+        EXPECT_LT(answer->report_as<EmulationReport>()->fit.u_left, 1e-7);
     }
 }
 
@@ -159,7 +160,7 @@ TEST(Emulation, NoSettingsOfTheFirstLevelInsideTheBoundsAreBetter) {
             options.set("bounds_from/methods/2", std::string("ziegler_nichols_ultimate"));
             const auto answer = emulated(given.problem, options);
             ASSERT_TRUE(answer) << answer.error().message;
-            const EmulationReport& report = *answer->emulation;
+            const EmulationReport& report = *answer->report_as<EmulationReport>();
             int compared = 0;
             for (const LevelOneRow& row : report.level1) {
                 EXPECT_NE(row.controller.has_value(), !row.error.empty()) << row.title;
@@ -187,12 +188,12 @@ TEST(Emulation, BoundsAreAlphaTimesTheFirstLevelsSettings) {
     const auto answer = emulated(given.problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
     double least = HUGE_VAL, most = 0;
-    for (const LevelOneRow& row : answer->emulation->level1) {
+    for (const LevelOneRow& row : answer->report_as<EmulationReport>()->level1) {
         ASSERT_TRUE(row.controller) << row.error;
         least = std::min(least, -std::get<Pid>(*row.controller).Kp);
         most = std::max(most, -std::get<Pid>(*row.controller).Kp);
     }
-    const auto& bounds = answer->emulation->bounds;
+    const auto& bounds = answer->report_as<EmulationReport>()->bounds;
     EXPECT_DOUBLE_EQ(bounds.at("Kp").low, -3 * most);
     EXPECT_DOUBLE_EQ(bounds.at("Kp").high, -0.5 * least);
     EXPECT_DOUBLE_EQ(bounds.at("Td").low, 0.01);
@@ -209,7 +210,7 @@ TEST(Emulation, ScalesWithTheUnitsOfTimeAndOutput) {
         ASSERT_TRUE(a && b);
         EXPECT_NEAR(b->controller.Kp * 100 / a->controller.Kp, 1, 1e-5);
         EXPECT_NEAR(b->controller.Ti / 60 / a->controller.Ti, 1, 1e-5);
-        EXPECT_NEAR(b->emulation->J / 60 / a->emulation->J, 1, 1e-5);
+        EXPECT_NEAR(b->report_as<EmulationReport>()->J / 60 / a->report_as<EmulationReport>()->J, 1, 1e-5);
     }
 }
 
@@ -224,7 +225,7 @@ TEST(Emulation, JIsTheMeanOverTheScenarios) {
             options.set("scenarios/" + std::to_string(i) + "/setpoint_step", steps[i]);
         const auto answer = emulated(plant.problem, options);
         EXPECT_TRUE(answer) << answer.error().message;
-        return answer->emulation->J;
+        return answer->report_as<EmulationReport>()->J;
     };
     const double first = fixed({0.8}), second = fixed({-0.5}), both = fixed({0.8, -0.5});
     EXPECT_NEAR(both / (0.5 * (first + second)), 1, 1e-7);
@@ -240,7 +241,7 @@ TEST(Emulation, AScenarioMayStartElsewhereOrHaveOtherParameters) {
     options.set("scenarios/2/parameters/a", 5.0);
     const auto answer = emulated(plant.problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    const auto& scenarios = answer->emulation->scenarios;
+    const auto& scenarios = answer->report_as<EmulationReport>()->scenarios;
     ASSERT_EQ(scenarios.size(), 3u);
     EXPECT_NEAR(scenarios[1].y.front(), 0.6, 1e-9);
     EXPECT_NEAR(scenarios[1].y_nl.back(), 0.3, 1e-3);
@@ -257,8 +258,8 @@ TEST(Emulation, ABoundThatHoldsTheOptimumIsTold) {
         options.set("formulation", std::string(formulation));
         const auto answer = emulated(emulation_plant(conical_tank()).problem, options);
         ASSERT_TRUE(answer) << answer.error().message;
-        ASSERT_EQ(answer->emulation->active_bounds.size(), 1u);
-        const ActiveBound& bound = answer->emulation->active_bounds.front();
+        ASSERT_EQ(answer->report_as<EmulationReport>()->active_bounds.size(), 1u);
+        const ActiveBound& bound = answer->report_as<EmulationReport>()->active_bounds.front();
         EXPECT_EQ(bound.parameter, "Kp");
         EXPECT_FALSE(bound.high);
         EXPECT_EQ(bound.value, 0.6);
@@ -277,13 +278,13 @@ TEST(Emulation, LimitsOfTheInputActInBothRuns) {
         const auto free = emulated(emulation_plant(conical_tank()).problem, options);
         const auto answer = emulated(emulation_plant(limited).problem, options);
         ASSERT_TRUE(free && answer) << answer.error().message;
-        const EmulatedScenario& scenario = answer->emulation->scenarios.front();
+        const EmulatedScenario& scenario = answer->report_as<EmulationReport>()->scenarios.front();
         EXPECT_TRUE(scenario.limited);
-        EXPECT_FALSE(free->emulation->scenarios.front().limited);
+        EXPECT_FALSE(free->report_as<EmulationReport>()->scenarios.front().limited);
         EXPECT_TRUE(has_warning(*answer, "nonlinear-controller-limited"));
         EXPECT_LE(*std::ranges::max_element(scenario.u_nl), 0.58 + 1e-12);
         EXPECT_LE(*std::ranges::max_element(scenario.u), 0.58 + 1e-12);
-        EXPECT_LT(answer->emulation->fit.u_left, 0.05);
+        EXPECT_LT(answer->report_as<EmulationReport>()->fit.u_left, 0.05);
     }
 }
 
@@ -292,8 +293,9 @@ TEST(Emulation, WorksWithDeadTime) {
     plant.L = 0.4;
     const auto answer = emulated(emulation_plant(plant).problem, cone_step());
     ASSERT_TRUE(answer) << answer.error().message;
-    EXPECT_TRUE(answer->emulation->fit.adequate) << answer->emulation->fit.sentence;
-    const EmulatedScenario& scenario = answer->emulation->scenarios.front();
+    EXPECT_TRUE(answer->report_as<EmulationReport>()->fit.adequate)
+        << answer->report_as<EmulationReport>()->fit.sentence;
+    const EmulatedScenario& scenario = answer->report_as<EmulationReport>()->scenarios.front();
     for (std::size_t i = 0; i < scenario.t.size() && scenario.t[i] <= 0.4; ++i)
         EXPECT_NEAR(scenario.y_nl[i], 1, 1e-9) << scenario.t[i];
 }
@@ -309,9 +311,9 @@ TEST(Emulation, TakesPolesForHigherRelativeDegrees) {
     options.set("target/poles/2/1", -0.5);
     const auto answer = emulated(problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    EXPECT_EQ(answer->emulation->relative_degree, 3);
-    ASSERT_EQ(answer->emulation->beta.size(), 4u);
-    EXPECT_NEAR(answer->emulation->beta[3], 1 / (1.5 * (1.44 + 0.25)), 1e-12);
+    EXPECT_EQ(answer->report_as<EmulationReport>()->relative_degree, 3);
+    ASSERT_EQ(answer->report_as<EmulationReport>()->beta.size(), 4u);
+    EXPECT_NEAR(answer->report_as<EmulationReport>()->beta[3], 1 / (1.5 * (1.44 + 0.25)), 1e-12);
     EXPECT_TRUE(emulated(problem, step_of(1, 8, "PI")));
 }
 
@@ -321,8 +323,9 @@ TEST(Emulation, DefaultsServeEveryPlant) {
         const auto answer = emulated(emulation_plant(plant).problem, {});
         ASSERT_TRUE(answer) << answer.error().message;
         EXPECT_TRUE(has_warning(*answer, "default-scenario"));
-        EXPECT_EQ(answer->emulation->formulation, "full");
-        EXPECT_TRUE(answer->emulation->fit.adequate) << answer->emulation->fit.sentence;
+        EXPECT_EQ(answer->report_as<EmulationReport>()->formulation, "full");
+        EXPECT_TRUE(answer->report_as<EmulationReport>()->fit.adequate)
+            << answer->report_as<EmulationReport>()->fit.sentence;
     }
 }
 
@@ -335,8 +338,8 @@ TEST(Emulation, DefaultsServeAnUnstableOperatingPointAndAVerySteepPlant) {
         options.set("controller", std::string("PI"));
         const auto answer = emulated(given.problem, options);
         ASSERT_TRUE(answer) << answer.error().message;
-        EXPECT_TRUE(answer->emulation->scenarios.front().ended.empty());
-        EXPECT_LT(answer->emulation->fit.u_left, 0.5);
+        EXPECT_TRUE(answer->report_as<EmulationReport>()->scenarios.front().ended.empty());
+        EXPECT_LT(answer->report_as<EmulationReport>()->fit.u_left, 0.5);
     }
 }
 
@@ -345,9 +348,9 @@ TEST(Emulation, SaysWhereAPidCannotFollow) {
     set_range(options, "bounds/Kp", 0.5, 1);
     const auto answer = emulated(emulation_plant(pendulum()).problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    EXPECT_FALSE(answer->emulation->fit.adequate);
+    EXPECT_FALSE(answer->report_as<EmulationReport>()->fit.adequate);
     ASSERT_TRUE(has_warning(*answer, "cannot-emulate"));
-    EXPECT_GT(answer->emulation->fit.u_left, 0.1);
+    EXPECT_GT(answer->report_as<EmulationReport>()->fit.u_left, 0.1);
 }
 
 TEST(Emulation, WarnsOfUnstableZeroDynamics) {
@@ -358,7 +361,7 @@ TEST(Emulation, WarnsOfUnstableZeroDynamics) {
     const auto answer = emulated(problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
     EXPECT_TRUE(has_warning(*answer, "unstable-zero-dynamics"));
-    EXPECT_FALSE(answer->emulation->zero_dynamics_stable);
+    EXPECT_FALSE(answer->report_as<EmulationReport>()->zero_dynamics_stable);
 }
 
 struct Refusal {
@@ -453,8 +456,8 @@ TEST(Emulation, StoppedWhileItSearchesItAnswersTheBestSoFar) {
     ASSERT_TRUE(answer) << answer.error().message;
     EXPECT_TRUE(answer->partial);
     EXPECT_GT(answer->controller.Kp, 0);
-    ASSERT_EQ(answer->emulation->scenarios.size(), 1u);
-    EXPECT_TRUE(answer->emulation->scenarios.front().ended.empty());
+    ASSERT_EQ(answer->report_as<EmulationReport>()->scenarios.size(), 1u);
+    EXPECT_TRUE(answer->report_as<EmulationReport>()->scenarios.front().ended.empty());
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 
 #include <cmath>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
 #include "engine/tuning/rimc/rimc_branch.h"
+#include "engine/tuning/rimc/rimc_report.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -39,8 +42,8 @@ TEST(Rimc, FiguresAreThoseOfTheLoopOnTheModel) {
             const auto answer = tuned(model, {{"lambda", 0.7 * model.T}, {"Tf_over_Td", Tf_over_Td}});
             ASSERT_TRUE(answer) << answer.error().message;
             const Evaluation e = evaluated(model, answer->controller);
-            EXPECT_NEAR(*answer->rimc->Ms / *e.robustness.Ms, 1, 1e-9);
-            EXPECT_NEAR(*answer->rimc->disturbance_peak / *e.performance.load.peak, 1, 1e-5);
+            EXPECT_NEAR(*answer->report_as<RimcReport>()->Ms / *e.robustness.Ms, 1, 1e-9);
+            EXPECT_NEAR(*answer->report_as<RimcReport>()->disturbance_peak / *e.performance.load.peak, 1, 1e-5);
         }
     }
 }
@@ -50,17 +53,17 @@ TEST(Rimc, ATargetIsMetByTheReturnedPid) {
         const auto by_Ms = tuned(model, {{"Ms", 1.5}});
         ASSERT_TRUE(by_Ms) << by_Ms.error().message;
         EXPECT_NEAR(*evaluated(model, by_Ms->controller).robustness.Ms, 1.5, 1.5e-6);
-        EXPECT_NEAR(*by_Ms->rimc->Ms, 1.5, 1.5e-6);
+        EXPECT_NEAR(*by_Ms->report_as<RimcReport>()->Ms, 1.5, 1.5e-6);
 
         const double peak = *RimcBranch(model, {}).disturbance_peak(0.9 * model.T);
         const auto by_peak = tuned(model, {{"disturbance_peak", peak}});
         ASSERT_TRUE(by_peak) << by_peak.error().message;
         EXPECT_NEAR(*evaluated(model, by_peak->controller).performance.load.peak / peak, 1, 1e-5);
-        EXPECT_NEAR(by_peak->rimc->full_controller.lambda / model.T, 0.9, 1e-5);
+        EXPECT_NEAR(by_peak->report_as<RimcReport>()->controller.lambda / model.T, 0.9, 1e-5);
 
         const auto by_error = tuned(model, {{"dead_time_error", 0.3 * model.L}});
         ASSERT_TRUE(by_error) << by_error.error().message;
-        EXPECT_DOUBLE_EQ(*by_error->rimc->dead_time_error, 0.3 * model.L);
+        EXPECT_DOUBLE_EQ(*by_error->report_as<RimcReport>()->dead_time_error, 0.3 * model.L);
         // Eq. 29 is sufficient: the loop stands the error, and the margin is no smaller.
         EXPECT_GT(*evaluated(model, by_error->controller).robustness.delay_margin, 0.3 * model.L);
     }
@@ -83,10 +86,13 @@ TEST(Rimc, ScalesWithTimeAndGain) {
     EXPECT_NEAR(scaled->controller.Kp / unit->controller.Kp, -1.0 / 7, 1e-12);
     EXPECT_NEAR(scaled->controller.Ti / unit->controller.Ti, 300, 1e-9);
     EXPECT_NEAR(scaled->controller.Td / unit->controller.Td, 300, 1e-9);
-    EXPECT_NEAR(*scaled->rimc->disturbance_peak / *unit->rimc->disturbance_peak, -7, 1e-9);
-    EXPECT_NEAR(*scaled->rimc->Ms, *unit->rimc->Ms, 1e-9);
-    EXPECT_NEAR(*scaled->rimc->dead_time_error / *unit->rimc->dead_time_error, 300, 1e-7);
-    EXPECT_NEAR(*scaled->rimc->stability_limit / *unit->rimc->stability_limit, 300, 1e-4);
+    EXPECT_NEAR(*scaled->report_as<RimcReport>()->disturbance_peak / *unit->report_as<RimcReport>()->disturbance_peak,
+                -7, 1e-9);
+    EXPECT_NEAR(*scaled->report_as<RimcReport>()->Ms, *unit->report_as<RimcReport>()->Ms, 1e-9);
+    EXPECT_NEAR(*scaled->report_as<RimcReport>()->dead_time_error / *unit->report_as<RimcReport>()->dead_time_error,
+                300, 1e-7);
+    EXPECT_NEAR(*scaled->report_as<RimcReport>()->stability_limit / *unit->report_as<RimcReport>()->stability_limit,
+                300, 1e-4);
 }
 
 TEST(Rimc, AlongTheBranchMsFallsAndThePeakRises) {
@@ -175,7 +181,7 @@ TEST(Rimc, WithoutDeadTimeItIsThePiControllerOfEquation23) {
     EXPECT_NEAR(answer->controller.Ti, beta, 1e-12);
     EXPECT_EQ(answer->controller.Td, 0);
     EXPECT_EQ(answer->controller.filter.type, FilterType::none);
-    EXPECT_NEAR(*answer->rimc->Ms, 1, 1e-9);
+    EXPECT_NEAR(*answer->report_as<RimcReport>()->Ms, 1, 1e-9);
 }
 
 TEST(Rimc, OtherPlantsAreReducedAndTheModelIsShown) {
@@ -223,37 +229,37 @@ TEST(Rimc, WarnsNearTheLimitAndBeyondTheLeastMs) {
     EXPECT_TRUE(warns(*tuned(model, {{"lambda", 0.9 * limit}}), "unstable-model-loop"));
     EXPECT_TRUE(warns(*tuned(model, {{"lambda", 1.9}}), "outside-validity"));
     EXPECT_TRUE(tuned(model, {})->warnings.empty());
-    EXPECT_FALSE(tuned(model, {{"lambda", 0.9 * limit}})->rimc->Ms.has_value());
+    EXPECT_FALSE(tuned(model, {{"lambda", 0.9 * limit}})->report_as<RimcReport>()->Ms.has_value());
 }
 
 TEST(Rimc, TheCurveHoldsTheFiguresOfItsLambdas) {
     const Fopdt model{.K = -3, .T = 40, .L = 20};
     const auto answer = tuned(model, {{"curve", true}});
-    ASSERT_TRUE(answer && answer->rimc->curve);
-    const auto& curve = *answer->rimc->curve;
+    ASSERT_TRUE(answer && answer->report_as<RimcReport>()->curve);
+    const auto& curve = *answer->report_as<RimcReport>()->curve;
     ASSERT_EQ(curve.Ms.size(), 60u);
     ASSERT_EQ(curve.DP_over_kp.size(), 60u);
     const std::size_t i = 40;
     const auto one = tuned(model, {{"lambda", curve.lambda_over_tau[i] * model.T}});
-    EXPECT_NEAR(*one->rimc->Ms, curve.Ms[i], 1e-9);
-    EXPECT_NEAR(*one->rimc->disturbance_peak / model.K, curve.DP_over_kp[i], 1e-9);
-    EXPECT_FALSE(tuned(model, {})->rimc->curve.has_value());
+    EXPECT_NEAR(*one->report_as<RimcReport>()->Ms, curve.Ms[i], 1e-9);
+    EXPECT_NEAR(*one->report_as<RimcReport>()->disturbance_peak / model.K, curve.DP_over_kp[i], 1e-9);
+    EXPECT_FALSE(tuned(model, {})->report_as<RimcReport>()->curve.has_value());
 }
 
-RimcEntry entry_of(const Plant& plant, const Given& given, int points = 0) {
+RimcReport entry_of(const Plant& plant, const Given& given, int points = 0) {
     TuningRequest request;
-    request.plant = plant;
+    request.subject = test::subject_of(plant);
     request.tune = {{"rimc", {}}};
     for (const auto& [path, value] : given) request.tune[0].options.set(path, value);
     request.evaluate.points = points;
     const auto result = tune(request, {});
     EXPECT_TRUE(result) << result.error().message;
-    return *result->controllers[0].rimc;
+    return *result->controllers[0].report_as<RimcReport>();
 }
 
 TEST(Rimc, OnItsModelTheFullControllersLoopIsTheDesigns) {
     const Fopdt model{.K = 2, .T = 10, .L = 5};
-    const RimcEntry entry = entry_of(model, {{"lambda", 5.0}}, 200);
+    const RimcReport entry = entry_of(model, {{"lambda", 5.0}}, 200);
     ASSERT_TRUE(entry.full_controller);
     const auto& full = *entry.full_controller;
     EXPECT_TRUE(full.robustness.stable);
@@ -283,7 +289,7 @@ TEST(Rimc, OnItsModelTheFullControllersLoopIsTheDesigns) {
 
 TEST(Rimc, OnAnotherPlantTheFullControllersStabilityAgreesWithItsResponse) {
     const Sopdt plant{.K = 1, .T1 = 20, .T2 = 2, .L = 1};
-    const RimcEntry entry = entry_of(plant, {{"Ms", 1.6}}, 100);
+    const RimcReport entry = entry_of(plant, {{"Ms", 1.6}}, 100);
     ASSERT_TRUE(entry.full_controller);
     EXPECT_TRUE(entry.full_controller->robustness.stable);
     ASSERT_TRUE(entry.full_controller->responses);
@@ -295,7 +301,7 @@ TEST(Rimc, OnAnotherPlantTheFullControllersStabilityAgreesWithItsResponse) {
 }
 
 TEST(Rimc, AFullControllerThatTheModelsErrorMakesUnstableSaysSo) {
-    const RimcEntry entry = entry_of(Sopdt{.K = 1, .T1 = 20, .T2 = 2, .L = 1}, {{"lambda", 0.3}});
+    const RimcReport entry = entry_of(Sopdt{.K = 1, .T1 = 20, .T2 = 2, .L = 1}, {{"lambda", 0.3}});
     ASSERT_TRUE(entry.full_controller);
     EXPECT_FALSE(entry.full_controller->robustness.stable);
     EXPECT_FALSE(entry.full_controller->load.IAE.has_value());

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -23,7 +25,7 @@ Uncertainty ranges(std::optional<FactorRange> K, std::optional<FactorRange> T, s
 TuningEntry robust_entry(const PlantModel& plant,
                          std::initializer_list<std::pair<const char*, OptionValue>> options = {}) {
     TuningRequest request;
-    request.plant = plant;
+    request.subject = test::subject_of(plant);
     request.evaluate.points = 0;
     for (const auto& [path, value] : options) request.tune[0].options.set(path, value);
     auto result = tune(request, {});
@@ -122,7 +124,7 @@ TEST(RobustFamily, LimitsHoldOverAConfidenceEllipsoid) {
     ASSERT_TRUE(tuned.has_value());
     EvaluateOptions options;
     options.points = 0;
-    const auto judged = evaluate(family, tuned->controller, options);
+    const auto judged = evaluate(*Subject::of_family(family), tuned->controller, options);
     EXPECT_EQ(judged->region->stable_fraction, 1);
     EXPECT_NEAR(*judged->region->worst_Ms, 1.4, 1.4e-4);
     EXPECT_LT(*judged->robustness.Ms, 1.38);
@@ -154,7 +156,7 @@ TEST(RobustFamily, ThePlantBetweenTwoOthersCostsNothing) {
 
 TEST(RobustFamily, PlantsThatNeedGainsOfBothSignsAreRefusedInWords) {
     TuningRequest request;
-    request.plant = PlantSet{{Fopdt{.K = 1, .T = 5, .L = 1}, Fopdt{.K = -1, .T = 5, .L = 1}}};
+    request.subject = test::subject_of(PlantSet{{Fopdt{.K = 1, .T = 5, .L = 1}, Fopdt{.K = -1, .T = 5, .L = 1}}});
     const auto result = tune(request, {});
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().kind, ErrorKind::no_feasible_controller);
@@ -163,8 +165,8 @@ TEST(RobustFamily, PlantsThatNeedGainsOfBothSignsAreRefusedInWords) {
 
 TEST(RobustFamily, ImpossibleRangesNameTheLimitThatWorks) {
     TuningRequest request;
-    request.plant =
-        Fopdt{.K = -1, .T = -10, .L = 1, .uncertainty = ranges(FactorRange{0.5, 2}, std::nullopt, FactorRange{1, 2})};
+    request.subject = test::subject_of(
+        Fopdt{.K = -1, .T = -10, .L = 1, .uncertainty = ranges(FactorRange{0.5, 2}, std::nullopt, FactorRange{1, 2})});
     request.tune[0].options.set("Ms", 1.4);
     const auto result = tune(request, {});
     ASSERT_FALSE(result.has_value());
@@ -175,7 +177,7 @@ TEST(RobustFamily, ImpossibleRangesNameTheLimitThatWorks) {
 
 TEST(RobustFamily, ARuleIsJudgedOnAllPlantsAndWarnsOfUnstableOnes) {
     TuningRequest request;
-    request.plant = PlantSet{{Fopdt{.K = 1, .T = 10, .L = 1}, Fopdt{.K = 4, .T = 10, .L = 3}}};
+    request.subject = test::subject_of(PlantSet{{Fopdt{.K = 1, .T = 10, .L = 1}, Fopdt{.K = 4, .T = 10, .L = 3}}});
     request.tune = {{"simc", {}}};
     request.evaluate.points = 0;
     const auto result = tune(request, {});

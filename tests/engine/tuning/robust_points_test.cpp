@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {
 namespace {
@@ -25,7 +27,7 @@ FrequencyResponse points_of(const Plant& plant, double low, double high, int n) 
 
 Expected<TuningResult> designed(const PlantModel& plant, double M) {
     TuningRequest request;
-    request.plant = plant;
+    request.subject = test::subject_of(plant);
     request.evaluate.points = 0;
     request.tune[0].options.set("objective", std::string("load_ie"));
     request.tune[0].options.set("filter/Tf_over_Td", 0.1);
@@ -158,7 +160,7 @@ TEST(FrequencyResponse, FaultyColumnsAreNamed) {
 
 TEST(FrequencyResponse, OtherMethodsSayThatTheyNeedAModel) {
     TuningRequest request;
-    request.plant = points_of(Fopdt{.K = 2, .T = 10, .L = 3}, 0.005, 5, 60);
+    request.subject = test::subject_of(points_of(Fopdt{.K = 2, .T = 10, .L = 3}, 0.005, 5, 60));
     request.tune = {{"robust", {}}, {"simc", {}}};
     const auto result = tune(request, {});
     ASSERT_TRUE(result.has_value());

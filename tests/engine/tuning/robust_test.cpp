@@ -8,6 +8,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/numerics/local_minimum.h"
+#include "engine/tuning/robust/cost_surface.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep.h"
 
@@ -213,11 +214,11 @@ TEST(Robust, StopsWithTheBestSoFar) {
 TEST(Robust, SurfaceHasItsLeastValueAtTheDesign) {
     const Plant plant = Fopdt{.K = 1, .T = 4, .L = 1};
     const auto tuned = design(plant, with({{"surface", true}, {"search", std::string("grid")}}));
-    ASSERT_TRUE(tuned.has_value() && tuned->surface.has_value());
+    ASSERT_TRUE(tuned.has_value() && tuned->report_as<CostSurface>());
     const double IAE = *evaluated(plant, tuned->controller).performance.load.IAE;
     int feasible = 0;
-    for (const auto& row : tuned->surface->cost) {
-        EXPECT_EQ(row.size(), tuned->surface->Td.size());
+    for (const auto& row : tuned->report_as<CostSurface>()->cost) {
+        EXPECT_EQ(row.size(), tuned->report_as<CostSurface>()->Td.size());
         for (const auto& cost : row) {
             feasible += cost.has_value();
             EXPECT_GE(cost.value_or(IAE), IAE * (1 - 1e-3));

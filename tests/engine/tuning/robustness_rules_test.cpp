@@ -16,7 +16,7 @@ using test::word;
 Robustness robustness_of(const Plant& plant, const Expected<TunedController>& answer) {
     EvaluateOptions options;
     options.points = 0;
-    return evaluate(family_of(plant), answer->controller, options)->robustness;
+    return evaluate(PlantModel(plant), answer->controller, options)->robustness;
 }
 
 const Given kUnfiltered{{"filter/Tf_over_Td", 0.0}};

@@ -1,8 +1,10 @@
-#include "engine/evaluation/evaluate_request.h"
+#include "engine/evaluation/evaluation_start.h"
 
 #include <cmath>
 #include <string>
 
+#include "engine/evaluation/performance_figures.h"
+#include "engine/evaluation/robustness_figures.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
@@ -45,6 +47,21 @@ std::optional<Error> check_options(const EvaluateOptions& o) {
     return std::nullopt;
 }
 
+Equivalents equivalents_of(const Controller& controller) {
+    Equivalents equivalents;
+    equivalents.parallel = gains(controller);
+    const auto ideal = to_ideal(controller);
+    if (!ideal) {
+        equivalents.why_no_series = ideal.error().message;
+        return equivalents;
+    }
+    if (auto series = to_series(*ideal))
+        equivalents.series = *series;
+    else
+        equivalents.why_no_series = series.error().message;
+    return equivalents;
+}
+
 }  // namespace
 
 std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options) {
@@ -56,6 +73,29 @@ Controller resolved(Controller controller, const EvaluateOptions& options) {
     if (auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
         npid->delta_r = std::abs(options.setpoint_step);
     return controller;
+}
+
+Evaluation begun(const Controller& controller, const EvaluateOptions& options) {
+    Evaluation evaluation;
+    evaluation.controller = resolved(controller, options);
+    evaluation.equivalents = equivalents_of(controller);
+    return evaluation;
+}
+
+Error of_controller(Error error) {
+    if (error.where.empty()) error.where = "controller";
+    return error;
+}
+
+void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
+    evaluation.robustness = unstable_robustness(count);
+    evaluation.performance = no_performance("The closed loop is not stable.");
+    evaluation.warnings.push_back(
+        {"unstable-loop", "This controller does not stabilise the plant" +
+                              (count.unstable_poles > 0 ? " (" + std::to_string(count.unstable_poles) +
+                                                              " closed-loop poles in the right half-plane)"
+                                                        : std::string()) +
+                              "; do not use it."});
 }
 
 }  // namespace tunewright

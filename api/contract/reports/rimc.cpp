@@ -1,5 +1,6 @@
-#include "api/contract/result/rimc.h"
+#include "engine/tuning/rimc/rimc_report.h"
 
+#include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
@@ -48,13 +49,12 @@ Codec<std::optional<FullController>> full_controller() {
     return codec;
 }
 
-}  // namespace
-
-const Description<RimcEntry>& rimc_contract() {
+const Description<RimcReport>& rimc_contract() {
     static const auto description = [] {
-        using R = RimcEntry;
+        using R = RimcReport;
         Description<R> d("Rimc", "Figures of the PID, with its filter, on the model that it was designed for.");
-        d.field("lambda", &R::lambda, only_answered(number()), "Time constant of the closed loop.", {.unit = "time"})
+        d.field("lambda", {}, [](const R& report, Writer& out) { out.number(report.controller.lambda); },
+                number().schema, "Time constant of the closed loop.", {.unit = "time"})
             .field("Ms", &R::Ms, figure(), "Largest |S|.")
             .field("disturbance_peak", &R::disturbance_peak, figure(),
                    "Largest deviation of y after a unit load step, signed.", {.unit = "y/u"})
@@ -66,12 +66,17 @@ const Description<RimcEntry>& rimc_contract() {
             .field("stability_limit", &R::stability_limit, figure(), "lambda below which the loop is unstable.",
                    {.unit = "time"})
             .field("full_controller", &R::full_controller, full_controller(), "Beside the PID.")
-            .field("disturbance_peak_curve", &R::disturbance_peak_curve, maybe(answer(curve_contract())),
-                   "With the option curve.")
+            .field("disturbance_peak_curve", &R::curve, maybe(answer(curve_contract())), "With the option curve.")
             .why_null(&R::why_null, "Not defined for this design.");
         return d;
     }();
     return description;
+}
+
+}  // namespace
+
+ReportContract rimc_report() {
+    return report_contract("rimc", rimc_contract(), "Of the method rimc: what its design achieves on the model.");
 }
 
 }  // namespace tunewright::api

@@ -1,6 +1,6 @@
-#include "api/contract/result/tradeoff.h"
-
 #include "api/contract/plant/plant.h"
+#include "api/contract/reports/reports.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 
 namespace tunewright::api {
 namespace {
@@ -74,11 +74,9 @@ const Description<TradeoffProfile>& profile_contract() {
     return description;
 }
 
-}  // namespace
-
-const Description<TradeoffEntry>& tradeoff_contract() {
+const Description<TradeoffReport>& tradeoff_contract() {
     static const auto description = [] {
-        using T = TradeoffEntry;
+        using T = TradeoffReport;
         Description<T> d(
             "Tradeoff",
             "Servo against regulation (Arrieta, Vilanova and Alfaro 2012), on the first-order model and on "
@@ -95,6 +93,15 @@ const Description<TradeoffEntry>& tradeoff_contract() {
         return d;
     }();
     return description;
+}
+
+}  // namespace
+
+ReportContract tradeoff_report() {
+    return report_contract("tradeoff", tradeoff_contract(),
+                           "Servo against regulation: of the methods arrieta_*, and of any controller with "
+                           "evaluate.tradeoff.",
+                           true);
 }
 
 }  // namespace tunewright::api

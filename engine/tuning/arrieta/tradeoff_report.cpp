@@ -1,10 +1,10 @@
-#include "engine/evaluation/tradeoff_entry.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
 
 #include <cmath>
 #include <utility>
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
-#include "engine/plant/uncertain/plant_family.h"
 #include "engine/reduction/reduction.h"
 #include "engine/tuning/arrieta/arrieta_rule.h"
 
@@ -42,12 +42,6 @@ bool same(const Plant& plant, const Fopdt& model) {
 
 }  // namespace
 
-std::optional<Plant> nominal_plant(const PlantModel& plant) {
-    if (const auto* single = std::get_if<Plant>(&plant)) return *single;
-    if (const auto* set = std::get_if<PlantSet>(&plant)) return set->plants.front();
-    return std::nullopt;
-}
-
 Tradeoffs::Tradeoffs(std::optional<Plant> nominal, const EvaluateOptions& options) : nominal_(std::move(nominal)) {
     steps_.setpoint_step = options.setpoint_step;
     steps_.load_step = options.load_step;
@@ -67,7 +61,7 @@ const Tradeoffs::OnModel& Tradeoffs::scales(const Fopdt& model) {
 TradeoffFigures Tradeoffs::figures(const TradeoffScale& scale, const Plant& plant, const Controller& controller) const {
     const auto K = scale.static_gain();
     if (!K || !std::holds_alternative<Npid>(controller)) return scale.figures(gains(controller));
-    const auto evaluation = evaluate(plant, controller, steps_);
+    const auto evaluation = evaluate(PlantModel(plant), controller, steps_);
     if (!evaluation) return no_tradeoff(evaluation.error().message);
     const Performance& p = evaluation->performance;
     const auto per_unit = [](std::optional<double> IAE, double step) {
@@ -78,9 +72,9 @@ TradeoffFigures Tradeoffs::figures(const TradeoffScale& scale, const Plant& plan
                         per_unit(p.load.IAE, steps_.load_step * *K), "The response has no finite IAE.");
 }
 
-TradeoffEntry Tradeoffs::against(const Fopdt& model, const Controller& controller) {
+TradeoffReport Tradeoffs::against(const Fopdt& model, const Controller& controller) {
     const OnModel& scale = scales(model);
-    TradeoffEntry entry;
+    TradeoffReport entry;
     entry.fopdt = model;
     entry.model = figures(scale.on_model, model, controller);
     entry.plant = same(*nominal_, model) ? entry.model : figures(scale.on_plant, *nominal_, controller);
@@ -100,8 +94,8 @@ Expected<Fopdt> Tradeoffs::model_for(const std::optional<Plant>& reduced_model) 
     return Fopdt{.K = reduced->K, .T = reduced->T1, .L = reduced->L};
 }
 
-TradeoffEntry Tradeoffs::of(const Controller& controller, const std::optional<Plant>& reduced_model) {
-    TradeoffEntry entry;
+TradeoffReport Tradeoffs::of(const Controller& controller, const std::optional<Plant>& reduced_model) {
+    TradeoffReport entry;
     if (!linear_) {
         entry.model = entry.plant = no_tradeoff(kOnlyPoints);
         return entry;
@@ -113,20 +107,22 @@ TradeoffEntry Tradeoffs::of(const Controller& controller, const std::optional<Pl
     return entry;
 }
 
-TradeoffEntry Tradeoffs::of_rule(const Controller& controller, const ArrietaReport& report) {
-    TradeoffEntry entry = against(report.model, controller);
-    entry.constants = report.constants;
-    entry.Ms_design = report.Ms_design;
-    if (report.profile) entry.profile = profile_on(report.model, scales(report.model).on_model);
+TradeoffReport Tradeoffs::of_rule(const Controller& controller, const ArrietaSettings& settings) {
+    TradeoffReport entry = against(settings.model, controller);
+    entry.rule = settings;
+    entry.constants = settings.constants;
+    entry.Ms_design = settings.Ms_design;
+    if (settings.profile) entry.profile = profile_on(settings.model, scales(settings.model).on_model);
     return entry;
 }
 
-std::optional<Warning> missed_degradation(const ArrietaReport& report, const TradeoffEntry& entry) {
-    const auto& Deg = entry.model.Deg;
-    if (!report.degradation || !Deg || std::abs(*Deg - *report.degradation) <= kMissed) return std::nullopt;
-    return Warning{"degradation-missed", "On the model the degradation is " + text(*Deg) + ", not the " +
-                                             text(*report.degradation) +
-                                             " of Table 2's column; \"exact\": true solves for it."};
+void TradeoffReport::complete(const ReportContext& context, Evaluation& evaluation) {
+    if (!rule) return;
+    *this = context.tradeoffs.of_rule(evaluation.controller, ArrietaSettings(*rule));
+    if (!rule->degradation || !model.Deg || std::abs(*model.Deg - *rule->degradation) <= kMissed) return;
+    evaluation.warnings.push_back({"degradation-missed", "On the model the degradation is " + text(*model.Deg) +
+                                                             ", not the " + text(*rule->degradation) +
+                                                             " of Table 2's column; \"exact\": true solves for it."});
 }
 
 }  // namespace tunewright

@@ -1,5 +1,6 @@
-#include "engine/request/rimc_entry.h"
+#include "engine/tuning/rimc/rimc_report.h"
 
+#include "engine/evaluation/evaluate.h"
 #include "engine/evaluation/measured_response.h"
 #include "engine/evaluation/performance_figures.h"
 #include "engine/evaluation/robustness_figures.h"
@@ -45,32 +46,24 @@ FullController evaluated(const ImcController& controller, const LinearPlant& pla
 // Without dead time in the model Eq. 23 is a PI controller, and nothing else need be evaluated.
 std::optional<FullController> as_pi(const ImcController& c, const Plant& plant, EvaluateOptions options) {
     options.actuator.reset();
-    const auto evaluation = evaluate(plant, maclaurin_pid(rimc_terms(c)), options);
+    const auto evaluation = evaluate(PlantModel(plant), maclaurin_pid(rimc_terms(c)), options);
     if (!evaluation) return std::nullopt;
     return FullController{evaluation->robustness, evaluation->performance.load, evaluation->responses};
 }
 
 }  // namespace
 
-RimcEntry rimc_entry(const RimcReport& report, const Plant& plant, const LinearPlant& linear,
-                     const EvaluateOptions& options) {
-    RimcEntry entry;
-    entry.lambda = report.full_controller.lambda;
-    entry.Ms = report.Ms;
-    entry.disturbance_peak = report.disturbance_peak;
-    entry.dead_time_error = report.dead_time_error;
-    entry.stability_limit = report.stability_limit;
-    entry.disturbance_peak_curve = report.curve;
-    entry.why_null = report.why_null;
-    if (report.full_controller.theta == 0)
-        entry.full_controller = as_pi(report.full_controller, plant, options);
-    else if (linear.pole_excess() > 0)
-        entry.full_controller = evaluated(report.full_controller, linear, options);
-    if (!entry.full_controller)
-        entry.why_null["full_controller"] =
+void RimcReport::complete(const ReportContext& context, Evaluation&) {
+    const LinearPlant* plant = context.subject.linear();
+    if (plant == nullptr) return;
+    if (controller.theta == 0)
+        full_controller = as_pi(controller, *context.subject.nominal(), context.options);
+    else if (plant->pole_excess() > 0)
+        full_controller = evaluated(controller, *plant, context.options);
+    if (!full_controller)
+        why_null["full_controller"] =
             "The plant is biproper (as many zeros as poles); the full controller's loop is not computed for such "
             "plants.";
-    return entry;
 }
 
 }  // namespace tunewright

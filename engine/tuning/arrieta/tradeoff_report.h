@@ -1,19 +1,28 @@
-// The trade-off between servo and regulation that an entry carries: on the plant, and on the first-order model.
+// The trade-off between servo and regulation of a controller: on the plant, and on the first-order model.
 #pragma once
 
 #include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/controller/pid.h"
-#include "engine/evaluation/evaluate.h"
-#include "engine/plant/plant_model.h"
-#include "engine/tuning/arrieta/arrieta_report.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/tuning/arrieta/tradeoff.h"
+#include "engine/tuning/method/report.h"
 
 namespace tunewright {
+
+/// What the servo/regulation rule says of a controller that it gave.
+struct ArrietaSettings {
+    Fopdt model;                        ///< that the rule worked on
+    std::string constants;              ///< where its constants come from: table and column, or equation
+    std::optional<double> Ms_design;    ///< of Table 1's column or Eq. 9
+    std::optional<double> degradation;  ///< a level of Table 2, which the table may miss
+    bool profile = false;               ///< the curves over Ms and over the levels are asked for
+};
 
 /// One controller of the servo/regulation rule on the model.
 struct ProfilePoint {
@@ -28,31 +37,38 @@ struct TradeoffProfile {
     std::vector<ProfilePoint> by_degradation;  ///< Table 2, by its levels
 };
 
-struct TradeoffEntry {
+/// Of a controller that the rule gave, or of any other.
+struct TradeoffReport : MethodReport {
+    std::optional<ArrietaSettings> rule;
+
     std::optional<Plant> fopdt;            ///< the first-order model, where there is one
     std::optional<std::string> constants;  ///< of the methods arrieta_*: where the rule's constants come from
     std::optional<double> Ms_design;       ///< likewise: the Ms of Table 1's column or of Eq. 9
     TradeoffFigures model;                 ///< on `fopdt`
     TradeoffFigures plant;                 ///< on the (nominal) plant, against the model's reference controllers
     std::optional<TradeoffProfile> profile;
+
+    TradeoffReport() = default;
+    explicit TradeoffReport(ArrietaSettings settings) : rule(std::move(settings)) {}
+
+    /// Warns where the level of Table 2 misses its degradation on the model by more than 0.03.
+    void complete(const ReportContext& context, Evaluation& evaluation) override;
 };
 
-/// The plant that figures are about; empty for measured points.
-std::optional<Plant> nominal_plant(const PlantModel& plant);
-
-/// Computes entries of one request; what a model asks for once is kept. Not for several threads at once.
+/// Computes reports of one request; what a model asks for once is kept. Not for several threads at once.
 class Tradeoffs {
 public:
-    /// `nominal` is valid (LinearPlant::make); empty: the plant is known by measured points alone, and nothing is told.
+    /// `nominal` is valid (LinearPlant::make); empty: the plant is known by measured points alone, and every figure is
+    /// empty.
     /// The steps of a nonlinear controller's responses are those of `options`, the indices per unit of them.
     explicit Tradeoffs(std::optional<Plant> nominal, const EvaluateOptions& options = {});
 
     /// `reduced_model`: that the controller was tuned on, if it is of first order; else the plant's own form or its
     /// reduction is taken.
-    TradeoffEntry of(const Controller& controller, const std::optional<Plant>& reduced_model);
+    TradeoffReport of(const Controller& controller, const std::optional<Plant>& reduced_model);
 
     /// Of a controller that a servo/regulation rule gave.
-    TradeoffEntry of_rule(const Controller& controller, const ArrietaReport& report);
+    TradeoffReport of_rule(const Controller& controller, const ArrietaSettings& settings);
 
 private:
     struct OnModel {
@@ -61,7 +77,7 @@ private:
     };
 
     const OnModel& scales(const Fopdt& model);
-    TradeoffEntry against(const Fopdt& model, const Controller& controller);
+    TradeoffReport against(const Fopdt& model, const Controller& controller);
     Expected<Fopdt> model_for(const std::optional<Plant>& reduced_model) const;
 
     TradeoffFigures figures(const TradeoffScale& scale, const Plant& plant, const Controller& controller) const;
@@ -71,8 +87,5 @@ private:
     std::optional<LinearPlant> linear_;
     std::map<std::array<double, 3>, OnModel> kept_;  // by K, T, L
 };
-
-/// Warns where the level of Table 2 misses its degradation on the model by more than 0.03.
-std::optional<Warning> missed_degradation(const ArrietaReport& report, const TradeoffEntry& entry);
 
 }  // namespace tunewright

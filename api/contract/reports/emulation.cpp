@@ -1,4 +1,6 @@
-#include "api/contract/result/emulation.h"
+#include "engine/tuning/emulation/emulation_report.h"
+
+#include "api/contract/reports/reports.h"
 
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
@@ -180,8 +182,6 @@ void add_criterion(Description<EmulationReport>& d) {
         .field("horizon", &R::horizon, only_answered(number()), "Where the integrals end.", {.unit = "time"});
 }
 
-}  // namespace
-
 const Description<EmulationReport>& emulation_contract() {
     static const auto description = [] {
         using R = EmulationReport;
@@ -223,6 +223,13 @@ const Description<EmulationReport>& emulation_contract() {
         return d;
     }();
     return description;
+}
+
+}  // namespace
+
+ReportContract emulation_report() {
+    return report_contract("emulation", emulation_contract(),
+                           "Of the method emulation: both levels, and the nonlinear controller's own run.", true);
 }
 
 }  // namespace tunewright::api

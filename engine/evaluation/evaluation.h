@@ -1,0 +1,141 @@
+// Everything known about one controller on one plant: robustness, performance, traces; and what is asked for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/plant/uncertain/plant_family.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+struct ActuatorLimits {
+    double min = 0;  ///< deviation from the operating point, < 0 or = 0
+    double max = 0;  ///< > min
+};
+
+struct NoiseOptions {
+    double std = 0;          ///< standard deviation of the white measurement noise, >= 0
+    double sample_time = 0;  ///< > 0; 0: the loop's own (loop/noise.h)
+};
+
+struct EvaluateOptions {
+    double setpoint_step = 1;             ///< != 0
+    double load_step = 1;                 ///< != 0
+    std::optional<double> horizon;        ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
+    int points = 400;                     ///< of each trace: 0 (none) or 2 to 20,000
+    std::optional<double> trace_horizon;  ///< of the traces alone, where `horizon` is empty; empty: chosen by the loop
+    std::optional<ActuatorLimits> actuator;
+    std::optional<NoiseOptions> noise;
+    double rank_Ms = 2.0;               ///< entries with Ms above it rank last
+    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
+    bool tradeoff = false;              ///< entries tell the trade-off between servo and regulation (tradeoff_entry.h)
+};
+
+/// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.
+struct Robustness {
+    bool stable = false;
+    std::optional<double> Ms, omega_Ms, Mt, omega_Mt, Mks;
+    std::optional<double> gain_margin, gain_margin_low, phase_margin_deg, delay_margin;
+    std::optional<double> gain_crossover, phase_crossover;
+    std::string binding;  ///< e.g. "Ms at omega 12.3"
+    struct Tolerates {
+        std::optional<double> gain_low, gain_high, extra_dead_time;
+    } tolerates;
+    WhyNull why_null;
+};
+
+struct SetpointPerformance {
+    std::optional<double> IAE, ISE, ITAE, overshoot_percent, rise_time, rise_time_5_95, settling_time, TV, first_move;
+    WhyNull why_null;
+};
+
+struct LoadPerformance {
+    std::optional<double> IAE, ISE, ITAE, peak, recovery_time, TV;
+    WhyNull why_null;
+};
+
+struct NoisePerformance {
+    std::optional<double> u_std, gain;
+    WhyNull why_null;
+};
+
+struct Performance {
+    SetpointPerformance setpoint;
+    LoadPerformance load;
+    std::optional<NoisePerformance> noise;
+};
+
+struct Trace {
+    std::vector<double> t, y, u;
+};
+
+struct Responses {
+    Trace setpoint, load;
+    bool settles = true;
+};
+
+struct FrequencyTraces {
+    std::vector<double> omega, L_re, L_im, L_phase_deg, S_abs, T_abs, CS_abs;
+};
+
+/// Relative errors of a response's indices: by how much each has moved when every step was last halved, its quadrature
+/// with it (measured_response.h). Empty where the index has no value.
+struct IndexErrors {
+    std::optional<double> IAE, ISE, ITAE, TV;
+};
+
+/// How the figures were checked; empty where a check does not apply.
+struct Verification {
+    IndexErrors setpoint_errors, load_errors;
+    std::optional<double> iae_step_halving;     ///< that of the load IAE
+    std::optional<bool> load_error_keeps_sign;  ///< then its IAE is exactly |d| Ti/|Kp|; with integral action only
+    std::optional<double> ie_identity;          ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
+    std::optional<double> ms_grid_difference;   ///< relative difference of Ms on an independent grid
+    std::optional<bool> stability_methods_agree;
+};
+
+/// What is known of the nonlinear PID beyond its linear part. Sector: the integral sees k e with k in (0, 1].
+struct NonlinearFigures {
+    double delta_r = 0;
+    bool stable_without_integral = false;  ///< the loop of P and D action, which very large errors leave
+    bool circle_criterion = false;         ///< holds: every error dies out, whatever its size
+    bool popov_criterion = false;          ///< the same, less conservative
+    std::optional<double> popov_q;         ///< of Re (1 + j omega q) G > -1
+    bool limit_cycle_predicted = false;    ///< by the describing function
+    std::optional<double> limit_cycle_amplitude, limit_cycle_omega;  ///< of y; errors beyond it may not die out
+    std::string statement;                                           ///< all that in a sentence
+    WhyNull why_null;
+};
+
+struct Equivalents {
+    ParallelPid parallel;
+    std::optional<SeriesPid> series;
+    std::string why_no_series;
+};
+
+/// What a nonlinear plant's linearisation does with the same controller, steps and limits.
+struct LinearisedResponse {
+    Performance performance;
+    std::optional<Responses> responses;
+};
+
+/// Everything known about one controller on one plant, or on the nominal plant of a family.
+struct Evaluation {
+    Controller controller;
+    Equivalents equivalents;
+    Robustness robustness;
+    Performance performance;
+    std::optional<Responses> responses;        ///< with points > 0 and a stable loop
+    std::optional<FrequencyTraces> frequency;  ///< with points > 0
+    Verification verification;
+    std::optional<NonlinearFigures> nonlinear;  ///< of an Npid whose linear part is stable
+    std::optional<LinearisedResponse> linear;   ///< of a nonlinear plant
+    std::optional<RegionFigures> region;        ///< of a family of more than one plant
+    std::vector<Warning> warnings;
+    double compute_ms = 0;
+};
+
+}  // namespace tunewright

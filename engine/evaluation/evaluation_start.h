@@ -1,0 +1,27 @@
+// What every evaluation begins with: what it makes sure of, and what does not depend on the plant.
+#pragma once
+
+#include <optional>
+
+#include "engine/error.h"
+#include "engine/evaluation/evaluation.h"
+#include "engine/loop/stability.h"
+
+namespace tunewright {
+
+/// The first fault of the options ("evaluate/...") or of an Npid ("controller/..."), whatever the plant.
+std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options);
+
+/// The same controller; an Npid without delta_r has the set-point step's size for it.
+Controller resolved(Controller controller, const EvaluateOptions& options);
+
+/// The controller, resolved, with its equivalents.
+Evaluation begun(const Controller& controller, const EvaluateOptions& options);
+
+/// An error of a loop that cannot be formed, placed at the controller where it has no place.
+Error of_controller(Error error);
+
+/// An unstable loop's figures and warning.
+void mark_unstable(Evaluation& evaluation, const StabilityCount& count);
+
+}  // namespace tunewright

@@ -1,0 +1,54 @@
+#include "engine/request/evaluate_all.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/request/optimum_at_ms.h"
+#include "engine/tuning/arrieta/tradeoff_report.h"
+
+namespace tunewright {
+namespace {
+
+// An evaluation speaks of "controller/..."; the request has a list of them.
+Error placed(Error error, std::size_t index) {
+    const std::string one = "controller";
+    if (error.where.starts_with(one)) error.where.replace(0, one.size(), "controllers/" + std::to_string(index));
+    return error;
+}
+
+Error out_of_time(std::size_t done) {
+    return {ErrorKind::timeout, "",
+            "The time allowed was over after " + std::to_string(done) + " controllers; send fewer, or fewer points."};
+}
+
+}  // namespace
+
+Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
+                                        const EvaluateOptions& options, const RunControl& control) {
+    const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
+    EvaluationResult result;
+    if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
+    const EvaluateOptions on_nominal = on_linearisation(subject, options);
+    std::optional<Tradeoffs> tradeoffs;
+    std::optional<RobustOptima> optima;
+    if (options.tradeoff) tradeoffs.emplace(subject.nominal(), on_nominal);
+    if (options.optimum_at_Ms.value_or(false) && subject.linear() != nullptr)
+        optima.emplace(TuningProblem{*subject.nominal(), *subject.linear(), {}, {}}, on_nominal);
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        if (control.stop.stop_requested()) return out_of_time(i);
+        const double start = now();
+        auto evaluation = evaluate(subject, controllers[i], options);
+        if (!evaluation) return placed(evaluation.error(), i);
+        TuningEntry& entry = result.controllers.emplace_back();
+        if (tradeoffs)
+            entry.reports.push_back(std::make_shared<TradeoffReport>(tradeoffs->of(controllers[i], std::nullopt)));
+        if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
+        evaluation->compute_ms = now() - start;
+        entry.evaluation = std::move(*evaluation);
+    }
+    return result;
+}
+
+}  // namespace tunewright

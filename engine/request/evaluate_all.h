@@ -1,0 +1,26 @@
+// Controllers that were sent, each judged on the same plant: what `POST /v1/evaluate` answers.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/operating_point.h"
+#include "engine/expected.h"
+#include "engine/plant/subject.h"
+#include "engine/progress.h"
+#include "engine/request/entry.h"
+
+namespace tunewright {
+
+struct EvaluationResult {
+    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
+    std::vector<TuningEntry> controllers;           ///< without a method, in the order sent
+};
+
+/// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
+Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
+                                        const EvaluateOptions& options, const RunControl& control);
+
+}  // namespace tunewright

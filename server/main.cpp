@@ -5,6 +5,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "api/service.h"
 #include "server/access/key_command.h"
 #include "server/config.h"
 #include "server/health_command.h"
@@ -151,6 +152,7 @@ int main(int argc, char** argv) {
                            "CSV: answer the record beside the models' free runs too");
 
     KeyCommand naming;
+    CLI::App* methods_app = app.add_subcommand("methods", "The tuning methods with their options, as JSON");
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
     key_app->add_option("name", naming.name, "Whose it is; jobs belong to that name")->required();
     key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
@@ -166,6 +168,10 @@ int main(int argc, char** argv) {
         if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
         if (identify_app->parsed()) return identify(identifying);
+        if (methods_app->parsed()) {
+            std::cout << tunewright::api::methods_json() << "\n";
+            return 0;
+        }
         return serving->parsed() ? serve(config) : tune(file);
     } catch (const std::exception& fault) {
         std::cerr << "tunewright: " << fault.what() << "\n";

@@ -17,6 +17,7 @@
 #include "engine/tuning/reaction_curve/kappa_tau.h"
 #include "engine/tuning/reaction_curve/lopez.h"
 #include "engine/tuning/reaction_curve/rovira.h"
+#include "engine/tuning/reaction_curve/t_sum.h"
 #include "engine/tuning/reaction_curve/tavakoli.h"
 #include "engine/tuning/reaction_curve/wang_juang_chan.h"
 #include "engine/tuning/reaction_curve/zhuang_atherton.h"
@@ -55,6 +56,7 @@ const std::vector<TuningMethod>& method_registry() {
         rovira_method(),
         zhuang_atherton_method(),
         wang_juang_chan_method(),
+        t_sum_method(),
         improved_simc_method(),
         amigo_ultimate_method(),
         kappa_tau_method(),

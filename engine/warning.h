@@ -1,7 +1,6 @@
 // A remark that travels with a result: a code for programs, a sentence with the figures for people.
 #pragma once
 
-#include <map>
 #include <string>
 
 namespace tunewright {
@@ -14,8 +13,5 @@ struct Warning {
     std::string detail;  ///< one sentence with the figure and what to do
     WarningLevel level = WarningLevel::warning;
 };
-
-/// Field name -> why that quantity is null (infinite or undefined).
-using WhyNull = std::map<std::string, std::string>;
 
 }  // namespace tunewright

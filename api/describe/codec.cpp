@@ -206,7 +206,17 @@ Codec<std::vector<double>> times_trace() {
     return codec;
 }
 
-Codec<std::optional<double>> figure() {
+Codec<Figure> figure() {
+    const Codec<std::optional<double>> plain = nullable_number();
+    Codec<Figure> codec;
+    codec.write = [write = plain.write](const Figure& figure, Writer& out) { write(figure.value, out); };
+    codec.schema = plain.schema;
+    codec.undefined = [undefined = plain.undefined](const Figure& figure) { return undefined(figure.value); };
+    codec.why = [](const Figure& figure) { return figure.why; };
+    return codec;
+}
+
+Codec<std::optional<double>> nullable_number() {
     return {{},
             [](const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); },
             [](SchemaBook&) {

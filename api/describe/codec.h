@@ -12,6 +12,7 @@
 #include "api/describe/suggest.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "engine/figure.h"
 
 namespace tunewright::api {
 
@@ -28,6 +29,8 @@ struct Codec {
     std::function<Json(SchemaBook&)> schema;
     std::function<bool(const T&)> skip = {};       ///< true: the member is left out when written; empty: never
     std::function<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
+    /// The reason of an undefined value; empty, or "": the description's own for all.
+    std::function<std::string(const T&)> why = {};
 };
 
 /// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite.
@@ -69,9 +72,27 @@ Codec<std::vector<double>> trace();
 /// Only in answers: six significant digits, or as many as neighbours differ by.
 Codec<std::vector<double>> times_trace();
 
-/// Only in answers: null where undefined or infinite.
-Codec<std::optional<double>> figure();
+/// Only in answers: null where undefined or infinite, with the figure's reason.
+Codec<Figure> figure();
+
+/// The same of values that state no reason of their own.
+Codec<std::optional<double>> nullable_number();
 Codec<std::optional<bool>> nullable_bool();
+
+/// Only in answers: the value as `inner` writes it, or null with its reason.
+template <class T>
+Codec<OrReason<T>> or_reason(const Codec<T>& inner) {
+    Codec<OrReason<T>> codec;
+    codec.write = [write = inner.write](const OrReason<T>& value, Writer& out) {
+        value ? write(*value, out) : out.null();
+    };
+    codec.schema = [schema = inner.schema](SchemaBook& book) {
+        return Json{{"oneOf", {schema(book), Json{{"type", "null"}}}}};
+    };
+    codec.undefined = [](const OrReason<T>& value) { return !value; };
+    codec.why = [](const OrReason<T>& value) { return value.why; };
+    return codec;
+}
 
 /// Only in answers: numbers by name.
 Codec<std::map<std::string, double>> numbers_by_name(std::string keys);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "api/describe/codec.h"
-#include "engine/warning.h"
 
 namespace tunewright::api {
 
@@ -40,7 +39,7 @@ public:
     template <class M, class Owner>
     requires std::is_base_of_v<Owner, T> Description& field(std::string name, M Owner::*member, Codec<M> codec,
                                                             std::string sentence, FieldOptions options = {}) {
-        Field out{name, std::move(sentence), options, {}, {}, codec.schema, {}, {}, {}};
+        Field out{name, std::move(sentence), options, {}, {}, codec.schema, {}, {}, {}, {}};
         if (codec.read) {
             out.read = [member, read = codec.read](const Json& value, T& target, Reader& reader) {
                 read(value, target.*member, reader);
@@ -50,6 +49,7 @@ public:
         if (codec.skip) out.skip = [member, skip = codec.skip](const T& value) { return skip(value.*member); };
         if (codec.undefined)
             out.undefined = [member, undefined = codec.undefined](const T& value) { return undefined(value.*member); };
+        if (codec.why) out.why = [member, why = codec.why](const T& value) { return why(value.*member); };
         if (codec.read && !options.required && !options.answer_only && !options.no_default &&
             !(codec.skip && codec.skip(T{}.*member))) {
             Writer initial;
@@ -70,6 +70,7 @@ public:
                     std::move(write),
                     std::move(schema),
                     std::move(skip),
+                    {},
                     {},
                     {}});
     }
@@ -92,15 +93,8 @@ public:
         return *this;
     }
 
-    /// Every null figure gets a reason: the engine's, or the sentence `otherwise`.
-    Description& why_null(WhyNull T::*member, std::string otherwise) {
-        reasons_ = [member](const T& value) -> const WhyNull& { return value.*member; };
-        otherwise_ = std::move(otherwise);
-        return *this;
-    }
+    /// Every null figure gets a reason: its own, or the sentence `otherwise`.
     Description& why_null(std::string otherwise) {
-        static const WhyNull kNone;
-        reasons_ = [](const T&) -> const WhyNull& { return kNone; };
         otherwise_ = std::move(otherwise);
         return *this;
     }
@@ -144,9 +138,9 @@ public:
             if (!field.write || (field.skip && field.skip(value))) continue;
             out.key(field.name);
             field.write(value, out);
-            if (reasons_ && field.undefined && field.undefined(value)) undefined.push_back(&field);
+            if (!otherwise_.empty() && field.undefined && field.undefined(value)) undefined.push_back(&field);
         }
-        if (!undefined.empty()) write_reasons(reasons_(value), undefined, out);
+        if (!undefined.empty()) write_reasons(value, undefined, out);
         out.end_object();
     }
 
@@ -169,6 +163,7 @@ private:
         std::function<Json(SchemaBook&)> schema;
         std::function<bool(const T&)> skip;
         std::function<bool(const T&)> undefined;
+        std::function<std::string(const T&)> why;
         std::string initial;  ///< the default as JSON text; empty: none
     };
 
@@ -182,7 +177,7 @@ private:
         for (const auto& [name, sentence] : refused_) {
             if (given == name) return reader.fault_at(given, sentence);
         }
-        if (given == "why_null" && reasons_) return;
+        if (given == "why_null" && !otherwise_.empty()) return;
         for (const std::string& name : names_) {
             if (given == name) return;
         }
@@ -192,13 +187,13 @@ private:
                        (meant.empty() ? "known are " + listed(names_, "and") + "." : "did you mean " + meant + "?"));
     }
 
-    void write_reasons(const WhyNull& reasons, const std::vector<const Field*>& undefined, Writer& out) const {
+    void write_reasons(const T& value, const std::vector<const Field*>& undefined, Writer& out) const {
         out.key("why_null");
         out.begin_object();
         for (const Field* field : undefined) {
-            const auto reason = reasons.find(field->name);
+            const std::string why = field->why ? field->why(value) : "";
             out.key(field->name);
-            out.text(reason == reasons.end() ? otherwise_ : reason->second);
+            out.text(why.empty() ? otherwise_ : why);
         }
         out.end_object();
     }
@@ -221,7 +216,7 @@ private:
             properties[field.name] = std::move(schema);
             if (reads ? field.options.required : !field.skip) required.push_back(field.name);
         }
-        if (reasons_) {
+        if (!otherwise_.empty()) {
             properties["why_null"] = {{"type", "object"},
                                       {"description", "Field -> why it is null."},
                                       {"additionalProperties", {{"type", "string"}}}};
@@ -250,8 +245,7 @@ private:
     std::vector<Field> fields_;
     std::vector<Check> checks_, presence_;
     std::vector<std::pair<std::string, std::string>> refused_;
-    std::function<const WhyNull&(const T&)> reasons_;
-    std::string otherwise_;
+    std::string otherwise_;  ///< of null figures; empty: the type has none
     Json example_;
 };
 

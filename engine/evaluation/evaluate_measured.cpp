@@ -24,7 +24,7 @@ Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Control
 
     Evaluation evaluation = begun(controller, options);
     evaluation.performance = no_performance(kNoTime);
-    if (options.noise) evaluation.performance.noise = NoisePerformance{{}, {}, {{"u_std", kNoTime}, {"gain", kNoTime}}};
+    if (options.noise) evaluation.performance.noise = NoisePerformance{no_figure(kNoTime), no_figure(kNoTime)};
     const StabilityCount count = loop->count_unstable_poles();
     if (count.stable())
         evaluation.robustness = robustness_of(loop->peaks(), loop->margins());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/controller/pid.h"
+#include "engine/figure.h"
 #include "engine/plant/uncertain/plant_family.h"
 #include "engine/warning.h"
 
@@ -35,31 +36,29 @@ struct EvaluateOptions {
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.
+/// Ms, Mt and the gain margins are ratios; Mks in u/y, frequencies in rad/time, the phase margin in degrees, the delay
+/// margin in time.
 struct Robustness {
     bool stable = false;
-    std::optional<double> Ms, omega_Ms, Mt, omega_Mt, Mks;
-    std::optional<double> gain_margin, gain_margin_low, phase_margin_deg, delay_margin;
-    std::optional<double> gain_crossover, phase_crossover;
+    Figure Ms, omega_Ms, Mt, omega_Mt, Mks;
+    Figure gain_margin, gain_margin_low, phase_margin_deg, delay_margin;
+    Figure gain_crossover, phase_crossover;
     std::string binding;  ///< e.g. "Ms at omega 12.3"
     struct Tolerates {
-        std::optional<double> gain_low, gain_high, extra_dead_time;
+        Figure gain_low, gain_high, extra_dead_time;
     } tolerates;
-    WhyNull why_null;
 };
 
 struct SetpointPerformance {
-    std::optional<double> IAE, ISE, ITAE, overshoot_percent, rise_time, rise_time_5_95, settling_time, TV, first_move;
-    WhyNull why_null;
+    Figure IAE, ISE, ITAE, overshoot_percent, rise_time, rise_time_5_95, settling_time, TV, first_move;
 };
 
 struct LoadPerformance {
-    std::optional<double> IAE, ISE, ITAE, peak, recovery_time, TV;
-    WhyNull why_null;
+    Figure IAE, ISE, ITAE, peak, recovery_time, TV;
 };
 
 struct NoisePerformance {
-    std::optional<double> u_std, gain;
-    WhyNull why_null;
+    Figure u_std, gain;
 };
 
 struct Performance {
@@ -100,14 +99,13 @@ struct Verification {
 /// What is known of the nonlinear PID beyond its linear part. Sector: the integral sees k e with k in (0, 1].
 struct NonlinearFigures {
     double delta_r = 0;
-    bool stable_without_integral = false;  ///< the loop of P and D action, which very large errors leave
-    bool circle_criterion = false;         ///< holds: every error dies out, whatever its size
-    bool popov_criterion = false;          ///< the same, less conservative
-    std::optional<double> popov_q;         ///< of Re (1 + j omega q) G > -1
-    bool limit_cycle_predicted = false;    ///< by the describing function
-    std::optional<double> limit_cycle_amplitude, limit_cycle_omega;  ///< of y; errors beyond it may not die out
-    std::string statement;                                           ///< all that in a sentence
-    WhyNull why_null;
+    bool stable_without_integral = false;             ///< the loop of P and D action, which very large errors leave
+    bool circle_criterion = false;                    ///< holds: every error dies out, whatever its size
+    bool popov_criterion = false;                     ///< the same, less conservative
+    Figure popov_q;                                   ///< of Re (1 + j omega q) G > -1
+    bool limit_cycle_predicted = false;               ///< by the describing function
+    Figure limit_cycle_amplitude, limit_cycle_omega;  ///< of y; errors beyond it may not die out
+    std::string statement;                            ///< all that in a sentence
 };
 
 struct Equivalents {

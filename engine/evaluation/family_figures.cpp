@@ -46,10 +46,7 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
         figures.worst_plant = region.at(found.worst.z);
     }
     figures.stable_fraction = fractions / static_cast<double>(family.regions.size());
-    if (std::isfinite(worst))
-        figures.worst_Ms = std::exp(worst);
-    else
-        figures.why_null["worst_Ms"] = "The loop is unstable on at least one plant, such as worst_plant.";
+    figures.worst_Ms = finite_or(std::exp(worst), "The loop is unstable on at least one plant, such as worst_plant.");
     return figures;
 }
 

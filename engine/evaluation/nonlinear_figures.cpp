@@ -53,15 +53,13 @@ NonlinearFigures nonlinear_figures(const Loop& linear_part, double delta_r) {
     figures.stable_without_integral = sector.stable_without_integral;
     figures.circle_criterion = sector.circle_criterion;
     figures.popov_criterion = sector.popov_criterion;
-    figures.popov_q = sector.popov_q;
-    if (!figures.popov_q) figures.why_null["popov_q"] = "No q meets Popov's condition.";
+    figures.popov_q = Figure(sector.popov_q, "No q meets Popov's condition.");
     figures.limit_cycle_predicted = sector.critical_gain.has_value();
     if (sector.critical_gain) {
         figures.limit_cycle_amplitude = ErrorScaling{delta_r}.amplitude_of_gain(*sector.critical_gain);
         figures.limit_cycle_omega = sector.critical_omega;
     } else {
-        for (const char* name : {"limit_cycle_amplitude", "limit_cycle_omega"})
-            figures.why_null[name] = "No oscillation is predicted.";
+        figures.limit_cycle_amplitude = figures.limit_cycle_omega = no_figure("No oscillation is predicted.");
     }
     figures.statement = statement_of(sector, figures);
     return figures;

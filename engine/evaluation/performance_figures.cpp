@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "engine/loop/noise.h"
 #include "engine/simulation/linear/indices.h"
@@ -13,9 +12,17 @@ namespace {
 constexpr double kSettlingBand = 0.02;
 constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
 
+/// The indices of one kind of performance, from the error's integrals or with the reason why there are none.
 template <class Figures>
-void all_null(Figures& figures, std::initializer_list<const char*> names, const std::string& reason) {
-    for (const char* name : names) figures.why_null[name] = reason;
+void store_integrals(Figures& p, const StepResponse& response, double target, bool to_infinity) {
+    if (const char* reason = why_no_integral(response, target, to_infinity)) {
+        p.IAE = p.ISE = p.ITAE = no_figure(reason);
+        return;
+    }
+    const auto e = error_integrals(response.nodes, target, to_infinity ? response.error_integral_final : std::nullopt);
+    p.IAE = e.IAE;
+    p.ISE = e.ISE;
+    p.ITAE = e.ITAE;
 }
 
 }  // namespace
@@ -33,40 +40,29 @@ const char* why_no_integral(const StepResponse& response, double target, bool to
 
 Performance no_performance(const std::string& reason) {
     Performance performance;
-    all_null(
-        performance.setpoint,
-        {"IAE", "ISE", "ITAE", "overshoot_percent", "rise_time", "rise_time_5_95", "settling_time", "TV", "first_move"},
-        reason);
-    all_null(performance.load, {"IAE", "ISE", "ITAE", "peak", "recovery_time", "TV"}, reason);
+    SetpointPerformance& r = performance.setpoint;
+    for (Figure* figure : {&r.IAE, &r.ISE, &r.ITAE, &r.overshoot_percent, &r.rise_time, &r.rise_time_5_95,
+                           &r.settling_time, &r.TV, &r.first_move})
+        figure->why = reason;
+    LoadPerformance& d = performance.load;
+    for (Figure* figure : {&d.IAE, &d.ISE, &d.ITAE, &d.peak, &d.recovery_time, &d.TV}) figure->why = reason;
     return performance;
 }
 
 SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity) {
     SetpointPerformance p;
     const auto& nodes = response.nodes;
-    if (const char* reason = why_no_integral(response, step, to_infinity)) {
-        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
-    } else {
-        const auto e = error_integrals(nodes, step, to_infinity ? response.error_integral_final : std::nullopt);
-        p.IAE = e.IAE;
-        p.ISE = e.ISE;
-        p.ITAE = e.ITAE;
-    }
+    store_integrals(p, response, step, to_infinity);
     const Extremes extremes = extremes_of_y(nodes);
     p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
-    const auto rise = [&](double from, double to, std::optional<double>& field, const char* name) {
+    const auto rise = [&](double from, double to) {
         const auto a = first_reached(nodes, from * step), b = first_reached(nodes, to * step);
-        if (a && b)
-            field = *b - *a;
-        else
-            p.why_null[name] = "The response does not reach that level.";
+        return a && b ? Figure(*b - *a) : no_figure("The response does not reach that level.");
     };
-    rise(0.1, 0.9, p.rise_time, "rise_time");
-    rise(0.05, 0.95, p.rise_time_5_95, "rise_time_5_95");
-    if (const auto settled = last_outside(nodes, step, kSettlingBand * std::abs(step)))
-        p.settling_time = *settled;
-    else
-        p.why_null["settling_time"] = "The response does not stay within 2 % of the set point.";
+    p.rise_time = rise(0.1, 0.9);
+    p.rise_time_5_95 = rise(0.05, 0.95);
+    p.settling_time = Figure(last_outside(nodes, step, kSettlingBand * std::abs(step)),
+                             "The response does not stay within 2 % of the set point.");
     p.TV = total_variation(nodes);
     p.first_move = nodes.front().u;
     return p;
@@ -75,35 +71,20 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
 LoadPerformance load_figures(const StepResponse& response, bool to_infinity) {
     LoadPerformance p;
     const auto& nodes = response.nodes;
-    if (const char* reason = why_no_integral(response, 0, to_infinity)) {
-        all_null(p, {"IAE", "ISE", "ITAE"}, reason);
-    } else {
-        const auto e = error_integrals(nodes, 0, to_infinity ? response.error_integral_final : std::nullopt);
-        p.IAE = e.IAE;
-        p.ISE = e.ISE;
-        p.ITAE = e.ITAE;
-    }
+    store_integrals(p, response, 0, to_infinity);
     const Extremes extremes = extremes_of_y(nodes);
     p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
-    if (const auto recovered = last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)))
-        p.recovery_time = *recovered;
-    else
-        p.why_null["recovery_time"] = "The response does not come back within 2 % of its peak.";
+    p.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)),
+                             "The response does not come back within 2 % of its peak.");
     p.TV = total_variation(nodes);
     return p;
 }
 
 NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise) {
-    NoisePerformance figures;
-    figures.gain = noise_gain(loop, noise.sample_time > 0 ? noise.sample_time : default_noise_sample_time(loop));
-    if (figures.gain) {
-        figures.u_std = *figures.gain * noise.std;
-    } else {
-        for (const char* name : {"gain", "u_std"})
-            figures.why_null[name] =
-                "The derivative has no filter: held noise samples make it infinite. Give the controller a filter.";
-    }
-    return figures;
+    const Figure gain(
+        noise_gain(loop, noise.sample_time > 0 ? noise.sample_time : default_noise_sample_time(loop)),
+        "The derivative has no filter: held noise samples make it infinite. Give the controller a filter.");
+    return {.u_std = gain ? Figure(*gain * noise.std) : gain, .gain = gain};
 }
 
 double covering_horizon(const StepResponse& setpoint, const StepResponse& load) {

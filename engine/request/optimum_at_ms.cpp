@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGreatestMs = 4;  // of the method robust
 
-OptimumAtMs none(const std::string& reason) { return {{}, {}, {{"IAE", reason}, {"excess_percent", reason}}}; }
+OptimumAtMs none(const std::string& reason) { return {no_figure(reason), no_figure(reason)}; }
 
 }  // namespace
 
@@ -31,9 +31,8 @@ Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control)
     if (!evaluation) return evaluation.error();
     const auto& load = evaluation->performance.load;
     if (load.IAE) return *load.IAE;
-    const auto why = load.why_null.find("IAE");
     return Error{ErrorKind::numerical_failure, "",
-                 why == load.why_null.end() ? "The optimum's load IAE is not finite." : why->second};
+                 load.IAE.why.empty() ? "The optimum's load IAE is not finite." : load.IAE.why};
 }
 
 OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunControl& control) {
@@ -43,12 +42,12 @@ OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunC
         return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(kGreatestMs) + ".");
     const auto optimum = load_IAE_at(*Ms, control);
     if (!optimum) return none(optimum.error().message);
-    OptimumAtMs answer{*optimum, {}, {}};
+    OptimumAtMs answer{*optimum, {}};
     const Performance& performance = evaluation.linear ? evaluation.linear->performance : evaluation.performance;
     if (const auto& IAE = performance.load.IAE; IAE && *answer.IAE > 0)
         answer.excess_percent = 100 * (*IAE / *answer.IAE - 1);
     else
-        answer.why_null["excess_percent"] = "The controller's load IAE is not finite.";
+        answer.excess_percent = no_figure("The controller's load IAE is not finite.");
     return answer;
 }
 

@@ -5,6 +5,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
+#include "engine/figure.h"
 #include "engine/progress.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/robust.h"
@@ -15,8 +16,7 @@ namespace tunewright {
 /// controller over it - 1); may be below 0, where the controller's own filter or Mt lets it. Of a nonlinear plant both
 /// are the linearisation's, to which Ms belongs.
 struct OptimumAtMs {
-    std::optional<double> IAE, excess_percent;
-    WhyNull why_null;
+    Figure IAE, excess_percent;
 };
 
 /// The optima of one plant, each from its neighbours. Ms must lie in (1, 4]; elsewhere, and where there is no optimum,

@@ -58,8 +58,9 @@ TEST(Answers, ANullFigureIsWrittenWithItsReason) {
     robustness.stable = true;
     robustness.Ms = 1.25;
     robustness.gain_margin = std::numeric_limits<double>::infinity();
-    robustness.why_null["gain_margin"] = "No higher gain loses stability.";
-    robustness.why_null["Ms"] = "Never shown: Ms is not null.";
+    robustness.gain_margin.why = "No higher gain loses stability.";
+    robustness.tolerates.gain_high = no_figure(robustness.gain_margin.why);
+    robustness.Ms.why = "Never shown: Ms is not null.";
     robustness.tolerates.gain_low = 0.5;
     const Json written = Json::parse(encode(robustness_contract(), robustness));
     EXPECT_EQ(written["Ms"], 1.25);

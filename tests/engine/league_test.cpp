@@ -108,7 +108,7 @@ TEST(League, TheRobustOptimumItselfLiesAtTheOptimumAndNoRuleWithItsFilterBelow) 
         const auto& Ms = entry.evaluation->robustness.Ms;
         if (!Ms || *Ms > 4) {
             EXPECT_FALSE(entry.optimum_at_Ms->IAE) << entry.title;
-            EXPECT_TRUE(entry.optimum_at_Ms->why_null.contains("IAE")) << entry.title;
+            EXPECT_FALSE(entry.optimum_at_Ms->IAE.why.empty()) << entry.title;
             continue;
         }
         ASSERT_TRUE(entry.optimum_at_Ms->excess_percent) << entry.title;

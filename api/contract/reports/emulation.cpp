@@ -114,7 +114,7 @@ const Description<LevelOneRow>& level_one_contract() {
             .field("model", &R::model, maybe(only_answered(one_of(plant_contract()))), "What the rule worked on.")
             .field("controller", &R::controller, maybe(only_answered(one_of(controller_contract()))), "The settings.")
             .field("error", &R::error, words_if_any(), "Why there are none.")
-            .field("J", &R::J, figure(), "As of the answer.")
+            .field("J", &R::J, nullable_number(), "As of the answer.")
             .field("ended", &R::ended, words_if_any(), "Why its run ended before the horizon.")
             .field("t", &R::t, trace_if_any(), "Time, first scenario.", {.unit = "time"})
             .field("y", &R::y, trace_if_any(), "Output, absolute.", {.unit = "y"})
@@ -162,7 +162,7 @@ void add_criterion(Description<EmulationReport>& d) {
     using R = EmulationReport;
     d.field("formulation", &R::formulation, words(), "full or remark6.")
         .field("J", &R::J, only_answered(number()), "wy J_y + wu J_u, mean over the scenarios.")
-        .field("J_y", &R::J_y, figure(), "int (y_nl - y)^2 dt.", {.unit = "y^2 time"})
+        .field("J_y", &R::J_y, nullable_number(), "int (y_nl - y)^2 dt.", {.unit = "y^2 time"})
         .field("J_u", &R::J_u, only_answered(number()), "int (u_nl - u)^2 dt.", {.unit = "u^2 time"})
         .field(
             "weights", {},

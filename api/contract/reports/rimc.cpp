@@ -37,18 +37,6 @@ const Description<FullController>& full_controller_contract() {
     return description;
 }
 
-// An object or null, which why_null explains.
-Codec<std::optional<FullController>> full_controller() {
-    const auto inner = answer(full_controller_contract());
-    Codec<std::optional<FullController>> codec;
-    codec.write = [write = inner.write](const auto& value, Writer& out) { value ? write(*value, out) : out.null(); };
-    codec.schema = [schema = inner.schema](SchemaBook& book) {
-        return Json{{"oneOf", {schema(book), Json{{"type", "null"}}}}};
-    };
-    codec.undefined = [](const auto& value) { return !value.has_value(); };
-    return codec;
-}
-
 const Description<RimcReport>& rimc_contract() {
     static const auto description = [] {
         using R = RimcReport;
@@ -65,9 +53,10 @@ const Description<RimcReport>& rimc_contract() {
                    {.unit = "time"})
             .field("stability_limit", &R::stability_limit, figure(), "lambda below which the loop is unstable.",
                    {.unit = "time"})
-            .field("full_controller", &R::full_controller, full_controller(), "Beside the PID.")
+            .field("full_controller", &R::full_controller, or_reason(answer(full_controller_contract())),
+                   "Beside the PID.")
             .field("disturbance_peak_curve", &R::curve, maybe(answer(curve_contract())), "With the option curve.")
-            .why_null(&R::why_null, "Not defined for this design.");
+            .why_null("Not defined for this design.");
         return d;
     }();
     return description;

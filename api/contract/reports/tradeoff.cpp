@@ -25,7 +25,7 @@ const Description<TradeoffFigures>& figures_contract() {
                    "J_rd of the servo/regulation rule without a limit on Ms over this J_rd; 1 is as good as it.")
             .field("Deg", &F::Deg, figure(), "1 - I_perf: what robustness has cost. Negative: better than that rule.")
             .field("Ms", &F::Ms, figure(), "Largest |S|.")
-            .why_null(&F::why_null, kNone);
+            .why_null(kNone);
         return d;
     }();
     return description;

@@ -9,12 +9,9 @@ constexpr const char* kNoFigure = "Infinite or not defined for this loop.";
 
 using Tolerates = Robustness::Tolerates;
 
-std::string reason(const WhyNull& reasons, const char* field) {
-    const auto at = reasons.find(field);
-    return at == reasons.end() ? kNoFigure : at->second;
-}
+void write_why(const Figure& figure, Writer& out) { out.text(figure.why.empty() ? kNoFigure : figure.why); }
 
-void write_figure(const std::optional<double>& value, Writer& out) { value ? out.number(*value) : out.null(); }
+void write_figure(const Figure& figure, Writer& out) { figure ? out.number(*figure) : out.null(); }
 
 // The limits are the margins seen from the plant: a missing one has the margin's reason.
 void write_tolerates(const Robustness& robustness, Writer& out) {
@@ -33,11 +30,11 @@ void write_tolerates(const Robustness& robustness, Writer& out) {
         out.begin_object();
         if (gain) {
             out.key("gain");
-            out.text(reason(robustness.why_null, tolerates.gain_high ? "gain_margin_low" : "gain_margin"));
+            write_why(tolerates.gain_high ? tolerates.gain_low : tolerates.gain_high, out);
         }
         if (dead_time) {
             out.key("extra_dead_time");
-            out.text(reason(robustness.why_null, "delay_margin"));
+            write_why(tolerates.extra_dead_time, out);
         }
         out.end_object();
     }
@@ -77,7 +74,7 @@ const Description<SetpointPerformance>& setpoint_contract() {
             .field("settling_time", &P::settling_time, figure(), "Last time outside 2 % of the step.", {.unit = "time"})
             .field("TV", &P::TV, figure(), "Total variation of u, the jump at 0 included.", {.unit = "u"})
             .field("first_move", &P::first_move, figure(), "u(0+).", {.unit = "u"})
-            .why_null(&P::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;
@@ -89,7 +86,7 @@ const Description<NoisePerformance>& noise_contract() {
         Description<P> d("NoisePerformance", "What measurement noise does to u.");
         d.field("u_std", &P::u_std, figure(), "Standard deviation of u.", {.unit = "u"})
             .field("gain", &P::gain, figure(), "Ratio of the standard deviations of u and the noise.", {.unit = "u/y"})
-            .why_null(&P::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;
@@ -156,7 +153,7 @@ const Description<Robustness>& robustness_contract() {
                 "Which limit holds the design.", {}, [](const R& value) { return value.binding.empty(); })
             .field("tolerates", {}, write_tolerates, tolerates_schema,
                    "Model errors that leave the loop stable, one at a time.")
-            .why_null(&R::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;
@@ -172,7 +169,7 @@ const Description<LoadPerformance>& load_contract() {
             .field("peak", &P::peak, figure(), "Largest deviation, signed.", {.unit = "y"})
             .field("recovery_time", &P::recovery_time, figure(), "Last time outside 2 % of the peak.", {.unit = "time"})
             .field("TV", &P::TV, figure(), "Total variation of u.", {.unit = "u"})
-            .why_null(&P::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;
@@ -274,7 +271,7 @@ const Description<NonlinearFigures>& nonlinear_contract() {
                     return Json{{"type", "string"}};
                 },
                 "What follows, in a sentence.")
-            .why_null(&N::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;
@@ -286,10 +283,10 @@ const Description<IndexErrors>& index_errors_contract() {
         Description<E> d("IndexErrors",
                          "Relative change of each index when every time step, and its quadrature with it, was last "
                          "halved: the error that is left is below it or 1e-6, whichever is larger.");
-        d.field("IAE", &E::IAE, figure(), "Promised: 1e-5 or less.")
-            .field("ISE", &E::ISE, figure(), "Promised: 1e-5 or less.")
-            .field("ITAE", &E::ITAE, figure(), "Promised: 2e-5 or less.")
-            .field("TV", &E::TV, figure(), "Promised: 5e-5 or less.")
+        d.field("IAE", &E::IAE, nullable_number(), "Promised: 1e-5 or less.")
+            .field("ISE", &E::ISE, nullable_number(), "Promised: 1e-5 or less.")
+            .field("ITAE", &E::ITAE, nullable_number(), "Promised: 2e-5 or less.")
+            .field("TV", &E::TV, nullable_number(), "Promised: 5e-5 or less.")
             .why_null("The index has no value, or was checked step by step instead (on a nonlinear plant).");
         return d;
     }();
@@ -304,13 +301,14 @@ const Description<Verification>& verification_contract() {
                 "How exact the indices of the set-point response are.")
             .field("load_errors", &V::load_errors, answer(index_errors_contract()),
                    "How exact the indices of the load response are.")
-            .field("iae_step_halving", &V::iae_step_halving, figure(),
+            .field("iae_step_halving", &V::iae_step_halving, nullable_number(),
                    "Relative change of the load IAE when every time step is halved.")
             .field("load_error_keeps_sign", &V::load_error_keeps_sign, nullable_bool(),
                    "Whether the error after the load step keeps its sign: then its IAE is exactly d Ti/Kp (in "
                    "magnitude), however slow the tail.")
-            .field("ie_identity", &V::ie_identity, figure(), "Relative difference of the integral of y and d Ti/Kp.")
-            .field("ms_grid_difference", &V::ms_grid_difference, figure(),
+            .field("ie_identity", &V::ie_identity, nullable_number(),
+                   "Relative difference of the integral of y and d Ti/Kp.")
+            .field("ms_grid_difference", &V::ms_grid_difference, nullable_number(),
                    "Relative difference of Ms on an independent grid.")
             .field("stability_methods_agree", &V::stability_methods_agree, nullable_bool(),
                    "Whether two independent stability tests agree.")
@@ -333,7 +331,7 @@ const Description<RegionFigures>& region_contract() {
             .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all plants looked at.")
             .field("worst_plant", &R::worst_plant, only_answered(one_of(plant_contract())),
                    "The plant of that Ms, or one whose loop is unstable.")
-            .why_null(&R::why_null, kNoFigure);
+            .why_null(kNoFigure);
         return d;
     }();
     return description;

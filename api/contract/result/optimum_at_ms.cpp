@@ -13,7 +13,7 @@ const Description<OptimumAtMs>& optimum_contract() {
             .field("excess_percent", &O::excess_percent, figure(),
                    "How far this entry's load IAE lies above it; below 0 where its filter or its Mt lets it.",
                    {.unit = "%"})
-            .why_null(&O::why_null, "Not known for this entry.");
+            .why_null("Not known for this entry.");
         return d;
     }();
     return description;

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "engine/figure.h"
 #include "engine/plant/plant_model.h"
 #include "engine/plant/uncertain/plant_region.h"
-#include "engine/warning.h"
 
 namespace tunewright {
 
@@ -21,10 +21,9 @@ struct PlantFamily {
 
 /// How one controller serves every plant of a family.
 struct RegionFigures {
-    double stable_fraction = 0;      ///< of the family, 0 to 1
-    std::optional<double> worst_Ms;  ///< empty where not every plant that was looked at is stable
-    Plant worst_plant;               ///< where Ms is largest, or the loop unstable
-    WhyNull why_null;
+    double stable_fraction = 0;  ///< of the family, 0 to 1
+    Figure worst_Ms;             ///< empty where not every plant that was looked at is stable
+    Plant worst_plant;           ///< where Ms is largest, or the loop unstable
 };
 
 PlantFamily family_of(const Plant& plant);

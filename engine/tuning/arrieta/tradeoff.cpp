@@ -47,19 +47,18 @@ std::string no_static_gain(const LinearPlant& plant) {
     return "The plant's static gain is 0: no controller holds a set point.";
 }
 
-// `value` or why it is empty.
-void put(std::optional<double>& field, const char* name, std::optional<double> value, const std::string& reason,
-         TradeoffFigures& figures) {
-    field = value;
-    if (!field) figures.why_null[name] = reason;
+// What a reference controller reaches on the plant, or why it has no figure.
+Figure reached(const Expected<double>& IAE, const std::string& whose) {
+    return IAE ? Figure(*IAE) : no_figure(whose + IAE.error().message);
 }
 
 }  // namespace
 
 TradeoffFigures no_tradeoff(const std::string& reason) {
     TradeoffFigures figures;
-    for (const char* name : {"J_r", "J_d", "J_rd", "J_r_opt", "J_d_opt", "I_perf", "Deg", "Ms"})
-        figures.why_null[name] = reason;
+    for (Figure* figure : {&figures.J_r, &figures.J_d, &figures.J_rd, &figures.J_r_opt, &figures.J_d_opt,
+                           &figures.I_perf, &figures.Deg, &figures.Ms})
+        figure->why = reason;
     return figures;
 }
 
@@ -73,35 +72,26 @@ Expected<ReferenceControllers> reference_controllers(const Fopdt& model) {
 
 TradeoffScale::TradeoffScale(LinearPlant plant, const Expected<ReferenceControllers>& references)
     : plant_(std::move(plant)) {
-    if (plant_.integrators() == 0)
-        K_ = plant_.low_frequency_gain();
-    else
-        no_gain_ = no_static_gain(plant_);
+    K_ = plant_.integrators() == 0 ? Figure(plant_.low_frequency_gain()) : no_figure(no_static_gain(plant_));
     if (!K_ || !references) {
-        no_J_r_opt_ = no_J_d_opt_ = no_free_ = K_ ? references.error().message : no_gain_;
+        J_r_opt_ = J_d_opt_ = J_rd_free_ = no_figure(K_ ? references.error().message : K_.why);
         return;
     }
-    const auto J_r = iae_with(plant_, references->ideal.servo, {.r = 1});
-    const auto J_d = iae_with(plant_, references->ideal.load, {.d = 1 / *K_});
-    if (J_r)
-        J_r_opt_ = *J_r;
-    else
-        no_J_r_opt_ = "With the model's servo-optimal controller: " + J_r.error().message;
-    if (J_d)
-        J_d_opt_ = *J_d;
-    else
-        no_J_d_opt_ = "With the model's load-optimal controller: " + J_d.error().message;
+    J_r_opt_ =
+        reached(iae_with(plant_, references->ideal.servo, {.r = 1}), "With the model's servo-optimal controller: ");
+    J_d_opt_ =
+        reached(iae_with(plant_, references->ideal.load, {.d = 1 / *K_}), "With the model's load-optimal controller: ");
     if (!references->free) {
-        no_free_ = "The rule of Table 1 without a limit on Ms gives Td < 0 at this L/T: nothing to compare J_rd with.";
+        J_rd_free_ = no_figure(
+            "The rule of Table 1 without a limit on Ms gives Td < 0 at this L/T: nothing to compare J_rd with.");
         return;
     }
-    const TradeoffFigures free = figures(to_parallel(*references->free));
-    J_rd_free_ = free.J_rd;
-    if (!J_rd_free_) no_free_ = "With Table 1's controller without a limit on Ms: " + free.why_null.at("J_rd");
+    J_rd_free_ = figures(to_parallel(*references->free)).J_rd;
+    if (!J_rd_free_) J_rd_free_.why = "With Table 1's controller without a limit on Ms: " + J_rd_free_.why;
 }
 
 TradeoffFigures TradeoffScale::figures(const ParallelPid& controller) const {
-    if (!K_) return no_tradeoff(no_gain_);
+    if (!K_) return no_tradeoff(K_.why);
     const auto loop = usable_loop(plant_, controller);
     if (!loop) return no_tradeoff(loop.error().message);
     const double Ms = find_sensitivity_peak(*loop, make_peak_grid(*loop)).value;
@@ -111,22 +101,23 @@ TradeoffFigures TradeoffScale::figures(const ParallelPid& controller) const {
 
 TradeoffFigures TradeoffScale::placed(std::optional<double> Ms, std::optional<double> J_r, std::optional<double> J_d,
                                       const std::string& no_J) const {
-    if (!K_) return no_tradeoff(no_gain_);
+    if (!K_) return no_tradeoff(K_.why);
     TradeoffFigures f;
-    put(f.Ms, "Ms", Ms && std::isfinite(*Ms) ? Ms : std::nullopt, "|S| has no finite peak.", f);
-    put(f.J_r, "J_r", J_r, no_J, f);
-    put(f.J_d, "J_d", J_d, no_J, f);
-    put(f.J_r_opt, "J_r_opt", J_r_opt_, no_J_r_opt_, f);
-    put(f.J_d_opt, "J_d_opt", J_d_opt_, no_J_d_opt_, f);
-    if (J_r && J_d && J_r_opt_ && J_d_opt_) f.J_rd = std::hypot(*J_r - *J_r_opt_, *J_d - *J_d_opt_);
-    const std::string why_no_J_rd = !(J_r && J_d) ? no_J : !J_r_opt_ ? no_J_r_opt_ : no_J_d_opt_;
-    if (!f.J_rd) f.why_null["J_rd"] = why_no_J_rd;
+    f.Ms = Ms ? finite_or(*Ms, "|S| has no finite peak.") : no_figure("|S| has no finite peak.");
+    f.J_r = Figure(J_r, no_J);
+    f.J_d = Figure(J_d, no_J);
+    f.J_r_opt = J_r_opt_;
+    f.J_d_opt = J_d_opt_;
+    if (J_r && J_d && J_r_opt_ && J_d_opt_)
+        f.J_rd = std::hypot(*J_r - *J_r_opt_, *J_d - *J_d_opt_);
+    else
+        f.J_rd = no_figure(!(J_r && J_d) ? no_J : !J_r_opt_ ? J_r_opt_.why : J_d_opt_.why);
     if (f.J_rd && *f.J_rd > 0 && J_rd_free_) {
         f.I_perf = *J_rd_free_ / *f.J_rd;
         f.Deg = 1 - *f.I_perf;
         return f;
     }
-    f.why_null["I_perf"] = f.why_null["Deg"] = !f.J_rd ? why_no_J_rd : *f.J_rd > 0 ? no_free_ : "J_rd is 0.";
+    f.I_perf = f.Deg = no_figure(!f.J_rd ? f.J_rd.why : *f.J_rd > 0 ? J_rd_free_.why : "J_rd is 0.");
     return f;
 }
 

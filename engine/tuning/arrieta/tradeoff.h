@@ -15,17 +15,15 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
+#include "engine/figure.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/plant.h"
 #include "engine/tuning/arrieta/ideal_point.h"
-#include "engine/warning.h"
 
 namespace tunewright {
 
-/// Empty ones are explained in why_null.
 struct TradeoffFigures {
-    std::optional<double> J_r, J_d, J_rd, J_r_opt, J_d_opt, I_perf, Deg, Ms;
-    WhyNull why_null;
+    Figure J_r, J_d, J_rd, J_r_opt, J_d_opt, I_perf, Deg, Ms;
 };
 
 /// Every figure empty, for one reason.
@@ -54,16 +52,15 @@ public:
                            const std::string& no_J) const;
 
     /// Empty: the plant integrates or its gain is 0, and all figures are empty.
-    std::optional<double> static_gain() const { return K_; }
+    std::optional<double> static_gain() const { return K_.value; }
 
     /// Deg alone, as searches need it; empty where `figures` has none.
     std::optional<double> degradation(const ParallelPid& controller) const;
 
 private:
     LinearPlant plant_;
-    std::optional<double> K_;                                  // static gain
-    std::optional<double> J_r_opt_, J_d_opt_, J_rd_free_;      // of the references on this plant
-    std::string no_gain_, no_J_r_opt_, no_J_d_opt_, no_free_;  // why not
+    Figure K_;                              // static gain
+    Figure J_r_opt_, J_d_opt_, J_rd_free_;  // of the references on this plant
 };
 
 }  // namespace tunewright

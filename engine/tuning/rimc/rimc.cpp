@@ -84,14 +84,13 @@ std::shared_ptr<RimcReport> report_on(const Fopdt& model, double lambda, const R
     auto made = std::make_shared<RimcReport>();
     RimcReport& report = *made;
     report.controller = rimc_controller(model, lambda);
-    report.Ms = branch.Ms(lambda);
-    report.disturbance_peak = branch.disturbance_peak(lambda);
-    report.dead_time_error = branch.dead_time_error(lambda);
-    report.stability_limit = branch.stability_limit();
-    if (report.dead_time_error && options.dead_time_error) report.dead_time_error = options.dead_time_error;
-    for (const char* name : {"Ms", "disturbance_peak", "dead_time_error"})
-        report.why_null[name] = "With this lambda the PID does not stabilise the model that it was designed for.";
-    report.why_null["stability_limit"] = "No lambda that was looked at is at the limit of stability on the model.";
+    const std::string unstable = "With this lambda the PID does not stabilise the model that it was designed for.";
+    report.Ms = Figure(branch.Ms(lambda), unstable);
+    report.disturbance_peak = Figure(branch.disturbance_peak(lambda), unstable);
+    report.dead_time_error = Figure(branch.dead_time_error(lambda), unstable);
+    report.stability_limit =
+        Figure(branch.stability_limit(), "No lambda that was looked at is at the limit of stability on the model.");
+    if (report.dead_time_error && options.dead_time_error) report.dead_time_error = *options.dead_time_error;
     if (options.curve) report.curve = branch.curve(kCurvePoints);
     return made;
 }

@@ -61,7 +61,7 @@ void RimcReport::complete(const ReportContext& context, Evaluation&) {
     else if (plant->pole_excess() > 0)
         full_controller = evaluated(controller, *plant, context.options);
     if (!full_controller)
-        why_null["full_controller"] =
+        full_controller.why =
             "The plant is biproper (as many zeros as poles); the full controller's loop is not computed for such "
             "plants.";
 }

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "engine/controller/imc_controller.h"
+#include "engine/figure.h"
 #include "engine/tuning/method/report.h"
 #include "engine/tuning/rimc/rimc_branch.h"
-#include "engine/warning.h"
 
 namespace tunewright {
 
@@ -17,17 +17,15 @@ struct FullController {
     std::optional<Responses> responses;  ///< with points > 0 and a stable loop
 };
 
-/// Figures of the returned PID, with its filter, on the model that it was designed for; empty ones are explained in
-/// why_null.
+/// Figures of the returned PID, with its filter, on the model that it was designed for.
 struct RimcReport : MethodReport {
     ImcController controller;  ///< Eq. 23; holds lambda
-    std::optional<double> Ms;
-    std::optional<double> disturbance_peak;  ///< largest deviation of y per unit of load, signed
-    std::optional<double> dead_time_error;   ///< the one that was asked for, else the largest up to which Eq. 29 holds
-    std::optional<double> stability_limit;   ///< of lambda
-    std::optional<FullController> full_controller;
+    Figure Ms;
+    Figure disturbance_peak;  ///< largest deviation of y per unit of load, signed
+    Figure dead_time_error;   ///< the one that was asked for, else the largest up to which Eq. 29 holds
+    Figure stability_limit;   ///< of lambda
+    OrReason<FullController> full_controller;
     std::optional<DisturbancePeakCurve> curve;  ///< with the option "curve"
-    WhyNull why_null;
 
     /// Evaluates the full controller on the plant. Actuator limits do not apply to it; everything else of the options
     /// does.

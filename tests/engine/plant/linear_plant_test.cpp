@@ -132,7 +132,7 @@ TEST(LinearPlant, FaultsNameTheirField) {
     EXPECT_EQ(where(TransferFunction{.num = {1, 0, 0}, .den = {1, 1}, .L = 0}), "plant/num");
     EXPECT_EQ(where(TransferFunction{.num = {1}, .den = {0, 0}, .L = 0}), "plant/den");
     EXPECT_EQ(where(TransferFunction{.num = {1}, .den = {}, .L = 0}), "plant/den");
-    EXPECT_EQ(where(Zpk{.K = 1, .zeros = {}, .poles = {{-1, 1}}, .L = 0}), "plant/poles");
+    EXPECT_EQ(where(Zpk{.K = 1, .zeros = {}, .poles = {{-1, 1}}, .L = 0}), "plant/poles/0");
     EXPECT_EQ(where(Zpk{.K = 1, .zeros = {{-1, 0}}, .poles = {}, .L = 0}), "plant/zeros");
     EXPECT_EQ(where(StateSpace{.A = {{-1, 0}}, .B = {1}, .C = {1}, .D = 0, .L = 0}), "plant/A/0");
     EXPECT_EQ(where(StateSpace{.A = {{-1}}, .B = {1}, .C = {0}, .D = 0, .L = 0}), "plant/C");

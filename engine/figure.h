@@ -1,0 +1,41 @@
+// A quantity, or the sentence that says why there is none.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace tunewright {
+
+/// Reads like a std::optional. An empty one that states no reason gets the one that its description has for all.
+template <class T>
+struct OrReason {
+    std::optional<T> value = {};
+    std::string why = {};  ///< of an empty one: a sentence
+
+    OrReason() = default;
+    OrReason(T content) : value(std::move(content)) {}                 // NOLINT(google-explicit-constructor)
+    OrReason(std::optional<T> content) : value(std::move(content)) {}  // NOLINT(google-explicit-constructor)
+    OrReason(std::optional<T> content, std::string reason) : value(std::move(content)) {
+        if (!value) why = std::move(reason);
+    }
+
+    bool has_value() const { return value.has_value(); }
+    explicit operator bool() const { return value.has_value(); }
+    const T& operator*() const { return *value; }
+    const T* operator->() const { return &*value; }
+    T value_or(T otherwise) const { return value.value_or(std::move(otherwise)); }
+    operator const std::optional<T>&() const { return value; }  // NOLINT(google-explicit-constructor)
+};
+
+using Figure = OrReason<double>;
+
+inline Figure no_figure(std::string reason) { return {std::nullopt, std::move(reason)}; }
+
+/// A finite value, or the reason.
+inline Figure finite_or(double value, std::string reason) {
+    return std::isfinite(value) ? Figure(value) : no_figure(std::move(reason));
+}
+
+}  // namespace tunewright

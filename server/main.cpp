@@ -5,12 +5,11 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "server/access/key_command.h"
+#include "server/access/keys.h"
+#include "server/commands.h"
 #include "server/config.h"
 #include "server/health_command.h"
-#include "server/identify_command.h"
 #include "server/serve.h"
-#include "server/tune_command.h"
 
 namespace {
 

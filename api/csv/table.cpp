@@ -5,7 +5,7 @@
 
 #include "api/csv/columns/heading.h"
 #include "api/csv/table_headings.h"
-#include "api/csv/text_lines.h"
+#include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {

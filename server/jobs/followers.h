@@ -9,17 +9,24 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "server/jobs/job_view.h"
+#include "engine/progress.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
 #include "server/jobs/running/held.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {
+
+/// A job as it is this moment: what the store keeps, and the progress of one that runs in this process.
+struct JobView {
+    JobRecord job;
+    std::optional<Progress> progress;  ///< of a job that runs here; that of others is in job.progress
+};
 
 struct JobNews {
     enum class Kind {

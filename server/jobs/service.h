@@ -13,7 +13,6 @@
 #include "engine/progress.h"
 #include "server/jobs/depth.h"
 #include "server/jobs/followers.h"
-#include "server/jobs/job_view.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
 #include "server/jobs/running/claims.h"

@@ -1,14 +1,13 @@
 #include <memory>
 
-#include "api/csv/encoding.h"
+#include "api/csv/text.h"
 #include "api/json/parse.h"
 #include "server/http/body/body_source.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
-#include "server/routes/batch_json.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
-#include "server/routes/parameters.h"
+#include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 

@@ -69,6 +69,17 @@ std::optional<NameMatch> reference_match(const Heading& heading) {
 
 }  // namespace
 
+std::string role_name(Role role) {
+    constexpr std::array<const char*, kRoleCount> kNames = {"t", "u", "y", "r"};
+    return kNames.at(role);
+}
+
+std::string role_meaning(Role role) {
+    constexpr std::array<const char*, kRoleCount> kMeanings = {"time", "the controller output", "the measurement",
+                                                               "the set point"};
+    return kMeanings.at(role);
+}
+
 Heading split_heading(std::string_view text) {
     text = trimmed(text);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {

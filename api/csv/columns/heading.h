@@ -9,8 +9,12 @@
 
 namespace tunewright::api {
 
-/// t, u, y and the set point r, in this order: index of arrays.
+/// The columns of a record. The values are the indices of arrays that hold something for each role.
 enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
+constexpr std::array<Role, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
+
+std::string role_name(Role role);     ///< "t", "u", "y" or "r"
+std::string role_meaning(Role role);  ///< "time", "the controller output", "the measurement" or "the set point"
 
 struct Heading {
     std::string text;                ///< as written, trimmed

@@ -8,10 +8,10 @@
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/reading_check.h"
-#include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
-#include "engine/identification/record/input_limits.h"
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/saturation.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/relay_test/relay_fourier.h"
 #include "engine/identification/two_point.h"
 #include "engine/identification/wording.h"
@@ -187,7 +187,7 @@ Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const Identif
 
 /// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
 /// gain where the test shows it.
-std::vector<FrequencyConstraint> anchors_of(const Search& search, const RecordedCycle& cycle) {
+std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const RecordedCycle& cycle) {
     constexpr double kHeldWithin = 3e-4;
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
@@ -261,15 +261,15 @@ RecordKind kind_of(const CleanRecord& record) {
 }
 
 /// The models of a record, its false readings left out of it.
-Search searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
+ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
     constexpr int kMaxFitted = 100'000;
-    Search search =
+    ModelSearch search =
         search_models(block_means(record, kMaxFitted), model, kind_of(record) == RecordKind::relay, control);
     if (search.choice.index < 0 || control.stop.stop_requested()) return search;
     return without_false_readings(std::move(search), record, model, control);
 }
 
-Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, const IdentifyOptions& options,
+Expected<IdentifiedModel> by_output_error(CleanRecord record, ModelSearch search, const IdentifyOptions& options,
                                           const RunControl& control) {
     constexpr double kMisfit = 0.004;
     const RecordKind kind = kind_of(record);
@@ -284,7 +284,7 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     const auto cycle = kind == RecordKind::relay ? find_cycle(used, noise)
                                                  : Expected<RecordedCycle>(Error{ErrorKind::unsupported, "", ""});
     std::vector<Warning> warnings;
-    const double left = misfit(search.context, search.chosen());
+    const double left = unexplained_share(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
     const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
     if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
@@ -317,7 +317,7 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
 /// What a record is fitted as.
 struct Fitted {
     CleanRecord record;
-    Search search;
+    ModelSearch search;
     std::optional<InputLimits> u_limits;
 };
 
@@ -332,7 +332,7 @@ void try_limits(const Record& record, ModelChoice model, const RunControl& contr
         cut.u_limits = limits;
         Expected<CleanRecord> clean = clean_record(cut);
         if (!clean || control.stop.stop_requested()) continue;
-        Search search = searched(*clean, model, control);
+        ModelSearch search = searched(*clean, model, control);
         if (search.choice.index < 0) continue;
         const auto mean_square = [](const Fit& fit) { return fit.sse / static_cast<double>(fit.residual.size()); };
         if (kMuchLess * mean_square(search.chosen()) > mean_square(fitted.search.chosen())) continue;
@@ -342,7 +342,7 @@ void try_limits(const Record& record, ModelChoice model, const RunControl& contr
 
 Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, const IdentifyOptions& options,
                                      const RunControl& control) {
-    Search search = searched(clean, options.model, control);
+    ModelSearch search = searched(clean, options.model, control);
     Fitted fitted{std::move(clean), std::move(search), record.u_limits};
     try_limits(record, options.model, control, fitted);
     auto model = by_output_error(std::move(fitted.record), std::move(fitted.search), options, control);
@@ -370,7 +370,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                       : *loop ? identify_in_loop(*clean, **loop, options.model, control)
                                               : by_fitting(record, *clean, options, control);
     if (!model) return model;
-    *loop ? tell_loop(**loop, *model) : doubt_open_loop(*clean, *model);
+    *loop ? report_loop(**loop, *model) : doubt_open_loop(*clean, *model);
     add_excited_band(*clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});

@@ -9,7 +9,7 @@ namespace tunewright {
 
 /// Dimensionless, as the record.
 struct TwoPointModel {
-    Shape shape;
+    ModelShape shape;
     double K = 0;
 };
 

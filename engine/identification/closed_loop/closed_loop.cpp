@@ -71,7 +71,7 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double u_range = (std::max(*high, 0.0) - std::min(*low, 0.0)) * r.scale.u_scale;
     return {ErrorKind::not_identifiable, "record",
-            "The record is of a closed loop (" + loop.told.evidence.substr(0, loop.told.evidence.size() - 1) + "), " +
+            "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
                 why + ": the plant cannot be told from the controller. Put the controller in manual and step u by " +
                 number_text(u_range, 2) + " or so, or step the set point by " + number_text(2 * r.scale.y_scale, 2) +
                 " or so (twice what y moves here) and record it as column r."};
@@ -79,7 +79,7 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
 
 /// A search's structures by instrumental variables, with what each leaves.
 struct Refined {
-    Search search;
+    ModelSearch search;
     std::vector<double> mismatch, gain_error;
     std::vector<double> left;  ///< of what the set point did to y, the share that the model leaves
 
@@ -101,7 +101,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     return (columns * solver.solve(values)).squaredNorm();
 }
 
-std::optional<Refined> refined(Search search, const CleanRecord& record, const SetPointPart& part,
+std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const SetPointPart& part,
                                std::stop_token stop) {
     if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
@@ -198,18 +198,18 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     LoopRecord loop;
     if (!r.empty()) {
         loop.part = set_point_part(input_at_samples(record), r);
-        loop.told.used = LoopExcitation::set_point;
+        loop.found.used = LoopExcitation::set_point;
     } else if (feedback && !feedback->outside.empty()) {
         loop.part =
             set_point_part(input_at_samples(record),
                            steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record));
-        loop.told.used = LoopExcitation::outside_moves;
+        loop.found.used = LoopExcitation::outside_moves;
     }
     const bool follows = loop.part && loop.part->share > kFollows && loop.part->strength > kPlain;
     if (!feedback && !follows) return std::optional<LoopRecord>{};
-    loop.told.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
-    if (loop.part) loop.told.share = loop.part->share;
-    if (!loop.part) loop.told.used = LoopExcitation::none;
+    loop.found.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
+    if (loop.part) loop.found.share = loop.part->share;
+    if (!loop.part) loop.found.used = LoopExcitation::none;
     return std::optional<LoopRecord>(std::move(loop));
 }
 
@@ -264,21 +264,21 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once;
     if (!in_doubt) return;
     LoopRecord loop;
-    loop.told.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
-                         " % of its variance, where the model explains " +
-                         number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
-    model.data_quality.closed_loop = loop.told;
+    loop.found.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
+                          " % of its variance, where the model explains " +
+                          number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
+    model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(),
                           {"closed-loop",
-                           "A controller seems to move u in answer to y: " + loop.told.evidence +
+                           "A controller seems to move u in answer to y: " + loop.found.evidence +
                                " Then the model may be the controller's inverse in place of the plant: "
                                "step u in manual, or step the set point and record it as column r.",
                            WarningLevel::bad});
 }
 
-void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {
-    std::string detail = "A controller moves u in answer to y: " + loop.told.evidence;
-    switch (loop.told.used) {
+void report_loop(const LoopRecord& loop, IdentifiedModel& model) {
+    std::string detail = "A controller moves u in answer to y: " + loop.found.evidence;
+    switch (loop.found.used) {
         case LoopExcitation::set_point:
             detail +=
                 " The model rests on what the moves of the set point did alone; disturbances that the controller "
@@ -295,7 +295,7 @@ void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {
                 "plant's.";
             break;
     }
-    model.data_quality.closed_loop = loop.told;
+    model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(), {"closed-loop", detail});
 }
 

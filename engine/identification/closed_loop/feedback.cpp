@@ -206,7 +206,7 @@ NewsOfY news_of_y(const CleanRecord& r, const std::vector<double>& u) {
 
 /// How much of what u's past does not tell of u's moves is told by what both pasts do not tell of y: in an open-loop
 /// test with a clean y and a noisy reading of u, y tells of u, but no news.
-double told_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
+double explained_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
     constexpr int kLags = 6;
     const auto n = static_cast<int>(p.by_u.residual.size()) - kLags;
     Eigen::MatrixXd X(n, kLags + 1);
@@ -272,16 +272,6 @@ std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, con
     return found;
 }
 
-bool unevenly_spaced(const Moves& m) {
-    constexpr double kOff = 0.1;
-    if (!m.every_row) return false;
-    const std::vector<double> spacings(m.dt.begin() + 1, m.dt.end());
-    const double usual = median(spacings);
-    const auto off =
-        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - usual) > kOff * usual; });
-    return 5 * off > static_cast<std::ptrdiff_t>(spacings.size());
-}
-
 /// The record's moves, where they could be a controller's.
 std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<double>& u) {
     if (r.changes() < kMinMoves || r.samples() < 3 * kMinMoves) return std::nullopt;
@@ -329,7 +319,7 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
     const bool at_once = same.ratio() <= past.ratio();
     const double ratio = std::min(same.ratio(), past.ratio());
     const double n = static_cast<double>(p.by_u.residual.size());
-    const double margin = unevenly_spaced(moves) ? kMoreUneven : kMoreThanChance;
+    const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
     if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
     const bool exact = ratio < kExact;
     if (!exact || !moves.every_row) {
@@ -337,7 +327,7 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
         const Errors of_y = compare(y.by_y, y.by_both);
         if (of_y.b < kQuiet) return std::nullopt;
         if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
-        const double told = told_by_news(moves, p, y);
+        const double told = explained_by_news(moves, p, y);
         if (!exact && 1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
     }
     if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;

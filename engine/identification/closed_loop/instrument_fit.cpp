@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {

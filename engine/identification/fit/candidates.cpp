@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "engine/identification/fit/starting_values.h"
-#include "engine/identification/fit/uncertainty.h"
-#include "engine/identification/record/data_quality.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
@@ -22,12 +21,12 @@ constexpr Effort kComparison{60, 1e-7};
 constexpr Effort kOneStep{4, 1e-2};
 constexpr Effort kFinal{60, 1e-11};
 
-Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
+Fit best_from(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& starts, const Effort& effort,
               std::stop_token stop) {
     Fit best;
     best.form = form;
     bool first = true;
-    for (const Shape& start : starts) {
+    for (const ModelShape& start : starts) {
         Fit fit = fit_shape(data, form, start, effort, stop);
         if (first || (fit.determined && (!best.determined || fit.sse < best.sse))) best = std::move(fit);
         first = false;
@@ -35,12 +34,13 @@ Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shap
     return best;
 }
 
-std::vector<Shape> most_promising(const FitContext& context, const ModelForm& form, const std::vector<Shape>& starts) {
+std::vector<ModelShape> most_promising(const FitContext& context, const ModelForm& form,
+                                       const std::vector<ModelShape>& starts) {
     const std::vector<double> sums = sums_of_squares(context.few(), form, starts, context.stop);
     std::vector<int> order(starts.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sums[a] < sums[b]; });
-    std::vector<Shape> best;
+    std::vector<ModelShape> best;
     for (int i : order) {
         if (static_cast<int>(best.size()) < kStartsRefined) best.push_back(starts[i]);
     }
@@ -52,16 +52,16 @@ bool same_form(const ModelForm& a, const ModelForm& b) {
 }
 
 Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
-    std::vector<Shape> nested, extended;
+    std::vector<ModelShape> nested, extended;
     for (const Fit& fit : simpler) {
-        const std::vector<Shape> shapes = extend_shape(fit.shape, form.structure);
+        const std::vector<ModelShape> shapes = extend_shape(fit.shape, form.structure);
         if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
         extended.insert(extended.end(), shapes.begin(), shapes.end());
     }
     // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
-    std::vector<Shape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
+    std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
     if (!extended.empty()) {
-        const std::vector<Shape> best = most_promising(context, form, extended);
+        const std::vector<ModelShape> best = most_promising(context, form, extended);
         starts.insert(starts.end(), best.begin(), best.end());
     }
     Fit fit = best_from(context.few(), form, starts, kCoarse, context.stop);
@@ -99,13 +99,13 @@ bool plausible_rest(const CleanRecord& r, const Fit& fit) {
 /// A relay at work from the first row on: no part of the record is at rest.
 bool starts_in_relay(const FitContext& context) {
     const CleanRecord& r = context.record;
-    return context.relay && context.start == Start::unseen &&
+    return context.relay && context.start == RecordStart::unseen &&
            std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
 
 /// The starts other than rest that the record leaves open for this structure.
 std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
-    if (context.start == Start::at_rest) return {};
+    if (context.start == RecordStart::at_rest) return {};
     std::vector<ModelForm> starts;
     ModelForm form = from_rest.form;
     if (is_integrating(form.structure) && !form.slope && shows_rest(context.record)) {
@@ -114,13 +114,9 @@ std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_r
         form = from_rest.form;
     }
     form.other_level = true;
-    if (context.start == Start::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
+    if (context.start == RecordStart::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
     return starts;
 }
-
-/// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
-/// digits.
-constexpr double kVarianceFloor = 1e-14;
 
 }  // namespace
 
@@ -159,7 +155,7 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
     // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
-    const double lead = disturbances.slope ? kStrong : context.start == Start::moving ? 0 : kPositive;
+    const double lead = disturbances.slope ? kStrong : context.start == RecordStart::moving ? 0 : kPositive;
     for (const ModelForm& start : other_starts(context, best)) {
         Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
@@ -207,13 +203,9 @@ double information_criterion(const Fit& fit, double independent_samples, double 
 }
 
 double fit_percent(const CleanRecord& record, const Fit& fit) {
-    const double mean = std::accumulate(record.y.begin(), record.y.end(), 0.0) / record.samples();
-    double total = 0, left = 0;
-    for (int i = 0; i < record.samples(); ++i) {
-        total += (record.y[i] - mean) * (record.y[i] - mean);
-        left += fit.residual[i] * fit.residual[i];
-    }
-    return 100 * (1 - std::sqrt(left / total));
+    double left = 0;
+    for (const double e : fit.residual) left += e * e;
+    return 100 * (1 - std::sqrt(left / squares_about_mean(record.y)));
 }
 
 bool looks_integrating(const Fit& fit) {
@@ -263,8 +255,8 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
            " independent samples).";
 }
 
-Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
-              double independent_samples) {
+StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
+                       const std::vector<double>& percents, double independent_samples) {
     int best = -1, slowest = -1;  // among all, those without end included
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined) continue;

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <span>
 
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 #include "engine/numerics/statistics.h"
 
@@ -128,10 +128,8 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
 }  // namespace
 
 bool responds(const CleanRecord& r, const Fit& fit) {
-    const double mean = std::accumulate(r.y.begin(), r.y.end(), 0.0) / r.samples();
-    double constant = 0;
-    for (double y : r.y) constant += (y - mean) * (y - mean);
-    const double floor = 1e-14 * r.samples(), ratio = (constant + floor) / (fit.sse + floor);
+    const double floor = kVarianceFloor * r.samples();
+    const double ratio = (squares_about_mean(r.y) + floor) / (fit.sse + floor);
     const double n = effective_samples(fit.residual);
     return ratio > 10 || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + 30;
 }

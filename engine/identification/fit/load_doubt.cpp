@@ -11,7 +11,7 @@ constexpr int kSteps = 16;
 /// What steps of the load do to y, spread evenly over the record; together they make a walk that ends a standard
 /// deviation of 1 from where it began.
 Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
-    Shape plant = fit.shape;
+    ModelShape plant = fit.shape;
     plant.p[0] = 0;
     const bool zero = fit.form.gains() == 2;
     const double spacing = (t[t.size() - 1] - t[0]) / kSteps;

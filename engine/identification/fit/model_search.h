@@ -11,12 +11,12 @@ namespace tunewright {
 
 /// The fits of one record, on all its samples, with what chooses among them; `criteria` and `percents` belong to
 /// `fits`.
-struct Search {
+struct ModelSearch {
     FitContext context;
     std::vector<Fit> fits;
     std::vector<double> criteria, percents;
     double independent = 4;  ///< samples that the best residual is worth
-    Choice choice;
+    StructureChoice choice;
     Disturbances disturbances;
     double part = 1;  ///< of the record, from its start: less than all for an unstable plant's long record
 
@@ -30,15 +30,16 @@ struct Search {
 /// An unstable plant's free run loses its digits over a long record: in relay tests that no model explains, its
 /// beginning is tried.
 /// Stops early when asked to; the caller looks.
-Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
+ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
 /// The same structures once more, held to measured values of the frequency response.
-void constrain(Search& search, std::vector<FrequencyConstraint> anchors, ModelChoice model, const RunControl& control);
+void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
+               const RunControl& control);
 
 /// Whether an unstable model's time constant is about the least that a record can show.
 bool at_shortest_lag(const Fit& fit);
 
 /// Root of the mean square that a fit leaves beyond noise, relative to y's standard deviation.
-double misfit(const FitContext& context, const Fit& fit);
+double unexplained_share(const FitContext& context, const Fit& fit);
 
 }  // namespace tunewright

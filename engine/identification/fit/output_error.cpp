@@ -49,7 +49,7 @@ public:
     }
 
     /// n_rows x linear_size, kept until the next call.
-    const Eigen::MatrixXd& regressors(const Shape& shape) {
+    const Eigen::MatrixXd& regressors(const ModelShape& shape) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
         columns_.setZero();
@@ -72,13 +72,13 @@ public:
         return columns_;
     }
 
-    void project(const Shape& shape, Projection& result) {
+    void project(const ModelShape& shape, Projection& result) {
         orthogonalise(regressors(shape), result);
         result.sse = result.residual.squaredNorm();
     }
 
     /// By normal equations: fast, good to the square root of the precision.
-    double rough_sum(const Shape& shape) {
+    double rough_sum(const ModelShape& shape) {
         const Eigen::MatrixXd& A = regressors(shape);
         const int m = static_cast<int>(A.cols());
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> G(m, m);
@@ -94,7 +94,7 @@ public:
     }
 
     /// d model/d searched, n_rows x searched, kept until the next call.
-    Eigen::MatrixXd& sensitivities(const Shape& shape, const Eigen::VectorXd& linear) {
+    Eigen::MatrixXd& sensitivities(const ModelShape& shape, const Eigen::VectorXd& linear) {
         const std::vector<int> places = form_.searched();
         D_.setZero(rows_, static_cast<Eigen::Index>(places.size()));
         const bool zero = form_.gains() == 2;
@@ -106,7 +106,7 @@ public:
         for (std::size_t k = 1; k < places.size(); ++k) {
             if (places[k] == kLoadTime) continue;
             for (const double sign : {1.0, -1.0}) {
-                Shape moved = shape;
+                ModelShape moved = shape;
                 moved.p[places[k]] += sign * kStep;
                 add_model(static_cast<int>(k), moved, linear, sign / (2 * kStep));
             }
@@ -114,7 +114,7 @@ public:
         return D_;
     }
 
-    Fit finish(const Shape& shape, const Projection& p) const {
+    Fit finish(const ModelShape& shape, const Projection& p) const {
         Fit fit;
         fit.form = form_;
         fit.shape = shape;
@@ -132,12 +132,12 @@ private:
         return {values.data(), static_cast<Eigen::Index>(values.size())};
     }
 
-    void respond(const Shape& shape, int derivatives) {
+    void respond(const ModelShape& shape, int derivatives) {
         static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
         unit_response(record_.t, {record_.v_time, record_.v_level}, shape, derivatives, now_);
         if (form_.other_level) unit_response(record_.t, {kAtOnce, kUnit}, shape, derivatives, level_);
         if (!form_.load) return;
-        Shape undelayed = shape;
+        ModelShape undelayed = shape;
         undelayed.p[0] = 0;
         const double when[] = {shape.load_time()};
         unit_response(record_.t, {when, kUnit}, undelayed, derivatives, load_);
@@ -155,7 +155,7 @@ private:
         if (form_.gains() == 2) target += sign * linear[index + 1] * column(response.x2);
     }
 
-    std::complex<double> anchored(const FrequencyConstraint& anchor, const Shape& shape,
+    std::complex<double> anchored(const FrequencyConstraint& anchor, const ModelShape& shape,
                                   const Eigen::VectorXd& linear) const {
         const std::complex<double> s(0, anchor.omega);
         const std::complex<double> gain = form_.gains() == 2 ? linear[0] + linear[1] * s : linear[0];
@@ -167,7 +167,7 @@ private:
         if (anchor.omega > 0) D_(row + 1, place) += value.imag();
     }
 
-    void add_anchor_slopes(const Shape& shape, const Eigen::VectorXd& linear) {
+    void add_anchor_slopes(const ModelShape& shape, const Eigen::VectorXd& linear) {
         int row = first_anchor_;
         for (const FrequencyConstraint& anchor : anchors_) {
             add_at_anchor(row, 0, anchor, -std::complex<double>(0, anchor.omega) * anchored(anchor, shape, linear));
@@ -176,7 +176,7 @@ private:
     }
 
     /// Adds `weight` times the model at `shape` to column `place`.
-    void add_model(int place, const Shape& shape, const Eigen::VectorXd& linear, double weight) {
+    void add_model(int place, const ModelShape& shape, const Eigen::VectorXd& linear, double weight) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
         auto add = [&](int index, const UnitResponse& response) {
@@ -240,13 +240,13 @@ private:
     UnitResponse now_, level_, load_;
 };
 
-Shape clamped(Shape shape, const ShapeBounds& bounds) {
+ModelShape clamped(ModelShape shape, const ShapeBounds& bounds) {
     for (std::size_t k = 0; k < shape.p.size(); ++k) shape.p[k] = std::clamp(shape.p[k], bounds.low[k], bounds.high[k]);
     return shape;
 }
 
 /// Parameters that a step would push through their bound take no part in it.
-std::vector<int> free_parameters(const Shape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
+std::vector<int> free_parameters(const ModelShape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
                                  const Eigen::VectorXd& descent) {
     std::vector<int> free;
     for (int k = 0; k < descent.size(); ++k) {
@@ -276,18 +276,18 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
 }
 
 /// A full step in a logarithm beyond this leaves the region where the linearisation means anything.
-Shape moved_by(const Shape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
-               const ShapeBounds& bounds) {
+ModelShape moved_by(const ModelShape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
+                    const ShapeBounds& bounds) {
     constexpr double kLongest = 1.5;
     double longest = 0;
     for (int k = 1; k < step.size(); ++k) longest = std::max(longest, std::abs(step[k]));
     const double shrink = longest > kLongest ? kLongest / longest : 1;
-    Shape next = shape;
+    ModelShape next = shape;
     for (int k = 0; k < step.size(); ++k) next.p[places[k]] += shrink * step[k];
     return clamped(next, bounds);
 }
 
-double distance(const Shape& a, const Shape& b) {
+double distance(const ModelShape& a, const ModelShape& b) {
     double largest = 0;
     for (std::size_t k = 0; k < a.p.size(); ++k) largest = std::max(largest, std::abs(a.p[k] - b.p[k]));
     return largest;
@@ -314,14 +314,14 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
     return bounds;
 }
 
-Fit project(const FitData& data, const ModelForm& form, const Shape& shape) {
+Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape) {
     OutputError problem(data, form);
     Projection here;
     problem.project(shape, here);
     return problem.finish(shape, here);
 }
 
-std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<Shape>& shapes,
+std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
                                     std::stop_token stop) {
     OutputError problem(data, form);
     std::vector<double> sums(shapes.size(), std::numeric_limits<double>::max());
@@ -329,13 +329,13 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
     return sums;
 }
 
-Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, const Effort& effort,
+Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
               std::stop_token stop) {
     constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
     OutputError problem(data, form);
     const std::vector<int> places = form.searched();
     const ShapeBounds bounds = shape_bounds(*data.record, form.structure);
-    Shape shape = clamped(start, bounds);
+    ModelShape shape = clamped(start, bounds);
     Projection here, there;
     problem.project(shape, here);
     double lambda = 1e-3;
@@ -350,7 +350,7 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, co
         if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
         bool converged = false, better = false;
         while (!better && !converged && lambda < kLargestDamping) {
-            const Shape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
+            const ModelShape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
             const double moved = distance(next, shape);
             problem.project(next, there);
             converged = !(moved > kSmallestStep);

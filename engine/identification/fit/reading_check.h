@@ -15,6 +15,7 @@ std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& 
 /// The search once more without the doubtful samples. Kept, with them noted in `record`'s cleaning, where the models
 /// found without them miss each of them by a twentieth of y's range and eight times what they miss of the others; a
 /// process that does what the samples show is followed by its model.
-Search without_false_readings(Search search, CleanRecord& record, ModelChoice model, const RunControl& control);
+ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
+                                   const RunControl& control);
 
 }  // namespace tunewright

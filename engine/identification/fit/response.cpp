@@ -188,7 +188,7 @@ private:
 };
 
 template <int kDerivatives, class System>
-void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
+void run(std::span<const double> times, const InputSteps& input, double L, System system, UnitResponse& out) {
     double now = 0, v = 0;
     std::size_t j = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
@@ -208,7 +208,7 @@ void run(std::span<const double> times, const Input& input, double L, System sys
 }
 
 template <int kDerivatives>
-void run(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& out) {
+void run(std::span<const double> t, const InputSteps& input, const ModelShape& shape, UnitResponse& out) {
     switch (shape.structure) {
         case Structure::fopdt: return run<kDerivatives>(t, input, shape.L(), Lag{shape.T()}, out);
         case Structure::unstable: return run<kDerivatives>(t, input, shape.L(), Lag{-shape.T()}, out);
@@ -226,13 +226,13 @@ void run(std::span<const double> t, const Input& input, const Shape& shape, Unit
 
 }  // namespace
 
-double Shape::T() const { return std::exp(p[1]); }
-double Shape::a1() const { return std::exp(p[1]); }
-double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
+double ModelShape::T() const { return std::exp(p[1]); }
+double ModelShape::a1() const { return std::exp(p[1]); }
+double ModelShape::a2() const { return std::exp(2 * p[1] + p[2]); }
 
-double Shape::T3() const { return std::exp(p[kThirdLag]); }
+double ModelShape::T3() const { return std::exp(p[kThirdLag]); }
 
-double Shape::slowest_lag() const {
+double ModelShape::slowest_lag() const {
     if (!has_quadratic(structure)) return T();
     const double ratio = a2() / (a1() * a1());
     const double of_two = ratio < 0.25 ? 0.5 * a1() * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(a2());
@@ -278,7 +278,7 @@ const char* name_of(Structure structure) {
     return "";
 }
 
-std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
+std::complex<double> unit_transfer(const ModelShape& shape, std::complex<double> s) {
     const std::complex<double> delay = std::exp(-shape.L() * s);
     switch (shape.structure) {
         case Structure::fopdt: return delay / (1.0 + shape.T() * s);
@@ -293,7 +293,7 @@ std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
     return 0;
 }
 
-void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+void unit_response(std::span<const double> t, const InputSteps& input, const ModelShape& shape, int derivatives,
                    UnitResponse& response) {
     std::vector<double>* columns[] = {&response.x, &response.x1, &response.x2};
     for (int k = 0; k <= derivatives; ++k) columns[k]->resize(t.size());

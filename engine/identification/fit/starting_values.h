@@ -10,10 +10,10 @@ namespace tunewright {
 /// Shapes worth refining, best first, at most `most`. A coarse scan over the dead time (where local minima live) and
 /// the time constants, gain and offset eliminated at every point; the local minima of the scan are kept. The record
 /// should be thinned out (a few hundred samples).
-std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop);
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop);
 
 /// Shapes of `structure` that equal or nearly equal the fitted simpler one: a nested model is never fitted worse than
 /// the one it contains.
-std::vector<Shape> extend_shape(const Shape& simpler, Structure structure);
+std::vector<ModelShape> extend_shape(const ModelShape& simpler, Structure structure);
 
 }  // namespace tunewright

@@ -7,6 +7,7 @@
 
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
+#include "engine/identification/record/series.h"
 
 namespace tunewright {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Parameters = std::map<std::string, double>;
 
 /// The plant's parameters by symbol, in the record's units. `lags`: name the second order by T1, T2.
-Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shape& shape,
+Parameters parameters_of(const RecordScale& s, const ModelForm& form, const ModelShape& shape,
                          std::span<const double> linear, bool lags) {
     const double K = linear[0] * s.y_scale / s.u_scale;
     Parameters p;
@@ -50,7 +51,7 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shap
     return p;
 }
 
-bool has_two_lags(const Shape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
+bool has_two_lags(const ModelShape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
 
 Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
     auto at = [&](const char* name) { return p.at(name); };
@@ -262,53 +263,7 @@ Eigen::MatrixXd given_deviations(const Fit& fit) {
     return deviations;
 }
 
-/// By Geyer's sum, for up to a few thousand samples.
-double summed_correlation_time(std::span<const double> series) {
-    const int n = static_cast<int>(series.size());
-    const int longest = std::min(n / 2, 2000);
-    auto covariance = [&](int lag) {
-        double sum = 0;
-        for (int i = lag; i < n; ++i) sum += series[i] * series[i - lag];
-        return sum;
-    };
-    const double variance = covariance(0);
-    if (!(variance > 0)) return 1;
-    double time = -1;
-    for (int k = 0; k + 1 <= longest; k += 2) {
-        const double pair = (k == 0 ? variance : covariance(k)) + covariance(k + 1);
-        if (pair <= 0) break;
-        time += 2 * pair / variance;
-    }
-    return std::max(1.0, time);
-}
-
 }  // namespace
-
-double correlation_time(std::span<const double> series) {
-    constexpr std::size_t kMaxSummed = 3000;
-    if (series.size() <= kMaxSummed) return summed_correlation_time(series);
-    // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
-    const std::size_t batch = (series.size() + kMaxSummed - 1) / kMaxSummed;
-    std::vector<double> means;
-    double squares = 0;
-    for (std::size_t i = 0; i + batch <= series.size(); i += batch) {
-        double sum = 0;
-        for (std::size_t k = i; k < i + batch; ++k) {
-            sum += series[k];
-            squares += series[k] * series[k];
-        }
-        means.push_back(sum / static_cast<double>(batch));
-    }
-    double between = 0;
-    for (const double mean : means) between += mean * mean;
-    if (!(squares > 0)) return 1;
-    const double size = static_cast<double>(batch);
-    return std::max(1.0, size * size * between / squares * summed_correlation_time(means));
-}
-
-double effective_samples(std::span<const double> residual) {
-    return std::max(4.0, static_cast<double>(residual.size()) / correlation_time(residual));
-}
 
 Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
     const bool lags = has_two_lags(fit.shape);
@@ -333,7 +288,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         Parameters side[2];
         for (int k = 0; k < 2; ++k) {
             const double sign = k == 0 ? part : -part;
-            Shape shape = fit.shape;
+            ModelShape shape = fit.shape;
             std::vector<double> linear = fit.linear;
             for (int i = 0; i < size; ++i) shape.p[places[i]] += sign * deviations(axis, i);
             for (std::size_t i = 0; i < linear.size(); ++i)

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/saturation.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 #include "engine/numerics/statistics.h"
 
@@ -183,43 +185,6 @@ bool look_swapped(const CleanRecord& r) {
 }
 
 }  // namespace
-
-double noise_std(std::span<const double> y) {
-    // A second difference of white noise has six times its variance; the median of |.| of a normal variable is 0.6745
-    // of its deviation.
-    std::vector<double> differences;
-    double squares = 0;
-    for (std::size_t i = 2; i < y.size(); ++i) {
-        const double d = y[i] - 2 * y[i - 1] + y[i - 2];
-        differences.push_back(std::abs(d));
-        squares += d * d;
-    }
-    if (differences.empty()) return 0;
-    const double by_square = std::sqrt(squares / static_cast<double>(differences.size()) / 6);
-    const double by_median = median(std::move(differences)) / 0.6745 / std::sqrt(6.0);
-    return by_median > 0 ? std::min(by_median, by_square) : by_square;
-}
-
-double quantisation_step(std::span<const double> y) {
-    std::vector<double> values(y.begin(), y.end());
-    std::sort(values.begin(), values.end());
-    const double range = values.back() - values.front();
-    const double same = 1e-9 * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
-    values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
-                 values.end());
-    if (values.size() == 2) return range;
-    if (values.size() < 3) return 0;
-    double smallest = range;
-    for (std::size_t i = 1; i < values.size(); ++i) smallest = std::min(smallest, values[i] - values[i - 1]);
-    double count = 0;
-    for (std::size_t i = 1; i < values.size(); ++i) count += std::round((values[i] - values[i - 1]) / smallest);
-    const double step = range / count;
-    for (double value : values) {
-        const double places = (value - values.front()) / step;
-        if (std::abs(places - std::round(places)) > 0.1) return 0;
-    }
-    return step;
-}
 
 DataQuality describe_record(const CleanRecord& r) {
     DataQuality quality;

@@ -1,7 +1,7 @@
+#include "engine/identification/record/saturation.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "engine/identification/record/data_quality.h"
 
 namespace tunewright {
 namespace {
@@ -66,6 +66,26 @@ std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double gri
         const int count = samples_at(r, level, kSame, noisy, least_speed, window);
         if (count < kMinShare * r.samples() || count < kMinRun) continue;
         found.push_back({r.scale.y_origin + r.scale.y_scale * level, static_cast<double>(count) / r.samples()});
+    }
+    return found;
+}
+
+std::vector<InputLimits> plain_limits(const Record& record) {
+    static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
+                                             {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
+    constexpr double kBeyond = 0.05, kMinOutside = 0.02, kMinInside = 0.1;
+    std::vector<InputLimits> found;
+    for (const InputLimits& limits : kUsual) {
+        const auto [low, high] = limits;
+        const double margin = kBeyond * (high - low);
+        int inside = 0, outside = 0, all = 0;
+        for (const double u : record.u) {
+            if (!std::isfinite(u)) continue;
+            ++all;
+            inside += u > low && u < high ? 1 : 0;
+            outside += u < low - margin || u > high + margin ? 1 : 0;
+        }
+        if (inside > kMinInside * all && outside > kMinOutside * all) found.push_back(limits);
     }
     return found;
 }

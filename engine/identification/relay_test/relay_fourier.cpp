@@ -34,7 +34,7 @@ Complex denominator(Structure structure, double T, Complex s) {
     }
 }
 
-Shape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
+ModelShape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
 
 /// The gain and dead time that meet Eqs. 11 and 12 at this T.
 struct Matched {
@@ -80,7 +80,7 @@ double solve(const std::function<double(double)>& f, double low, double high) {
 
 }  // namespace
 
-double harmonic_misfit(const RecordedCycle& cycle, const Shape& shape, double K) {
+double harmonic_misfit(const RecordedCycle& cycle, const ModelShape& shape, double K) {
     double sum = 0;
     for (const Harmonic& h : cycle.harmonics) {
         const Complex s(0, h.order * cycle.omega());

@@ -12,9 +12,9 @@
 namespace tunewright {
 namespace {
 
-constexpr int kValleysRefined = 2;  // of the scan; twice as many with a zero, whose sign parts them
-constexpr int kStartsRefined = 2;   // from simpler fits
-constexpr int kThinSamples = 160;
+constexpr int kValleysRefined = 2;  ///< minima of the scan; twice as many with a zero, whose sign parts them
+constexpr int kStartsRefined = 2;   ///< starts from simpler fits
+constexpr int kThinSamples = 160;   ///< enough to rank starts
 constexpr Effort kCoarse{15, 1e-4};
 constexpr Effort kComparison{60, 1e-7};
 /// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
@@ -82,15 +82,18 @@ constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
 bool shows_rest(const CleanRecord& r) {
+    constexpr int kEnoughBefore = 4;  // samples that tell a slope from their noise
     const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });
-    return r.changes() > 1 || before >= 4;
+    return r.changes() > 1 || before >= kEnoughBefore;
 }
 
 /// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
 /// lag.
 bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     const double rest = level_of_rest(fit);
-    if (r.changes() == 1) return std::abs(rest) <= (is_integrating(fit.form.structure) ? 0.5 : 2.0);
+    constexpr double kFarthest = 2, kFarthestIntegrating = 0.5;  // in steps of u
+    if (r.changes() == 1)
+        return std::abs(rest) <= (is_integrating(fit.form.structure) ? kFarthestIntegrating : kFarthest);
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double span = std::max(0.0, *high) - std::min(0.0, *low);
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
@@ -135,7 +138,8 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
 
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
     const double n = static_cast<double>(fit.residual.size());
-    return fit.sse > 2 * n * context.noise * context.noise && correlation_time(fit.residual) > 3;
+    constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
+    return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
 }
 
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
@@ -182,9 +186,10 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     // What the errors of the parameters from fewer samples can cost, several times over.
     const double n = context.record.samples();
     const double noise = best / n + kVarianceFloor;
-    const double reach = 100 * noise * n / context.medium.samples();
+    constexpr double kSeveralTimes = 100, kNearBest = 1.02;
+    const double reach = kSeveralTimes * noise * n / context.medium.samples();
     for (Fit& fit : fits) {
-        if (fit.determined && fit.sse < best * 1.02 + reach)
+        if (fit.determined && fit.sse < best * kNearBest + reach)
             fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
     }
 }
@@ -210,10 +215,11 @@ double fit_percent(const CleanRecord& record, const Fit& fit) {
 
 bool looks_integrating(const Fit& fit) {
     const Structure structure = fit.form.structure;
-    if (structure == Structure::fopdt) return fit.shape.T() > 10;
-    if (structure == Structure::unstable) return fit.shape.T() > 2;
-    if (structure == Structure::third && fit.shape.T3() > 10) return true;
-    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > 10;
+    constexpr double kWithoutEnd = 10, kWithoutEndUnstable = 2;  // record lengths
+    if (structure == Structure::fopdt) return fit.shape.T() > kWithoutEnd;
+    if (structure == Structure::unstable) return fit.shape.T() > kWithoutEndUnstable;
+    if (structure == Structure::third && fit.shape.T3() > kWithoutEnd) return true;
+    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > kWithoutEnd;
 }
 
 /// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
@@ -228,7 +234,7 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
-    constexpr double kPoint = 1, kMaxByNoise = 3;
+    constexpr double kPoint = 1, kMaxByNoise = 3;  // per cent of y's deviation
     const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
     return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMaxByNoise, taken_up);
 }
@@ -257,7 +263,7 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
 
 StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
                        const std::vector<double>& percents, double independent_samples) {
-    int best = -1, slowest = -1;  // among all, those without end included
+    int best = -1, slowest = -1;  // `slowest` is the best among all, lags without end included
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined) continue;
         if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;

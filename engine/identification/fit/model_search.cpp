@@ -53,19 +53,20 @@ double independent_samples(const std::vector<Fit>& fits) {
     for (const Fit& fit : fits) {
         if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
     }
-    return best == nullptr ? 4 : effective_samples(best->residual);
+    return best == nullptr ? kMinIndependent : effective_samples(best->residual);
 }
 
 ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
     });
-    ModelSearch search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances};
+    ModelSearch search{std::move(context), std::move(fits), {}, {}, kMinIndependent, {}, disturbances};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
     // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
     constexpr double kMaxNoise = 0.03;
-    const double noise = std::min(search.context.noise, kMaxNoise), least = 0.8 * noise * noise;
+    constexpr double kKnownTo = 0.8;  // of the noise's variance
+    const double noise = std::min(search.context.noise, kMaxNoise), least = kKnownTo * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
@@ -86,7 +87,7 @@ bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
         if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
     }
     if (best == nullptr) return false;
-    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;
+    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;  // noise variances; samples of correlation time
     const double n = static_cast<double>(best->residual.size());
     return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
            correlation_time(best->residual) > kNotWhite;
@@ -157,8 +158,8 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
 /// that leaves a third of the sum of squares or less.
 void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3;
-    constexpr int kMax = 200;
-    // Misses of a few rows here and there are no pattern, and look like noise.
+    constexpr int kMax = 200;  // moves: each costs a fit for each row that it may belong to
+    // Misses of a few rows here and there are no pattern, and look like noise: the fit itself says whether to look.
     constexpr double kWorthLooking = 95;  // per cent
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const std::vector<int> moves = gap_moves(search.context.record);
@@ -218,19 +219,21 @@ void try_drift_for_slow_part(ModelSearch& search, ModelChoice model, const RunCo
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kPositive = 6, kStrong = 10;
+    constexpr double kPositive = 6, kStrong = 10;  // differences of the criterion (Kass and Raftery 1995, section 3.2)
+    constexpr Effort kRough{30, 1e-6};             // enough to compare criteria
+    constexpr double kWhite = 2, kSteps = 3;       // samples of correlation time; steps of y's grid over the record
     const Fit& now = search.chosen();
     if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
     ModelForm form = now.form;
     form.slope = true;
-    const Fit fit = fit_shape(search.context.some(), form, now.shape, {30, 1e-6}, control.stop);
+    const Fit fit = fit_shape(search.context.some(), form, now.shape, kRough, control.stop);
     const Fit plain = project(search.context.some(), now.form, now.shape);
     if (!fit.determined) return;
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
-    const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
+    const double time = correlation_time(fit.residual), n = std::max(kMinIndependent, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < 2 ? kPositive : kStrong)) return;
-    if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
+    if (lead < (time < kWhite ? kPositive : kStrong)) return;
+    if (std::abs(fit.linear[form.slope_index()]) < kSteps * search.context.grid) return;
     if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
     ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
@@ -263,16 +266,20 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
     search = fit_all(search.context, model, best->disturbances, control);
 }
 
-/// Of an unstable model, over so many time constants that its free run is all but arbitrary.
-bool runs_too_long(const Fit& fit) { return fit.form.structure == Structure::unstable && fit.shape.T() < 0.12; }
+/// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
+bool runs_too_long(const Fit& fit) {
+    constexpr double kShortest = 0.12;  // record lengths: e^(1/0.12) is 4000 times an error at the start
+    return fit.form.structure == Structure::unstable && fit.shape.T() < kShortest;
+}
 
 /// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
 void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
     if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
+    constexpr int kMinChanges = 3, kMinBeginning = 40;  // of u, and samples: a period of the relay and some more
     for (const double part : {0.35, 0.12, 0.04}) {
         if (control.stop.stop_requested()) return;
         const CleanRecord beginning = first_part(record, part);
-        if (beginning.changes() < 3 || beginning.samples() < 40) return;
+        if (beginning.changes() < kMinChanges || beginning.samples() < kMinBeginning) return;
         ModelSearch other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
         if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
         if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;
@@ -285,7 +292,7 @@ void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice m
 }  // namespace
 
 bool at_shortest_lag(const Fit& fit) {
-    constexpr double kNear = 0.2;
+    constexpr double kNear = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
     return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
 }
 

@@ -8,10 +8,11 @@
 namespace tunewright {
 namespace {
 
-/// A given y0 is assumed to be an average of many readings: it counts as ten samples.
+/// The square root of 10: a given y0 is assumed to be an average of many readings, and counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
 /// A column whose part outside the others' span is relatively below this is no independent one.
 constexpr double kDependent = 1e-9;
+/// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
 constexpr double kStep = 1e-4;
 
 int anchor_rows(std::span<const FrequencyConstraint> anchors) {
@@ -83,10 +84,11 @@ public:
         const int m = static_cast<int>(A.cols());
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> G(m, m);
         Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> b(m);
+        constexpr double kRidge = 1e-12;  // dependent columns share their coefficient
         for (int k = 0; k < m; ++k) {
             b[k] = A.col(k).dot(y_);
             for (int i = 0; i <= k; ++i) G(i, k) = G(k, i) = A.col(i).dot(A.col(k));
-            G(k, k) *= 1 + 1e-12;
+            G(k, k) *= 1 + kRidge;
         }
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> x = G.ldlt().solve(b);
         const double sum = y_.squaredNorm() - b.dot(x);
@@ -216,7 +218,8 @@ private:
                 }
             }
             const double rest = q.norm();
-            if (!(rest > kDependent * length) || rest < 1e-150) {
+            constexpr double kTiny = 1e-150;  // its square is still above 0
+            if (!(rest > kDependent * length) || rest < kTiny) {
                 if (k == m - 1) result.determined = false;
                 R(k, k) = 1;
                 q.setZero();
@@ -263,7 +266,8 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
     const int m = static_cast<int>(free.size());
     Eigen::MatrixXd A(m, m);
     Eigen::VectorXd b(m);
-    const double floor = 1e-12 * normal.diagonal().maxCoeff();
+    constexpr double kInsensitive = 1e-12;  // a parameter that nothing depends on is damped all the same
+    const double floor = kInsensitive * normal.diagonal().maxCoeff();
     for (int i = 0; i < m; ++i) {
         for (int j = 0; j < m; ++j) A(i, j) = normal(free[i], free[j]);
         A(i, i) += lambda * std::max(A(i, i), floor);
@@ -278,7 +282,7 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
 /// A full step in a logarithm beyond this leaves the region where the linearisation means anything.
 ModelShape moved_by(const ModelShape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
                     const ShapeBounds& bounds) {
-    constexpr double kLongest = 1.5;
+    constexpr double kLongest = 1.5;  // a factor of 4.5
     double longest = 0;
     for (int k = 1; k < step.size(); ++k) longest = std::max(longest, std::abs(step[k]));
     const double shrink = longest > kLongest ? kLongest / longest : 1;
@@ -331,7 +335,8 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
 
 Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
               std::stop_token stop) {
-    constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
+    constexpr double kSmallestStep = 1e-9;    // digits beyond those that any noise leaves
+    constexpr double kLargestDamping = 1e10;  // steps are then rounding
     OutputError problem(data, form);
     const std::vector<int> places = form.searched();
     const ShapeBounds bounds = shape_bounds(*data.record, form.structure);

@@ -81,7 +81,8 @@ public:
     SecondOrder(double a1, double a2) : a1_(a1), a2_(a2), sigma_(a1 / (2 * a2)) {
         const double square = sigma_ * sigma_ - 1 / a2;
         // Nearly equal roots are taken as equal: the relative error of the response is below 1e-12.
-        const double w2 = std::abs(square) < 1e-13 * sigma_ * sigma_ ? 0 : square;
+        constexpr double kEqual = 1e-13;
+        const double w2 = std::abs(square) < kEqual * sigma_ * sigma_ ? 0 : square;
         w_ = std::sqrt(std::abs(w2));
         kind_ = w2 == 0 ? Kind::equal : w2 > 0 ? Kind::real : Kind::complex;
         fast_ = sigma_ + w_;
@@ -111,7 +112,8 @@ private:
         double cosine = 0, sine = 0;
         if (kind_ == Kind::real) {
             const double apart = 2 * w_ * dt, slow = std::exp(-slow_ * dt);
-            const double ratio = apart > 0.3 ? std::exp(-apart) - 1 : std::expm1(-apart);
+            constexpr double kNoCancellation = 0.3;  // e^(-x) - 1 keeps its digits from there on, and is faster
+            const double ratio = apart > kNoCancellation ? std::exp(-apart) - 1 : std::expm1(-apart);
             cosine = slow * (1 + 0.5 * ratio);
             sine = -slow * ratio / (2 * w_);
         } else if (kind_ == Kind::equal) {

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "engine/identification/fit/load_doubt.h"
@@ -51,7 +52,11 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Mode
     return p;
 }
 
-bool has_two_lags(const ModelShape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
+/// Whether the quadratic factor is two real lags; equal lags, which a search meets within rounding, count as two.
+bool has_two_lags(const ModelShape& shape) {
+    constexpr double kRounding = 1e-9;
+    return 4 * std::exp(shape.p[2]) <= 1 + kRounding;
+}
 
 Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
     auto at = [&](const char* name) { return p.at(name); };
@@ -88,7 +93,7 @@ std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
 /// Rounding to a grid is the same error over a whole plateau, unless noise dithers it: q/sqrt 12 for no noise, falling
 /// as the grid's first harmonic does, e^(-2 pi^2 sigma^2/q^2) for noise sigma (Widrow and Kollar 2008, chapter 19).
 double common_rounding(double grid, double noise) {
-    constexpr double kPi = 3.141592653589793;
+    constexpr double kPi = std::numbers::pi;
     const double ratio = noise / grid;
     return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
 }
@@ -98,6 +103,7 @@ double common_rounding(double grid, double noise) {
 /// it counts only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
 std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
                                           const Eigen::MatrixXd& inverse, double variance) {
+    constexpr double kDependent = 1e-9;  // what the other columns leave of a power of time is rounding
     if (is_integrating(fit.form.structure)) return {};
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
     const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
@@ -110,10 +116,12 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
         Eigen::VectorXd alone = q - J.topRows(n) * moved;
         if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
         const double size = alone.squaredNorm();
-        if (!(size > 1e-9 * q.squaredNorm())) break;
+        if (!(size > kDependent * q.squaredNorm())) break;
         const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
         before = alone;
-        if (z2 > 2) changes.emplace_back(-slope * (1 - 2 / z2) * moved);
+        // James and Stein's shrinkage of one normal figure, positive part.
+        constexpr double kByChance = 2;
+        if (z2 > kByChance) changes.emplace_back(-slope * (1 - kByChance / z2) * moved);
     }
     return changes;
 }
@@ -186,6 +194,8 @@ struct ScaledProblem {
 
 /// `variance`: the noise's over a long run.
 ScaledProblem scaled_problem(const Fit& fit, double variance) {
+    constexpr double kNoLength = 1e-12;  // a column of zeros keeps a length to divide by
+    constexpr double kSingular = 1e-13;  // eigenvalue of J'J, whose diagonal is 1, that is rounding
     const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
     ScaledProblem p;
     p.shape = static_cast<int>(fit.form.searched().size());
@@ -196,11 +206,11 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
         p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
         // What no sample shows is still no longer than the record, and no lag is thousands of times another.
         if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
-        p.length[k] = std::max(p.J.col(k).norm(), 1e-12);
+        p.length[k] = std::max(p.J.col(k).norm(), kNoLength);
         p.J.col(k) /= p.length[k];
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.J.transpose() * p.J);
-    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kSingular).cwiseInverse().asDiagonal() *
                 eigen.eigenvectors().transpose();
     return p;
 }
@@ -226,7 +236,8 @@ Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& lef
 Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise,
                               LoadDoubt load) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
-    const bool on_plateaus = common > 0.02 * grid;
+    constexpr double kDithered = 0.02;  // of a step: noise has made the rounding of one sample another's no more
+    const bool on_plateaus = common > kDithered * grid;
     std::vector<double> t(times.begin(), times.end());
     const Fit fit = on_plateaus ? whole : condensed(whole, t);
     const int m = fit.form.parameters();
@@ -271,6 +282,7 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
 }
 
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise, LoadDoubt load) {
+    constexpr double kLargest = 1e150;  // its square, the variance, is still finite
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
     FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
@@ -298,7 +310,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         }
         std::vector<double> half;
         for (const auto& [name, value] : side[0])
-            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -1e150, 1e150));
+            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -kLargest, kLargest));
         for (std::size_t i = 0; i < half.size(); ++i) {
             for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
         }

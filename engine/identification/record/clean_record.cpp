@@ -31,7 +31,8 @@ std::optional<Error> check_columns(const Record& r) {
 
 std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const Cleaning& done) {
     const int n = static_cast<int>(rows.t.size());
-    if (done.backward > 0.1 * static_cast<double>(r.t.size())) {
+    constexpr double kFewBackward = 0.1;  // of the rows: more are several records, or none
+    if (done.backward > kFewBackward * static_cast<double>(r.t.size())) {
         return Error{ErrorKind::invalid_argument, "record/t",
                      "Times run backward in " + std::to_string(done.backward) + " of " + std::to_string(r.t.size()) +
                          " rows (first at " + row_text(done, done.first_backward) +

@@ -6,8 +6,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinRun = 5;
-constexpr double kMinShare = 0.01;
+constexpr int kMinRun = 5;          ///< samples
+constexpr double kMinShare = 0.01;  ///< of the samples
 
 /// Movement of y over the few samples that end at i, per sample.
 double speed(const CleanRecord& r, int i, int samples) {
@@ -32,7 +32,7 @@ bool alternates(const CleanRecord& r) {
         turns += d * before < 0 ? 1 : 0;
         before = d;
     }
-    constexpr double kTurning = 0.3;
+    constexpr double kTurning = 0.3;  // of the moves: white noise turns in two thirds
     return turns > kTurning * moves;
 }
 
@@ -56,7 +56,10 @@ int samples_at(const CleanRecord& r, double level, double same, bool noisy, doub
 }  // namespace
 
 std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
-    constexpr double kSame = 1e-9, kCoarse = 1.0 / 30, kNoisy = 2, kMinNoise = 1e-3, kPart = 1.0 / 6;
+    constexpr double kSame = 1e-9;                  // of y's range: rounding in binary
+    constexpr double kCoarse = 1.0 / 30;            // of y's range: on so few steps every y stands still
+    constexpr double kNoisy = 2, kMinNoise = 1e-3;  // steps of the grid; of y's range
+    constexpr double kPart = 1.0 / 6;               // of y's fastest movement
     if (grid > kCoarse) return {};
     const int window = std::clamp(r.samples() / 200, 3, 50);
     const double least_speed = kPart * fastest(r, window);

@@ -69,7 +69,7 @@ private:
         return text.substr(0, text.find_first_of("\r\n"));
     }
 
-    // Times of a file that has none: from the spacing that is given, or that a column tells.
+    // Times of a file that has none: from the spacing that is given, or that a column holds.
     double spacing() const {
         if (options_.dt || !columns_.spacing) return options_.dt.value_or(1);
         const std::size_t column = *columns_.spacing;

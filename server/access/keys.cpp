@@ -43,7 +43,7 @@ KeyLine parse_line(std::string_view line, std::size_t number) {
     return {std::string(name), std::string(digest)};
 }
 
-/// Looks at every character, whatever it finds, so that the time tells nothing about where two digests differ.
+/// Looks at every character, whatever it finds, so that the time does not show where two digests differ.
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;
     unsigned char difference = 0;

@@ -55,7 +55,7 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
 
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------
 
-/// The form that the media type names; nothing and no refusal where the body's first bytes shall tell.
+/// The form that the media type names; nothing and no refusal where the body's first bytes show it.
 std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
     const std::string type = http::media_type(request);
     if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")

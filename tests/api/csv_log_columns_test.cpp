@@ -113,7 +113,8 @@ TEST(Csv, ASetPointIsChosenLikeAnyColumn) {
 TEST(Csv, InputAndOutputWithoutASetPointAreToldByWhatTheyDo) {
     EXPECT_THAT(
         told("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
-        HasSubstr("\"input\" and \"output\" may be the plant's or the controller's, and the numbers do not tell."));
+        HasSubstr(
+            "\"input\" and \"output\" may be the plant's or the controller's, and the numbers do not show which."));
 }
 
 TEST(Csv, WordsBesideNumbersAreNoLevels) {
@@ -139,7 +140,7 @@ TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
         return std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n20,1,3\n40,1,3\n", options)).notes;
     };
     EXPECT_THAT(notes({}),
-                Contains(HasSubstr("The file tells no unit of time: the times are read as s, 20 or more apart.")));
+                Contains(HasSubstr("The file names no unit of time: the times are read as s, 20 or more apart.")));
     CsvOptions told;
     told.time_unit_given = true;
     EXPECT_THAT(notes(told), IsEmpty());

@@ -205,7 +205,7 @@ private:
         }
     }
 
-    // The set point is told where it is in the file; nothing depends on it that could be refused.
+    // The set point is reported where the file has one; nothing is refused without it.
     void find_reference() {
         if (found_.at[kReferenceRole]) return;
         NameFits r = fits(kReferenceRole);
@@ -235,7 +235,7 @@ private:
             take(kInputRole, commands.front(), " (no other column is; it may be the set point of an inner loop)");
     }
 
-    // A column of the very name that holds no number: reading it tells which line is wrong.
+    // A column of the very name that holds no number: reading it shows which line is wrong.
     void by_very_name(Role role) {
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
             if (role == kTimeRole && profiles_[i].numbers > 0) continue;

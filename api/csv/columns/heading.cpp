@@ -216,11 +216,11 @@ bool is_controller_term(const Heading& heading, bool with_letters) {
 
 std::string stem(const Heading& heading) {
     std::vector<std::string> parts = heading.words;
-    const auto tells = [](const std::string& word) {
+    const auto names_role = [](const std::string& word) {
         return word_place(word, kInputRole) || word_place(word, kOutputRole) || place(word, kReferenceRole) ||
                word == "cv" || word == "val";
     };
-    while (parts.size() > 1 && tells(parts.back())) parts.pop_back();
+    while (parts.size() > 1 && names_role(parts.back())) parts.pop_back();
     if (parts.size() == heading.words.size()) return {};
     std::string out;
     for (const std::string& part : parts) out += part + " ";

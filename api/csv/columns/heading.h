@@ -58,7 +58,7 @@ bool is_state(const Heading& heading);
 bool is_controller_term(const Heading& heading, bool with_letters);
 bool is_term_letter(const Heading& heading);
 
-/// What the heading says before the word that tells the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
+/// What the heading says before the word that names the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
 std::string stem(const Heading& heading);
 
 /// "heater 1" and "Temperature 1": the number behind the last word; "" for none.

@@ -70,13 +70,12 @@ std::string evidence_of(const std::optional<Feedback>& feedback, const SetPointP
 Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::string& why) {
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double u_range = (std::max(*high, 0.0) - std::min(*low, 0.0)) * r.scale.u_scale;
-    return {
-        ErrorKind::not_identifiable, "record",
-        "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
-            why +
-            ": the record does not tell the plant from the controller. Put the controller in manual and step u by " +
-            number_text(u_range, 2) + " or so, or step the set point by " + number_text(2 * r.scale.y_scale, 2) +
-            " or so (twice what y moves here) and record it as column r."};
+    return {ErrorKind::not_identifiable, "record",
+            "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
+                why +
+                ": the plant cannot be distinguished from the controller. Put the controller in manual and step u by " +
+                number_text(u_range, 2) + " or so, or step the set point by " + number_text(2 * r.scale.y_scale, 2) +
+                " or so (twice what y moves here) and record it as column r."};
 }
 
 /// A search's structures by instrumental variables, with what each leaves.

@@ -1,4 +1,4 @@
-// What the process is told at its start.
+// The configuration of the process, as its options and variables give it at the start.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ struct Config {
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
     int max_attempts = 10;
     double lease_s = 10;
-    double retention_s = 7 * 86400;  ///< 0: for ever
+    double retention_s = 7 * 86400;  ///< 0: without limit
     double job_timeout_s = 60;
     double max_timeout_s = 3600;
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kWaitingLines = 8192;
 bool as_json = false;
 
-/// Probes come every few seconds for ever; they are told only to who asks for everything.
+/// Probes come every few seconds; only the level debug shows them.
 spdlog::level::level_enum level_of(const http::Exchange& exchange) {
     const bool probe = exchange.route == "/healthz" || exchange.route == "/readyz" || exchange.route == "/metrics";
     if (exchange.status >= 500) return spdlog::level::warn;

@@ -14,12 +14,14 @@ struct JobEnd;
 
 /// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
-/// Writes what is waiting.
+/// Writes the lines that still wait, and ends the thread.
 void stop_log();
 
 void log_info(std::string_view message);
 void log_error(std::string_view message);
+/// One answered request.
 void log_exchange(const http::Exchange& exchange);
+/// One job that a worker has ended, after so many seconds of computing.
 void log_job(const JobEnd& job, double seconds);
 
 }  // namespace tunewright::server

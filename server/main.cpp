@@ -1,4 +1,4 @@
-// The command line of the one binary; everything else is behind serve() and tune().
+// The command line of the one binary: its options and commands, each of which is a function elsewhere.
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <exception>
@@ -6,12 +6,11 @@
 #include <stdexcept>
 
 #include "api/service.h"
-#include "server/access/key_command.h"
+#include "server/access/keys.h"
+#include "server/commands.h"
 #include "server/config.h"
 #include "server/health_command.h"
-#include "server/identify_command.h"
 #include "server/serve.h"
-#include "server/tune_command.h"
 
 namespace {
 
@@ -34,7 +33,7 @@ void flag(CLI::App& app, const std::string& name, bool& value, const std::string
     app.add_flag("--" + name, value, help)->envname(variable_of(name));
 }
 
-/// What is typed with a unit and kept as a number; `shown` is the default as one would type it.
+/// An option that is typed with a unit and kept as a number; `shown` is the default as one would type it.
 template <class T>
 void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const std::string&), const std::string& shown,
               std::pair<double, double> range, const std::string& help) {
@@ -70,7 +69,7 @@ void add_process_options(CLI::App& app, Config& config) {
         ->check(CLI::Range(1, 1024));
     option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
     duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
-             "What running jobs get when the service is stopped");
+             "Time that running jobs get when the service is stopped");
     option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
     option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
 }
@@ -82,12 +81,12 @@ void add_job_options(CLI::App& app, Config& config) {
     option(app, "entry-limit", config.entry_limit, "Entries of batches that may wait; more are answered 429")
         ->check(CLI::Range(1, 100'000'000))
         ->capture_default_str();
-    option(app, "max-attempts", config.max_attempts, "A job that was interrupted so often fails")
+    option(app, "max-attempts", config.max_attempts, "Interruptions after which a job fails")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
-             "Without a sign of life for so long, a job is taken by another worker");
-    duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: for ever");
+             "Time without a sign of life after which another worker takes a job");
+    duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: without limit");
     duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
              "Time for a job that does not say timeout_s");
     duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
@@ -95,17 +94,17 @@ void add_job_options(CLI::App& app, Config& config) {
 }
 
 void add_port_options(CLI::App& app, Config& config) {
-    size(app, "max-body", config.max_body, "8MiB", "Most of one request's body; longer ones are answered 413");
-    size(app, "max-batch-body", config.max_batch_body, "256MiB", "Most of one batch's body");
+    size(app, "max-body", config.max_body, "8MiB", "Largest body of one request; larger ones are answered 413");
+    size(app, "max-batch-body", config.max_batch_body, "256MiB", "Largest body of one batch");
     option(app, "auth", config.auth, "none or keys: what a call below /v1 must show")->capture_default_str();
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
     flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
-    option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: as many as he likes")
+    option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
     option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
         ->delimiter(',');
-    flag(app, "behind-proxy", config.behind_proxy, "Clients are told apart by the last address of X-Forwarded-For");
+    flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");
 }
 
 void add_serve_options(CLI::App& app, Config& config) {
@@ -137,9 +136,10 @@ int main(int argc, char** argv) {
     identify_app->add_option("file", identifying.file, "CSV, or {record, identify} as JSON; - reads standard input")
         ->required();
     identify_app->add_option("--t", identifying.question.t, "CSV: heading or number of the time column");
-    identify_app->add_option("--u", identifying.question.u, "CSV: of the controller output");
-    identify_app->add_option("--y", identifying.question.y, "CSV: of the measurement");
-    identify_app->add_option("--r", identifying.question.r, "CSV: of the set point, where there is one");
+    identify_app->add_option("--u", identifying.question.u, "CSV: heading or number of the controller output");
+    identify_app->add_option("--y", identifying.question.y, "CSV: heading or number of the measurement");
+    identify_app->add_option("--r", identifying.question.r,
+                             "CSV: heading or number of the set point, where there is one");
     identify_app->add_option("--dt", identifying.question.dt, "CSV without times: their spacing");
     identify_app->add_option("--time-unit", identifying.question.time_unit,
                              "CSV: unit of every time of the answer; s if not given");
@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
     KeyCommand naming;
     CLI::App* methods_app = app.add_subcommand("methods", "The tuning methods with their options, as JSON");
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
-    key_app->add_option("name", naming.name, "Whose it is; jobs belong to that name")->required();
+    key_app->add_option("name", naming.name, "Name of the owner, to whom jobs belong")->required();
     key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
 
     std::string asked;

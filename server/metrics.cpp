@@ -19,46 +19,38 @@ using prometheus::Counter;
 using prometheus::Gauge;
 using prometheus::Histogram;
 
+namespace {
+
+template <class Builder>
+auto& family(Builder builder, prometheus::Registry& registry, const char* name, const char* help) {
+    return builder.Name(name).Help(help).Register(registry);
+}
+
+}  // namespace
+
 struct Metrics::Families {
     prometheus::Registry registry;
-    prometheus::Family<Counter>& requests = BuildCounter()
-                                                .Name("tunewright_http_requests_total")
-                                                .Help("Answered requests by route, method and status")
-                                                .Register(registry);
-    prometheus::Family<Histogram>& latency = BuildHistogram()
-                                                 .Name("tunewright_http_request_duration_seconds")
-                                                 .Help("Time from a whole request to its answer, by route")
-                                                 .Register(registry);
-    prometheus::Family<Counter>& jobs = BuildCounter()
-                                            .Name("tunewright_jobs_ended_total")
-                                            .Help("Jobs that workers ended, by status")
-                                            .Register(registry);
-    prometheus::Family<Histogram>& job_time_family = BuildHistogram()
-                                                         .Name("tunewright_job_duration_seconds")
-                                                         .Help("Computing time of jobs that workers ended, by method")
-                                                         .Register(registry);
-    prometheus::Family<Histogram>& store_time = BuildHistogram()
-                                                    .Name("tunewright_store_duration_seconds")
-                                                    .Help("Time from a call of the store to its answer, by operation")
-                                                    .Register(registry);
-    prometheus::Family<Counter>& store_faults = BuildCounter()
-                                                    .Name("tunewright_store_faults_total")
-                                                    .Help("Calls that the store could not do, by operation")
-                                                    .Register(registry);
-    Counter& dropped = BuildCounter()
-                           .Name("tunewright_jobs_dropped_total")
-                           .Help("Results that came too late: the job's lease had gone to another process")
-                           .Register(registry)
+    prometheus::Family<Counter>& requests = family(BuildCounter(), registry, "tunewright_http_requests_total",
+                                                   "Answered requests by route, method and status");
+    prometheus::Family<Histogram>& latency =
+        family(BuildHistogram(), registry, "tunewright_http_request_duration_seconds",
+               "Time from a whole request to its answer, by route");
+    prometheus::Family<Counter>& jobs =
+        family(BuildCounter(), registry, "tunewright_jobs_ended_total", "Jobs that workers ended, by status");
+    prometheus::Family<Histogram>& job_time_family =
+        family(BuildHistogram(), registry, "tunewright_job_duration_seconds",
+               "Computing time of jobs that workers ended, by method");
+    prometheus::Family<Histogram>& store_time = family(BuildHistogram(), registry, "tunewright_store_duration_seconds",
+                                                       "Time from a call of the store to its answer, by operation");
+    prometheus::Family<Counter>& store_faults = family(BuildCounter(), registry, "tunewright_store_faults_total",
+                                                       "Calls that the store could not do, by operation");
+    Counter& dropped = family(BuildCounter(), registry, "tunewright_jobs_dropped_total",
+                              "Results that came too late: the job's lease had gone to another process")
                            .Add({});
-    Gauge& queued = BuildGauge()
-                        .Name("tunewright_jobs_queued")
-                        .Help("Accepted jobs that no worker has yet")
-                        .Register(registry)
-                        .Add({});
-    Gauge& running =
-        BuildGauge().Name("tunewright_jobs_running").Help("Jobs that workers have").Register(registry).Add({});
-    Gauge& workers =
-        BuildGauge().Name("tunewright_workers").Help("Threads that compute jobs").Register(registry).Add({});
+    Gauge& queued =
+        family(BuildGauge(), registry, "tunewright_jobs_queued", "Accepted jobs that no worker has yet").Add({});
+    Gauge& running = family(BuildGauge(), registry, "tunewright_jobs_running", "Jobs that workers have").Add({});
+    Gauge& workers = family(BuildGauge(), registry, "tunewright_workers", "Threads that compute jobs").Add({});
 
     // The families look a metric up by building a map of labels; for each request that is too slow.
     std::mutex mutex;

@@ -7,8 +7,8 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kDeepest = 1000;                       // brackets that are told apart; a request may have 32
-constexpr std::size_t kMaxNameLength = 200;                  // of the batch, in bytes
+constexpr std::size_t kDeepest = 1000;       // nested brackets that are distinguished; a request may have 32
+constexpr std::size_t kMaxNameLength = 200;  // of the batch, in bytes
 constexpr std::size_t kMaxQuoteLength = 6 * kMaxNameLength;  // as escapes
 constexpr std::string_view kCure = "Send {\"jobs\": [request, request, ...]}.";
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/csv/encoding.h"
+#include "api/csv/text.h"
 
 namespace tunewright::api {
 namespace {

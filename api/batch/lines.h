@@ -20,7 +20,7 @@ public:
 
     Lines(Ends ends, std::size_t longest) : ends_(ends), longest_(longest) {}
 
-    /// The next bytes; `take` gets each line that ends in them. A byte order mark at the start tells UTF-16, and is no
+    /// The next bytes; `take` gets each line that ends in them. A byte order mark at the start means UTF-16, and is no
     /// part of the first line; lines that are not UTF-8 are taken for Windows-1252 (encoding.h) with Ends::any.
     bool feed(std::string_view bytes, const Take& take);
     /// The line that no line end follows, if there is one.
@@ -36,7 +36,7 @@ private:
     Ends ends_;
     std::size_t longest_;
     Code code_ = Code::unknown;
-    std::string head_;  ///< the first bytes, until they tell the encoding
+    std::string head_;  ///< the first bytes, until they show the encoding
     std::string line_;
     std::size_t bytes_ = 0;
     std::string half_;  ///< of a UTF-16 unit

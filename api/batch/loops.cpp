@@ -115,13 +115,13 @@ std::optional<Problem> Loops::check_options() const {
     const auto tried = prepare_entry(request("", {1, 1, 1}));
     const auto* problem = std::get_if<Problem>(&tried);
     if (problem == nullptr) return std::nullopt;
-    Problem told = *problem;
-    told.title = kTitle;
+    Problem named = *problem;
+    named.title = kTitle;
     constexpr std::string_view kPrefix = "/tune/0";
-    for (FieldError& error : told.errors) {
+    for (FieldError& error : named.errors) {
         if (error.pointer.starts_with(kPrefix)) error.pointer.erase(0, kPrefix.size());
     }
-    return told;
+    return named;
 }
 
 std::string Loops::request(std::string_view name, const std::array<double, 3>& plant) const {

@@ -25,7 +25,7 @@ public:
     /// What is wrong with the options, whatever the loops: 422, with the parameters' names as pointers.
     std::optional<Problem> check_options() const;
 
-    /// The next line as UTF-8, its line end apart. Requests are appended once the file's first lines have told what .
+    /// The next line as UTF-8, its line end apart. Requests are appended once the file's first lines have shown what .
     /// and , mean in its numbers. 422 where the headings leave open which column is which.
     std::optional<Problem> feed(long number, std::string_view line, std::vector<RawEntry>& entries);
     void finish(std::vector<RawEntry>& entries);

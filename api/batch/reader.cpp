@@ -223,7 +223,7 @@ std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
     return std::nullopt;
 }
 
-// What is wrong first is told, however the bytes were cut.
+// The first fault is reported, however the bytes were cut.
 std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                           std::vector<BatchEntry>& entries) {
     if (auto problem = refuse_options()) return problem;

@@ -16,7 +16,7 @@ enum class BatchForm { json, ndjson, csv };
 
 /// What a call says beside its body.
 struct BatchQuestion {
-    std::optional<BatchForm> form;  ///< nothing: its first bytes tell
+    std::optional<BatchForm> form;  ///< nothing: its first bytes show it
     std::string name;               ///< of the batch; "" if none
     LoopOptions options;            ///< for a CSV of loops; the other forms know none
     JobLimits limits;

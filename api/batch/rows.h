@@ -14,10 +14,10 @@ struct ResultRow {
     std::string_view result, error;     ///< JSON; "" if none
 };
 
-/// {index, id, name, status, result or error} and \n.
+/// One line: {index, id, name, status, result or error} and \n. A job without a name has null.
 void append_ndjson(const ResultRow& row, std::string& out);
 
-/// The line of headings.
+/// The line of the CSV's headings, with its end of line.
 std::string csv_headings();
 
 /// One line for each controller of the result; one where there is none: an error, or a job that has not ended. What

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "api/csv/cell.h"
-#include "api/csv/text_lines.h"
+#include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {

@@ -14,7 +14,7 @@ struct Pair {
 };
 
 /// The pairs of one line, in its order; a time in front of them, in brackets or not, or behind them is "time". What
-/// printers write is told in words: of "T:200.1 /200.0 @:64" "T.temp", "T.target" and "T.pwm". At most 200.
+/// printers write gets words: "T:200.1 /200.0 @:64" becomes "T.temp", "T.target" and "T.pwm". At most 200.
 void split_pairs(std::string_view line, std::vector<Pair>& out);
 
 /// The keys of a log of pairs, in the order in which they come; empty where the lines are no such log, and a table may

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "api/csv/columns/columns.h"
-#include "api/csv/encoding.h"
+#include "api/csv/text.h"
 #include "api/csv/time_column.h"
 #include "api/csv/time_stamp.h"
 #include "engine/number_text.h"
@@ -69,7 +69,7 @@ private:
         return text.substr(0, text.find_first_of("\r\n"));
     }
 
-    // Times of a file that has none: from the spacing that is given, or that a column tells.
+    // Times of a file that has none: from the spacing that is given, or that a column holds.
     double spacing() const {
         if (options_.dt || !columns_.spacing) return options_.dt.value_or(1);
         const std::size_t column = *columns_.spacing;
@@ -236,7 +236,7 @@ private:
         if (unit.empty() && !layout_.below.empty()) unit = std::string(cell(layout_.below.front(), column));
         if (unit.empty()) unit = profiles_[column].suffix;
         if (unit.empty() || unit == given) return;
-        record_.notes.push_back(std::string(role_name(role)) + " is in " + quoted(unit) + " by the file" +
+        record_.notes.push_back(role_name(role) + " is in " + quoted(unit) + " by the file" +
                                 (given.empty() ? "."
                                                : ", and units." + std::string(name) + " is " + quoted(given) +
                                                      ": the numbers are used as they are."));

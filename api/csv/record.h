@@ -40,7 +40,7 @@ struct CsvFault {
     std::string message;
 };
 
-/// `bytes` in any usual encoding (encoding.h), with any usual separator and sign of decimals (table.h, cell.h), times
+/// `bytes` in any usual encoding (text.h), with any usual separator and sign of decimals (table.h, cell.h), times
 /// as numbers or stamps (time_stamp.h), columns as chosen, or found (columns.h). Times become `time_unit`: stamps
 /// since the first one; numbers from the unit of their heading. Times that count milliseconds or less since 1970, and
 /// spreadsheets' days under a heading such as "Date", are known by their size. A clock set back by an hour, and one

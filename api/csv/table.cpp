@@ -5,7 +5,7 @@
 
 #include "api/csv/columns/heading.h"
 #include "api/csv/table_headings.h"
-#include "api/csv/text_lines.h"
+#include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
@@ -108,8 +108,8 @@ CsvLayout pairs_layout(std::string_view text) {
     return layout;
 }
 
-// The separator that a first line such as sep=; tells, which is then taken off.
-std::optional<char> told_separator(std::vector<Head>& heads) {
+// The separator that a first line such as sep=; names; the line is then taken off.
+std::optional<char> named_separator(std::vector<Head>& heads) {
     constexpr std::string_view kToldPrefix = "sep=";
     if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) != 0) return std::nullopt;
     const std::string_view line = heads.front().content;
@@ -145,9 +145,9 @@ void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::
 CsvLayout table_layout(std::string_view text) {
     CsvLayout layout;
     std::vector<Head> heads = first_lines(text);
-    const auto told = told_separator(heads);
+    const auto named = named_separator(heads);
     drop_labview_head(heads);
-    layout.separator = told ? *told : find_separator(heads);
+    layout.separator = named ? *named : find_separator(heads);
 
     std::vector<CsvLine> lines;
     for (const Head& head : heads) {

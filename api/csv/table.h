@@ -39,7 +39,7 @@ struct CsvLayout {
     std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
 };
 
-/// Separators , ; tab | and blanks, found by the first 200 lines, or told by a first line such as sep=;. Blank lines,
+/// Separators , ; tab | and blanks, found by the first 200 lines, or named by a first line such as sep=;. Blank lines,
 /// comments (#, % and //) and what a logger writes above the headings are skipped.
 /// The headings are a line of text as wide as the data, in the lines right above it: the one that names most roles,
 /// else the first; a comment of that width is a heading line too. Of a log of pairs (pairs.h) they are its names.

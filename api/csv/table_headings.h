@@ -36,7 +36,7 @@ void find_headings(const std::vector<CsvLine>& above, const std::vector<CsvLine>
 /// part the words of any sentence too, so one of them must name a role.
 std::optional<CsvLine> commented_headings(int number, std::string_view line, CsvLayout& layout);
 
-/// Rows that end where their last value is: the headings and the longest rows tell how many columns there are.
+/// Rows that end where their last value is: the headings and the longest rows show how many columns there are.
 void widen_to_headings(const std::vector<CsvLine>& lines, CsvLayout& layout);
 
 }  // namespace tunewright::api

@@ -138,12 +138,12 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
                      (options.time_unit_given ? "." : "; set units.time to keep them."));
 }
 
-// A number of milliseconds is read as seconds where nobody tells its unit; a usual spacing of seconds is no reason to
+// A number of milliseconds is read as seconds where nothing names its unit; a usual spacing of seconds is no reason to
 // ask.
 void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
     constexpr double kUsual = 5;
     if (profile.changes < 1 || !profile.rises || profile.least_step < kUsual) return;
-    notes_.push_back("The file tells no unit of time: the times are read as " + options.time_unit + ", " +
+    notes_.push_back("The file names no unit of time: the times are read as " + options.time_unit + ", " +
                      tunewright::text(profile.least_step) +
                      " or more apart. Name the column time_ms, or set units.time, if they are others.");
 }

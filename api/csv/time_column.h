@@ -15,7 +15,7 @@ namespace tunewright::api {
 class TimeColumn {
 public:
     /// Looks through the file for what a single cell leaves open: stamps or numbers, unit, day or month first. Adds
-    /// its faults; notes tell what was assumed.
+    /// its faults; notes say what was assumed.
     TimeColumn(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults);
 

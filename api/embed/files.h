@@ -1,6 +1,9 @@
 // Files of api/ that are compiled in.
 #pragma once
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,10 +14,15 @@ struct EmbeddedFile {
     std::string_view text;
 };
 
-/// In the order of their names.
+/// All of them, in the order of their names. The build writes this function (embed.cmake).
 const std::vector<EmbeddedFile>& embedded_files();
 
-/// The text of one; a missing one is a fault of the build and throws std::logic_error.
-std::string_view embedded_file(std::string_view name);
+/// The text of one file. Throws std::logic_error where it is missing, which is a fault of the build.
+inline std::string_view embedded_file(std::string_view name) {
+    const auto& files = embedded_files();
+    const auto found = std::ranges::find(files, name, &EmbeddedFile::name);
+    if (found == files.end()) throw std::logic_error("the file " + std::string(name) + " is not compiled in");
+    return found->text;
+}
 
 }  // namespace tunewright::api

@@ -23,7 +23,7 @@ std::string compact(std::string_view text);
 /// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
 std::string canonical(const Json& value);
 
-/// JSON Pointer segment (RFC 6901): ~ and / escaped.
+/// `name` as a segment of a JSON Pointer (RFC 6901): ~ becomes ~0 and / becomes ~1.
 std::string pointer_segment(std::string_view name);
 
 }  // namespace tunewright::api

@@ -8,10 +8,10 @@
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/reading_check.h"
-#include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
-#include "engine/identification/record/input_limits.h"
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/saturation.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/relay_test/relay_fourier.h"
 #include "engine/identification/two_point.h"
 #include "engine/identification/wording.h"
@@ -21,8 +21,9 @@ namespace {
 
 /// A change of u in the last samples shows nothing of the response.
 std::optional<Error> refuse_late_step(const CleanRecord& r) {
+    constexpr int kTooFew = 3;  // a gain, a lag and a dead time take one sample each
     const auto after = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t > r.v_time.front(); });
-    if (after > 3) return std::nullopt;
+    if (after > kTooFew) return std::nullopt;
     return Error{
         ErrorKind::not_identifiable, "record",
         "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
@@ -83,12 +84,15 @@ std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<do
         if (const auto model = integrating_model(cycle)) models.push_back(*model);
     }
     if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
-    // The paper's first-order lag is what is asked for, unless the integrator repeats the oscillation far better, or as
-    // well where both repeat it: a lag without end is an integrator.
+    // The request asks for the paper's first-order lag, unless the integrator repeats the oscillation twice as well, or
+    // as well where both repeat it: a lag without end is an integrator.
+    constexpr double kRepeats = 0.01;              // of half a swing: no more than sampling and noise leave
+    constexpr double kAsWell = 0.95, kTie = 1e-5;  // so that of equal misfits the integrator's is the smaller
+    constexpr double kFarBetter = 2;
     auto cost = [&](const RelayModel& model) {
         const bool integrator = any && model.shape.structure == Structure::ipdt;
         if (!integrator) return model.fit_rms;
-        return model.fit_rms < 0.01 * cycle.y_half ? 0.95 * model.fit_rms - 1e-5 : 2 * model.fit_rms;
+        return model.fit_rms < kRepeats * cycle.y_half ? kAsWell * model.fit_rms - kTie : kFarBetter * model.fit_rms;
     };
     std::stable_sort(models.begin(), models.end(), [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
     return models;
@@ -114,7 +118,8 @@ void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayM
     // Periods that differ blur the harmonics of their mean.
     const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
                            2 * cycle.period_scatter / cycle.period * cycle.y_half;
-    if (chosen.fit_rms > 0.03 * cycle.y_half + 4 * scatter) {
+    constexpr double kPlainly = 0.03, kErrors = 4;  // of half a swing, and of what scatter explains
+    if (chosen.fit_rms > kPlainly * cycle.y_half + kErrors * scatter) {
         warnings.push_back({"structure-mismatch",
                             "The model repeats the steady oscillation only within " +
                                 number_text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
@@ -187,16 +192,17 @@ Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const Identif
 
 /// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
 /// gain where the test shows it.
-std::vector<FrequencyConstraint> anchors_of(const Search& search, const RecordedCycle& cycle) {
-    constexpr double kHeldWithin = 3e-4;
+std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const RecordedCycle& cycle) {
+    constexpr double kHeldWithin = 3e-4;  // relative: tighter than any fit's own error, loose enough to be solved
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
     const std::complex<double> G = cycle.harmonics.front().G;
     std::vector<FrequencyConstraint> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
+    constexpr double kMoved = 0.01;  // of half a swing of u: less divides noise by noise
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
-    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > 0.01 * cycle.v_half &&
-                            cycle.drift == 0 && search.disturbances.slope == false &&
-                            search.disturbances.load == false && gain * sign > std::abs(G);
+    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > kMoved * cycle.v_half &&
+                            cycle.drift == 0 && !search.disturbances.slope && !search.disturbances.load &&
+                            gain * sign > std::abs(G);
     if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain))});
     return anchors;
 }
@@ -218,7 +224,9 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
 /// the plant's: then what it says far from the oscillation is open.
 void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, double left,
                             std::vector<Warning>& warnings) {
-    constexpr double kFar = 2, kPlainly = 0.02, kPattern = 2;
+    constexpr double kFar = 2;         // lag times omega from which a lag looks like an integrator
+    constexpr double kPlainly = 0.02;  // of y's variation, beyond noise
+    constexpr double kPattern = 2;     // samples of correlation time: white noise has 1
     const Structure structure = fit.form.structure;
     const bool another = left > kPlainly || correlation_time(fit.residual) > kPattern;
     if (is_integrating(structure) || structure == Structure::unstable) {
@@ -261,17 +269,17 @@ RecordKind kind_of(const CleanRecord& record) {
 }
 
 /// The models of a record, its false readings left out of it.
-Search searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
-    constexpr int kMaxFitted = 100'000;
-    Search search =
+ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
+    constexpr int kMaxFitted = 100'000;  // more samples add time, and no digits that count
+    ModelSearch search =
         search_models(block_means(record, kMaxFitted), model, kind_of(record) == RecordKind::relay, control);
     if (search.choice.index < 0 || control.stop.stop_requested()) return search;
     return without_false_readings(std::move(search), record, model, control);
 }
 
-Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, const IdentifyOptions& options,
+Expected<IdentifiedModel> by_output_error(CleanRecord record, ModelSearch search, const IdentifyOptions& options,
                                           const RunControl& control) {
-    constexpr double kMisfit = 0.004;
+    constexpr double kUnexplained = 0.004;  // of y's variation: less is not worth another structure
     const RecordKind kind = kind_of(record);
     if (control.stop.stop_requested()) return cancelled();
     if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) {
@@ -284,9 +292,9 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
     const auto cycle = kind == RecordKind::relay ? find_cycle(used, noise)
                                                  : Expected<RecordedCycle>(Error{ErrorKind::unsupported, "", ""});
     std::vector<Warning> warnings;
-    const double left = misfit(search.context, search.chosen());
+    const double left = unexplained_share(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
-    const bool unexplained = left > kMisfit && leaves_a_pattern(search.context, search.chosen());
+    const bool unexplained = left > kUnexplained && leaves_a_pattern(search.context, search.chosen());
     if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
         const std::vector<FrequencyConstraint> anchors = anchors_of(search, *cycle);
         constrain(search, anchors, options.model, control);
@@ -317,14 +325,14 @@ Expected<IdentifiedModel> by_output_error(CleanRecord record, Search search, con
 /// What a record is fitted as.
 struct Fitted {
     CleanRecord record;
-    Search search;
+    ModelSearch search;
     std::optional<InputLimits> u_limits;
 };
 
 /// Where u runs beyond ends that are usual for a controller's output and the fit leaves a pattern: with u cut to them,
 /// kept if that leaves a third of the sum of squares or less.
 void try_limits(const Record& record, ModelChoice model, const RunControl& control, Fitted& fitted) {
-    constexpr double kMuchLess = 3;
+    constexpr double kMuchLess = 3;  // times, so that chance alone never cuts u
     if (record.u_limits || fitted.search.choice.index < 0) return;
     if (!leaves_a_pattern(fitted.search.context, fitted.search.chosen())) return;
     for (const InputLimits& limits : plain_limits(record)) {
@@ -332,7 +340,7 @@ void try_limits(const Record& record, ModelChoice model, const RunControl& contr
         cut.u_limits = limits;
         Expected<CleanRecord> clean = clean_record(cut);
         if (!clean || control.stop.stop_requested()) continue;
-        Search search = searched(*clean, model, control);
+        ModelSearch search = searched(*clean, model, control);
         if (search.choice.index < 0) continue;
         const auto mean_square = [](const Fit& fit) { return fit.sse / static_cast<double>(fit.residual.size()); };
         if (kMuchLess * mean_square(search.chosen()) > mean_square(fitted.search.chosen())) continue;
@@ -342,7 +350,7 @@ void try_limits(const Record& record, ModelChoice model, const RunControl& contr
 
 Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, const IdentifyOptions& options,
                                      const RunControl& control) {
-    Search search = searched(clean, options.model, control);
+    ModelSearch search = searched(clean, options.model, control);
     Fitted fitted{std::move(clean), std::move(search), record.u_limits};
     try_limits(record, options.model, control, fitted);
     auto model = by_output_error(std::move(fitted.record), std::move(fitted.search), options, control);
@@ -370,7 +378,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                       : *loop ? identify_in_loop(*clean, **loop, options.model, control)
                                               : by_fitting(record, *clean, options, control);
     if (!model) return model;
-    *loop ? tell_loop(**loop, *model) : doubt_open_loop(*clean, *model);
+    *loop ? report_loop(**loop, *model) : doubt_open_loop(*clean, *model);
     add_excited_band(*clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});

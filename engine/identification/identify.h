@@ -135,7 +135,7 @@ struct IdentifiedModel {
 /// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are
 ///   equal within noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which
 ///   u changes more than twice.
-/// - A drift and a lasting load are fitted with the model where the record shows them, and told as warnings.
+/// - A drift and a lasting load are fitted with the model where the record shows them, and reported as warnings.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; where no structure fits it, the model is held to the
 ///   measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
 /// - `method` relay_fourier: Liu and Gao's formulas alone; two_point: the construction from one settled step. Neither

@@ -38,11 +38,13 @@ Expected<TwoPointModel> two_point(const CleanRecord& r) {
     }
     const auto first = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), levels.time[1]) - r.t.begin());
     const std::size_t after = r.y.size() - first, tenth = after / 10;
-    if (tenth < 2) return refused("The two-point construction needs 20 samples after the step.");
+    constexpr std::size_t kMinTenth = 2;  // samples: two means that differ by more than noise
+    constexpr double kSettled = 0.05;     // of the response
+    if (tenth < kMinTenth) return refused("The two-point construction needs 20 samples after the step.");
     const std::span<const double> y(r.y);
     const double end = mean(y.last(tenth)), earlier = mean(y.subspan(r.y.size() - 2 * tenth, tenth));
     const double y0 = r.y_rest ? *r.y_rest : first > 0 ? mean(y.first(first)) : y.front();
-    if (std::abs(end - earlier) > 0.05 * std::abs(end - y0)) {
+    if (std::abs(end - earlier) > kSettled * std::abs(end - y0)) {
         return refused("y has not settled: over the last tenth of the record it still moves by " +
                        number_text(100 * std::abs(end - earlier) / std::max(1e-300, std::abs(end - y0)), 2) +
                        " % of the response.");

@@ -1,4 +1,4 @@
-// The textbook construction: a first-order model from two points of a step response.
+// The textbook construction: a first-order model with dead time from two points of a step response.
 #pragma once
 
 #include "engine/expected.h"
@@ -7,15 +7,18 @@
 
 namespace tunewright {
 
-/// Dimensionless, as the record.
+/// K e^(-Ls)/(T s + 1), dimensionless as the record (clean_record.h): `shape` holds L and ln T.
 struct TwoPointModel {
-    Shape shape;
+    ModelShape shape;
     double K = 0;
 };
 
-/// T = 1.5 (t63 - t28), L = t63 - T with the times at which y has moved by 28.3 % and 63.2 % (Smith 1972), K from the
-/// mean of the last tenth. y is averaged over a two-hundredth of the samples. Errors: not_identifiable unless u moves
-/// once and y has settled (last tenth within 5 % of the tenth before).
+/// T = 1.5 (t63 - t28), L = t63 - T, at least 0, with the times from the step on at which y has moved by 28.3 % and
+/// 63.2 % of its response (Smith 1972); K is the move of y, from the mean before the step (or the given y0) to the mean
+/// of the last tenth, over that of u. For the two times y is averaged over a two-hundredth of the samples.
+///
+/// Errors: not_identifiable unless u moves once, 20 samples follow, and y has settled (the mean of the last tenth lies
+/// within 5 % of the response of that of the tenth before).
 Expected<TwoPointModel> two_point(const CleanRecord& record);
 
 }  // namespace tunewright

@@ -15,7 +15,7 @@ namespace tunewright::server {
 
 struct GateSettings {
     std::string keys_file;  ///< "": no keys are asked for
-    double rate = 0;        ///< calls a second of one client; 0: as many as he likes
+    double rate = 0;        ///< calls a second of one client; 0: no limit
     double burst = 0;       ///< at once, after a pause
     /// Other sites whose pages may call ("https://plant.example"); empty: none.
     std::vector<std::string> cors_origins;

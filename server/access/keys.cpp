@@ -1,10 +1,15 @@
 #include "server/access/keys.h"
 
+#include <fcntl.h>
 #include <sys/random.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <stdexcept>
 
@@ -38,7 +43,7 @@ KeyLine parse_line(std::string_view line, std::size_t number) {
     return {std::string(name), std::string(digest)};
 }
 
-/// Looks at every character, whatever it finds, so that the time tells nothing about where two digests differ.
+/// Looks at every character, whatever it finds, so that the time does not show where two digests differ.
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;
     unsigned char difference = 0;
@@ -55,6 +60,17 @@ std::vector<KeyLine> read_file(const std::string& path) {
     std::vector<KeyLine> lines = parse_keys(text);
     if (lines.empty()) throw std::invalid_argument("it has no key; `tunewright key NAME --keys FILE` adds one");
     return lines;
+}
+
+constexpr int kFailed = 1;
+constexpr int kBadName = 2;
+
+/// Appended in one write, so that a service that reads meanwhile sees the line or not.
+bool append(const std::string& path, const std::string& line) {
+    const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+    if (fd < 0) return false;
+    const bool written = ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    return ::close(fd) == 0 && written;
 }
 
 }  // namespace
@@ -124,6 +140,23 @@ std::optional<std::string> KeyRing::name_of(std::string_view key) {
     for (const KeyLine& line : lines_)
         if (equal_in_constant_time(line.digest, digest)) found = &line;
     return found == nullptr ? std::nullopt : std::optional<std::string>(found->name);
+}
+
+int make_key(const KeyCommand& command) {
+    if (!is_key_name(command.name)) {
+        std::cerr << "tunewright: the name must be 1 to 64 letters, digits, dots, underscores or hyphens.\n";
+        return kBadName;
+    }
+    const std::string key = new_key();
+    const std::string line = command.name + " sha256:" + api::sha256_hex(key) + "\n";
+    if (command.file.empty()) {
+        std::cerr << "# For the file of keys:\n" << line;
+    } else if (!append(command.file, line)) {
+        std::cerr << "tunewright: cannot write to " << command.file << ": " << std::strerror(errno) << ".\n";
+        return kFailed;
+    }
+    std::cout << key << std::endl;
+    return 0;
 }
 
 }  // namespace tunewright::server

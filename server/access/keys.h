@@ -27,6 +27,16 @@ std::string new_key();
 
 bool is_key_name(std::string_view name);
 
+/// `tunewright key NAME`: a new API key.
+struct KeyCommand {
+    std::string name;
+    std::string file;  ///< "": the line for such a file goes to standard error
+};
+
+/// Prints the key, which is kept nowhere, and adds its digest to the file. A new file is readable by its owner alone.
+/// Returns the exit code of the process: 0; 1 where the file cannot be written; 2 for a name that is not allowed.
+int make_key(const KeyCommand& command);
+
 class KeyRing {
 public:
     /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or used.

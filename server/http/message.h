@@ -49,7 +49,7 @@ struct Response {
     std::string body;
     std::shared_ptr<BodyStream> stream;  ///< instead of `body`: sent as it is written
     bool close = false;                  ///< close the connection after this answer
-    bool body_omitted = false;           ///< answer to HEAD: the length is told, the body is not sent
+    bool body_omitted = false;           ///< answer to HEAD: Content-Length is sent, the body is not
 
     Response& set(std::string name, std::string value);
 };

@@ -17,7 +17,7 @@ bool accepts(const Request& request, std::string_view type);
 /// it says neither. A weight that is not one counts as 0.
 std::optional<double> quality(std::string_view list, std::string_view name);
 
-/// Of the body, in lower case and without its parameters; "" where none is told.
+/// The media type of the body, in lower case and without its parameters; "" where the head names none.
 std::string media_type(const Request& request);
 
 /// True for a body that may be JSON: application/json, anything ending in +json, no type at all, and

@@ -133,8 +133,8 @@ void Outgoing::abandon() {
     if (stream_) std::exchange(stream_, nullptr)->close(true);
 }
 
-void Outgoing::abandon(const std::shared_ptr<BodyStream>& stream, bool tell) {
-    if (stream) stream->close(tell);
+void Outgoing::abandon(const std::shared_ptr<BodyStream>& stream, bool notify) {
+    if (stream) stream->close(notify);
 }
 
 }  // namespace tunewright::server::http

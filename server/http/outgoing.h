@@ -38,13 +38,13 @@ public:
     bool streams() const { return stream_ != nullptr; }
     /// A stream without an end of its own (server-sent events): nothing is missing where it is closed early.
     bool endless() const { return endless_; }
-    /// Ends the stream after the piece that is being sent, as if its producer had; the producer is told.
+    /// Ends the stream after the piece that is being sent, as if its producer had ended it; the producer is notified.
     void end_stream();
-    /// The client has gone or is not worth waiting for; the producer of a stream is told.
+    /// The client has gone or is not worth waiting for; the producer of a stream is notified.
     void abandon();
 
     /// The same for an answer that never became one under way.
-    static void abandon(const std::shared_ptr<BodyStream>& stream, bool tell);
+    static void abandon(const std::shared_ptr<BodyStream>& stream, bool notify);
 
     /// Bytes that are held for this client: of the answer, and of its stream.
     std::size_t pending() const;

@@ -27,7 +27,7 @@ struct Call {
 using SyncHandler = std::function<Response(const Call&)>;
 using AsyncHandler = std::function<void(Call, Reply)>;
 
-/// What is told about each answered request: for logs and metrics.
+/// What logs and metrics learn about each answered request.
 struct Exchange {
     std::string method;
     std::string target;
@@ -64,7 +64,7 @@ public:
     void otherwise(std::function<std::optional<Response>(const Request&)> fallback) { fallback_ = std::move(fallback); }
     /// Asked first about every request; what it returns is the answer.
     void guard(std::function<std::optional<Response>(Request&)> admit) { admit_ = std::move(admit); }
-    /// Told once for each answer, on the thread that gave it.
+    /// Called once for each answer, on the thread that gave it.
     void observe(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
 
     /// A Handler for the Server.

@@ -33,7 +33,7 @@ struct Limits {
     std::chrono::milliseconds handling{150'000};  ///< longer than any handler takes; a safeguard
     std::chrono::milliseconds writing{60'000};    ///< and for long bodies what 16 KiB/s take; of streams each step
     std::chrono::milliseconds lingering{5'000};
-    std::chrono::milliseconds stopping{2'000};  ///< for answers under way when the loop is told to stop
+    std::chrono::milliseconds stopping{2'000};  ///< for answers under way when the loop is asked to stop
     std::chrono::milliseconds farewell{250};    ///< for requests that are on their way to us at that moment
 };
 

@@ -29,7 +29,7 @@ Followers::Followers(JobStore& store, const HeldJobs& held, Outage& outage, std:
     pulse_ = std::make_unique<Pulse>([this] { return beat(); });
 }
 
-Followers::Key Followers::follow(const std::string& id, Told told) {
+Followers::Key Followers::follow(const std::string& id, Listener listener) {
     Key key = 0;
     bool taken = false;
     {
@@ -40,11 +40,11 @@ Followers::Key Followers::follow(const std::string& id, Told told) {
             Followed& followed = followed_[id];
             followed.due = true;
             followed.fresh.insert(key);
-            followed.followers.emplace(key, told);
+            followed.followers.emplace(key, listener);
             ids_.emplace(key, id);
         }
     }
-    if (!taken) told({JobNews::Kind::closing, nullptr});
+    if (!taken) listener({JobNews::Kind::closing, nullptr});
     pulse_->wake();
     return key;
 }
@@ -85,7 +85,7 @@ void Followers::close() {
         ids_.clear();
     }
     for (const auto& [id, followed] : left)
-        for (const auto& [key, told] : followed.followers) told({JobNews::Kind::closing, nullptr});
+        for (const auto& [key, listener] : followed.followers) listener({JobNews::Kind::closing, nullptr});
     pulse_->stop();
 }
 
@@ -103,7 +103,7 @@ std::chrono::milliseconds Followers::beat() {
     } catch (const StoreError& error) {
         outage_.failed("it cannot be read", {error.kind, error.what()});
     }
-    for (const Message& message : messages) message.told(message.news);
+    for (const Message& message : messages) message.listener(message.news);
     const std::lock_guard lock(mutex_);
     return followed_.empty() ? std::chrono::milliseconds(kNothing) : std::min(kLook, poll_);
 }
@@ -161,9 +161,9 @@ void Followers::seen(Followed& followed, const Sight& sight, std::shared_ptr<con
     const bool changed = sight != followed.last;
     followed.last = sight;
     followed.view = std::move(view);
-    for (const auto& [key, told] : followed.followers)
+    for (const auto& [key, listener] : followed.followers)
         if (changed || followed.fresh.contains(key))
-            messages.push_back({told, {JobNews::Kind::present, followed.view}});
+            messages.push_back({listener, {JobNews::Kind::present, followed.view}});
     followed.fresh.clear();
 }
 
@@ -171,8 +171,8 @@ void Followers::last_news(const std::string& id, const JobNews& news, std::vecto
     const std::lock_guard lock(mutex_);
     const auto found = followed_.find(id);
     if (found == followed_.end()) return;
-    for (const auto& [key, told] : found->second.followers) {
-        messages.push_back({told, news});
+    for (const auto& [key, listener] : found->second.followers) {
+        messages.push_back({listener, news});
         ids_.erase(key);
     }
     followed_.erase(found);

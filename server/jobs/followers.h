@@ -1,6 +1,6 @@
-// Who follows a job is told how it stands and then of each change until its end, wherever it runs. One thread serves
-// everybody: it looks at what runs here ten times a second, and asks the store for all others at
-// once, every `poll` and when it is told of a change. Knows no HTTP.
+// Whoever follows a job learns how it stands and then of each change until its end, wherever it runs. One thread serves
+// all followers: it looks at what runs here ten times a second, and asks the store about all others at once, every
+// `poll` and when a notice of a change comes. Knows no HTTP.
 #pragma once
 
 #include <chrono>
@@ -9,17 +9,24 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "server/jobs/job_view.h"
+#include "engine/progress.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
 #include "server/jobs/running/held.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {
+
+/// A job as it is this moment: what the store keeps, and the progress of one that runs in this process.
+struct JobView {
+    JobRecord job;
+    std::optional<Progress> progress;  ///< of a job that runs here; that of others is in job.progress
+};
 
 struct JobNews {
     enum class Kind {
@@ -36,24 +43,24 @@ class Followers {
 public:
     using Key = std::uint64_t;
     /// Runs on the followers' thread: quick, and never throws. It may be called once more just after leave().
-    using Told = std::function<void(const JobNews&)>;
+    using Listener = std::function<void(const JobNews&)>;
 
     /// All must outlive the followers.
     Followers(JobStore& store, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll);
 
-    /// `told` hears how the job stands at once, then of changes, at most about ten a second.
-    Key follow(const std::string& id, Told told);
+    /// `listener` learns how the job stands at once, then of changes, at most about ten a second.
+    Key follow(const std::string& id, Listener listener);
     void leave(Key key);
     /// That job ("": any) may have changed: it is looked at now.
     void changed(const std::string& id);
-    /// Everybody is told that this process ends; whoever comes later as well.
+    /// Every listener learns that this process ends; those that come later as well.
     void close();
 
     std::size_t count() const;
 
 private:
     using Clock = std::chrono::steady_clock;
-    /// What was told last, to see what has changed.
+    /// What the listeners learned last, to see what has changed.
     struct Sight {
         JobStatus status = JobStatus::queued;
         int attempts = -1;
@@ -62,14 +69,14 @@ private:
         bool operator==(const Sight&) const = default;
     };
     struct Followed {
-        std::map<Key, Told> followers;
+        std::map<Key, Listener> followers;
         std::set<Key> fresh;  ///< who has heard nothing yet
         Sight last;
         std::shared_ptr<const JobView> view;
         bool due = true;
     };
     struct Message {
-        Told told;
+        Listener listener;
         JobNews news;
     };
 

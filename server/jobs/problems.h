@@ -1,15 +1,15 @@
-// Why a job failed that its computation did not fail: problem objects, ready for the store.
+// Reasons for which a job fails without its computation: problem objects as JSON, ready for the store.
 #pragma once
 
 #include <string>
 
 namespace tunewright::server {
 
-/// Its time was over.
+/// The job's time, `timeout_s` seconds, was over.
 std::string timeout_problem(double timeout_s);
-/// Its process died or was stopped that many times.
+/// The process that computed it died or was stopped `attempts` times.
 std::string given_up_problem(int attempts);
-/// A fault of the service itself; `detail` tells nothing of its insides.
+/// A fault of the service itself. `detail` is for the client and shows nothing of the program's inside.
 std::string fault_problem(const std::string& detail);
 
 }  // namespace tunewright::server

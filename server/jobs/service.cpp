@@ -102,14 +102,14 @@ void JobService::submit(Order order, std::function<void(Submission)> done, std::
         const std::string id = submission.job.id;
         done(std::move(submission));
         claims_.arrived();
-        // Those that wait have been told already that the service stops, and this one was not among them.
-        if (draining_) waits_.tell(id);
+        // Those that wait know already that the service stops; this one was not among them.
+        if (draining_) waits_.notify(id);
     };
     store_.accept(std::move(job), accepted);
 }
 
 int JobService::seconds_until_room() const {
-    // A hundredth of the queue: who is told to come back finds room for more than one.
+    // A hundredth of the queue: a client that comes back finds room for more than one job.
     const double jobs = std::max(1.0, 0.01 * static_cast<double>(settings_.queue_limit));
     const double at_once = std::max(1.0, static_cast<double>(settings_.workers));
     return static_cast<int>(std::clamp(std::ceil(jobs * claims_.pace() / at_once), 1.0, 60.0));
@@ -147,7 +147,7 @@ void JobService::wait(const std::string& id, std::chrono::duration<double> wait,
     waits_.add(id, wait, std::move(ended));
     // It may have ended before the waiter was there.
     const std::optional<JobState> found = state(id);
-    if (!found || has_ended(found->status) || draining_) waits_.tell(id);
+    if (!found || has_ended(found->status) || draining_) waits_.notify(id);
 }
 
 // ---- what batches need -----------------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ void JobService::ended(const Ended& end, bool kept) {
 }
 
 void JobService::tell_ended(const std::string& id) {
-    waits_.tell(id);
+    waits_.notify(id);
     followers_.changed(id);
 }
 

@@ -13,7 +13,6 @@
 #include "engine/progress.h"
 #include "server/jobs/depth.h"
 #include "server/jobs/followers.h"
-#include "server/jobs/job_view.h"
 #include "server/jobs/outage.h"
 #include "server/jobs/pulse.h"
 #include "server/jobs/running/claims.h"
@@ -43,7 +42,7 @@ struct JobSettings {
     std::chrono::milliseconds lease{10'000};
     /// How often the store is looked at for what other processes have done, notices or none.
     std::chrono::milliseconds poll{500};
-    std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: kept for ever
+    std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: they are kept
     std::string version;
     /// Computes a job: api::run_job, or a test's own.
     std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
@@ -95,9 +94,9 @@ public:
     /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
     void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
 
-    /// As Followers say; a job that is not there is told as gone.
-    Followers::Key follow(const std::string& id, Followers::Told told) {
-        return followers_.follow(id, std::move(told));
+    /// As Followers::follow(); a job that is not there is `gone`.
+    Followers::Key follow(const std::string& id, Followers::Listener listener) {
+        return followers_.follow(id, std::move(listener));
     }
     void unfollow(Followers::Key key) { followers_.leave(key); }
 
@@ -112,7 +111,7 @@ public:
     void look_again();
 
     /// Takes no more work; running jobs get `grace` to end, then they are stopped and go back to the queue.
-    /// Whoever waits is told. True where every worker has stopped within two seconds more.
+    /// Whoever waits gets the job as it stands. Returns true where every worker has stopped within two seconds more.
     bool drain(std::chrono::duration<double> grace);
 
     /// Seconds after which a full queue has room again, from the pace of the latest jobs: 1 to 60.

@@ -1,5 +1,5 @@
 // The states of a job and the only ways between them. The stores hold to them by constraints as well; docs/jobs.md
-// tells them to users.
+// describes them to users.
 //
 //               claim                 succeed, fail, cancel
 //   [queued] ----------> [running] -------------------------> [succeeded] [failed] [cancelled]
@@ -15,8 +15,8 @@
 //              (service.cpp, drain). A cancellation is only noted; the worker learns of it and ends the job. When its
 //              process has died, nobody renews the lease (leases.h): once it is over any process releases the job
 //              (reclaim; on a store of one process the next start does, recover), ends it as cancelled where that was
-//              asked for, and as failed from `most_attempts` attempts on. Whoever then comes with the old attempts is
-//              told that the job is not his, and drops what he has.
+//              asked for, and as failed from `most_attempts` attempts on. A worker that then comes with the old
+//              attempts learns that it no longer has the job, and drops what it has.
 //   succeeded, failed, cancelled
 //              Nothing moves it any more. Its owner deletes it, or the sweeper once its retention is over.
 #pragma once

@@ -1,4 +1,4 @@
-// What the service does by the clock, and what it does when other processes on the store tell something.
+// What the service does by the clock, and what it does on notices of other processes that use the same store.
 #include <algorithm>
 #include <set>
 
@@ -55,7 +55,7 @@ std::chrono::milliseconds JobService::look() {
         for (const JobState& state : store_.states(ids))
             if (!has_ended(state.status)) going.insert(state.id);
         for (const std::string& id : ids)
-            if (!going.contains(id)) waits_.tell(id);
+            if (!going.contains(id)) waits_.notify(id);
     } catch (const StoreError& error) {
         outage_.failed("it cannot be read", {error.kind, error.what()});
         look_again_ = true;

@@ -21,27 +21,27 @@ void Waits::add(const std::string& id, std::chrono::duration<double> wait, std::
     waiters_.emplace(id, waiter);
 }
 
-void Waits::tell(const std::string& id) {
-    std::vector<std::shared_ptr<Waiter>> told;
+void Waits::notify(const std::string& id) {
+    std::vector<std::shared_ptr<Waiter>> notified;
     {
         const std::lock_guard lock(mutex_);
         const auto [first, last] = waiters_.equal_range(id);
-        for (auto it = first; it != last; ++it) told.push_back(it->second);
+        for (auto it = first; it != last; ++it) notified.push_back(it->second);
         waiters_.erase(first, last);
     }
-    for (const auto& waiter : told) {
+    for (const auto& waiter : notified) {
         timer_.cancel(waiter->timeout);
         waiter->ended();
     }
 }
 
 void Waits::tell_all() {
-    std::multimap<std::string, std::shared_ptr<Waiter>> told;
+    std::multimap<std::string, std::shared_ptr<Waiter>> notified;
     {
         const std::lock_guard lock(mutex_);
-        told.swap(waiters_);
+        notified.swap(waiters_);
     }
-    for (const auto& [id, waiter] : told) {
+    for (const auto& [id, waiter] : notified) {
         timer_.cancel(waiter->timeout);
         waiter->ended();
     }

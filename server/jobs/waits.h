@@ -17,10 +17,10 @@ public:
     /// The timer must have been stopped before the waits go.
     explicit Waits(Timer& timer) : timer_(timer) {}
 
-    /// Calls `ended` once: when the job is told of, or after `wait`.
+    /// Calls `ended` once: when notify() names the job, or after `wait`.
     void add(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
     /// That job has ended.
-    void tell(const std::string& id);
+    void notify(const std::string& id);
     /// Nobody waits any longer.
     void tell_all();
     /// The jobs that are waited for, each once.

@@ -1,14 +1,13 @@
 #include <memory>
 
-#include "api/csv/encoding.h"
+#include "api/csv/text.h"
 #include "api/json/parse.h"
 #include "server/http/body/body_source.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
-#include "server/routes/batch_json.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
-#include "server/routes/parameters.h"
+#include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -56,7 +55,7 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
 
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------
 
-/// The form that the media type names; nothing and no refusal where the body's first bytes shall tell.
+/// The form that the media type names; nothing and no refusal where the body's first bytes show it.
 std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
     const std::string type = http::media_type(request);
     if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")

@@ -40,13 +40,13 @@ std::string event(std::string_view name, const std::string& id, const std::strin
     return text;
 }
 
-/// One client that follows one job. Used by the followers' thread alone, once it is told of.
+/// One client that follows one job. Used by the followers' thread alone, once it is known to it.
 class EventStream {
 public:
     EventStream(std::shared_ptr<BodyStream> body, std::string known)
         : body_(std::move(body)), known_(std::move(known)) {}
 
-    void tell(const JobNews& news) {
+    void send(const JobNews& news) {
         if (news.kind == JobNews::Kind::present) return tell_progress(*news.view);
         if (news.kind == JobNews::Kind::ended) body_->write(event("done", "done", job_news_json(*news.view)));
         body_->end();
@@ -88,7 +88,7 @@ private:
         streams_.remove_if([&](const Stream& stream) {
             const auto body = stream.body.lock();
             if (body && (body->waiting() > kSlow || body->write(": still here\n\n"))) return false;
-            // A client that left before it had its answer told nobody.
+            // A client that left before it had its answer notified nobody.
             jobs_.unfollow(stream.follower);
             return true;
         });
@@ -132,7 +132,7 @@ void follow_job(JobService& jobs, Heartbeats& heartbeats, const Call& call, cons
     const auto body = std::make_shared<BodyStream>();
     body->write(kRetry);
     const auto stream = std::make_shared<EventStream>(body, std::string(call.request.header("Last-Event-ID")));
-    const Followers::Key key = jobs.follow(call.path.at("id"), [stream](const JobNews& news) { stream->tell(news); });
+    const Followers::Key key = jobs.follow(call.path.at("id"), [stream](const JobNews& news) { stream->send(news); });
     body->on_gone([&jobs, key] { jobs.unfollow(key); });
     heartbeats.add(body, key);
     response.stream = body;

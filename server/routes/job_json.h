@@ -1,25 +1,33 @@
-// A job as the contract shows it.
+// Jobs and batches as the contract shows them.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "server/jobs/service.h"
+#include "server/store/store.h"
 
 namespace tunewright::server {
 
-/// With request, and result or error.
+/// A job with its request, and its result or error.
 std::string job_json(const JobView& view);
 
 /// The same without request and result.
 std::string job_news_json(const JobView& view);
 
-/// The contract's progress object, of a job that waits or has just begun too; null of one that has ended.
+/// The contract's progress object, also of a job that waits or has just begun; null for one that has ended.
 std::string job_progress_json(const JobView& view);
 
-/// {"jobs": [...], "next": "/v1/jobs?..." or null}: without requests and results.
+/// {"jobs": [...], "next": "/v1/jobs?..." or null}: jobs without requests and results.
 std::string job_page_json(const JobPage& page, const JobQuery& query);
 
-/// The opaque place in the list that `cursor` names; nothing where it is none of ours.
+std::string batch_json(const BatchSummary& batch);
+
+/// {"batches": [...], "next": "/v1/batches?..." or null}
+std::string batch_page_json(const BatchPage& page, int limit);
+
+/// The place in a list that `cursor` names; nothing where no list has given it out.
 std::optional<std::int64_t> parse_cursor(const std::string& cursor);
 
 }  // namespace tunewright::server

@@ -5,7 +5,6 @@
 #include "server/http/problems.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
-#include "server/routes/parameters.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 

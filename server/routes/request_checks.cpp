@@ -1,5 +1,7 @@
 #include "server/routes/request_checks.h"
 
+#include "api/csv/text.h"
+#include "api/json/parse.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 
@@ -15,6 +17,20 @@ std::optional<http::Response> refuse_call(const http::Request& request) {
     if (!http::sends_json(request))
         return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
     return refuse_form(request);
+}
+
+api::Problem bad_parameters(const char* of) {
+    return http::problem(422, std::string("The parameters of the ") + of + " are not valid.");
+}
+
+void refuse_parameter(api::Problem& problem, const std::string& name, const std::string& value,
+                      const std::string& rule) {
+    std::string name_storage, value_storage;
+    const std::string shown_name(api::utf8_text(name, name_storage));
+    problem.errors.push_back({"/" + api::pointer_segment(shown_name),
+                              shown_name + " is \"" +
+                                  std::string(api::utf8_text(std::string_view(value).substr(0, 64), value_storage)) +
+                                  "\"; " + rule});
 }
 
 }  // namespace tunewright::server

@@ -1,8 +1,11 @@
-// What every call with a body has in common: where it comes from and in which form.
+// What calls have in common: the form of their body and of their answer, and the parameters behind the question mark.
 #pragma once
 
+#include <charconv>
 #include <optional>
+#include <string>
 
+#include "api/problem.h"
 #include "server/http/message.h"
 
 namespace tunewright::server {
@@ -13,5 +16,23 @@ std::optional<http::Response> refuse_call(const http::Request& request);
 
 /// 406 where the client takes no JSON.
 std::optional<http::Response> refuse_form(const http::Request& request);
+
+/// Most jobs or batches on a page.
+inline constexpr int kLargestPage = 200;
+
+/// 422 for the parameters of what is named ("list"), without a fault yet.
+api::Problem bad_parameters(const char* of);
+
+/// Adds a fault: the parameter, its value, the rule. What is no UTF-8 is shown as if it were Windows-1252: an answer is
+/// always text.
+void refuse_parameter(api::Problem& problem, const std::string& name, const std::string& value,
+                      const std::string& rule);
+
+/// False where the text is no whole number within the bounds.
+template <class Number>
+bool read_whole(const std::string& text, Number least, Number most, Number& target) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target);
+    return error == std::errc{} && end == text.data() + text.size() && target >= least && target <= most;
+}
 
 }  // namespace tunewright::server

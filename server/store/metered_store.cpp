@@ -7,10 +7,11 @@ using Clock = std::chrono::steady_clock;
 
 class MeteredStore : public JobStore {
 public:
-    MeteredStore(std::unique_ptr<JobStore> store, StoreMeter told) : told_(std::move(told)), store_(std::move(store)) {}
+    MeteredStore(std::unique_ptr<JobStore> store, StoreMeter meter)
+        : meter_(std::move(meter)), store_(std::move(store)) {}
 
     bool shared() const override { return store_->shared(); }
-    void watch(std::function<void(const StoreNotice&)> told) override { store_->watch(std::move(told)); }
+    void watch(std::function<void(const StoreNotice&)> listener) override { store_->watch(std::move(listener)); }
     bool healthy() const override { return store_->healthy(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
@@ -89,14 +90,14 @@ public:
     }
 
 private:
-    void tell(std::string_view operation, Clock::time_point start, bool done) const {
-        told_(operation, std::chrono::duration<double>(Clock::now() - start).count(), done);
+    void measure(std::string_view operation, Clock::time_point start, bool done) const {
+        meter_(operation, std::chrono::duration<double>(Clock::now() - start).count(), done);
     }
 
     template <class T>
     Done<T> timed(std::string_view operation, Done<T> done) const {
         return [this, operation, start = Clock::now(), done = std::move(done)](Outcome<T> outcome) {
-            tell(operation, start, std::holds_alternative<T>(outcome));
+            measure(operation, start, std::holds_alternative<T>(outcome));
             done(std::move(outcome));
         };
     }
@@ -106,23 +107,23 @@ private:
         const Clock::time_point start = Clock::now();
         try {
             auto value = work();
-            tell(operation, start, true);
+            measure(operation, start, true);
             return value;
         } catch (...) {
-            tell(operation, start, false);
+            measure(operation, start, false);
             throw;
         }
     }
 
     // The store goes first: it still answers while it is being closed.
-    StoreMeter told_;
+    StoreMeter meter_;
     std::unique_ptr<JobStore> store_;
 };
 
 }  // namespace
 
-std::unique_ptr<JobStore> metered(std::unique_ptr<JobStore> store, StoreMeter told) {
-    return std::make_unique<MeteredStore>(std::move(store), std::move(told));
+std::unique_ptr<JobStore> metered(std::unique_ptr<JobStore> store, StoreMeter meter) {
+    return std::make_unique<MeteredStore>(std::move(store), std::move(meter));
 }
 
 }  // namespace tunewright::server

@@ -1,4 +1,4 @@
-// A store that tells how long each of its operations took, around any other store.
+// A store around any other store that measures how long each of its operations takes.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace tunewright::server {
 
-/// `told` runs on whatever thread the operation ends on: its name, the seconds from the call to the answer, and
+/// `meter` runs on whatever thread the operation ends on: its name, the seconds from the call to the answer, and
 /// whether the store could do it.
 using StoreMeter = std::function<void(std::string_view operation, double seconds, bool done)>;
 
-std::unique_ptr<JobStore> metered(std::unique_ptr<JobStore> store, StoreMeter told);
+std::unique_ptr<JobStore> metered(std::unique_ptr<JobStore> store, StoreMeter meter);
 
 }  // namespace tunewright::server

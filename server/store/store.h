@@ -3,7 +3,7 @@
 // that nobody waits for a disk.
 //
 // A job that a worker has is held by a lease: the store knows who has it and until when. `attempts` is the fencing
-// token: it counts one more with each claim, and whoever comes with an older number is told that the job is no longer
+// token: it counts one more with each claim, and whoever comes with an older number learns that the job is no longer
 // his. So a job ends exactly once, however slow a worker that was thought dead may be.
 //
 // Turns make the queue fair. Each waiting job has one: the next number of its flow (one client, say), never below the
@@ -231,8 +231,8 @@ public:
 
     /// True where other processes may use the same store at the same time.
     virtual bool shared() const = 0;
-    /// `told` runs on a thread of the store's. In a store for one process it never does.
-    virtual void watch(std::function<void(const StoreNotice&)> told) = 0;
+    /// `listener` runs on a thread of the store's. In a store for one process it never does.
+    virtual void watch(std::function<void(const StoreNotice&)> listener) = 0;
     /// False after a write failed or the connection was lost, true again after one succeeded.
     virtual bool healthy() const = 0;
 

@@ -1,86 +1,20 @@
-// Records as loggers, printers, controllers and other people's scripts write them: read right, or refused with the
-// cure.
+// Logs as loggers, printers, controllers and other people's scripts write them are read right; damaged ones are read
+// or refused.
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <functional>
 #include <random>
 
 #include "api/csv/record.h"
-#include "support.h"
+#include "written_logs.h"
 
 namespace tunewright::api {
 namespace {
 
 using testing::Contains;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-/// One sample of the same simulated test in every format: u from 20 to 50 at the tenth, y answers by a lag of 12 s.
-struct Sample {
-    int t;
-    double u, y;
-};
-
-constexpr int kSamples = 60;
-
-std::vector<Sample> samples() {
-    std::vector<Sample> out;
-    double y = 20;
-    for (int t = 0; t < kSamples; ++t) {
-        const double u = t < 10 ? 20 : 50;
-        out.push_back({t, u, std::round(100 * y) / 100});
-        y += (20 + 0.5 * (u - 20) - y) / 12;
-    }
-    return out;
-}
-
-std::string digits(double value, int decimals = 2) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
-    return buffer;
-}
-
-std::string clock(int t) {
-    char buffer[40];
-    std::snprintf(buffer, sizeof buffer, "14:%02d:%02d", 5 + t / 60, t % 60);
-    return buffer;
-}
-
-const char* on_off(double u) { return u > 30 ? "ON" : "OFF"; }
-
-std::string rows(const std::function<std::string(const Sample&)>& row) {
-    std::string out;
-    for (const Sample& sample : samples()) out += row(sample) + "\n";
-    return out;
-}
-
-/// "{t},{u},{y}" with the sample's figures; {ms} milliseconds, {clock} the time of day, {on} ON or OFF, {duty} u/100.
-std::string written(const std::string& form) {
-    return rows([&](const Sample& s) {
-        std::string line = form;
-        const std::pair<const char*, std::string> figures[] = {
-            {"{t}", std::to_string(s.t)},       {"{ms}", std::to_string(1000 * s.t)},
-            {"{row}", std::to_string(s.t + 1)}, {"{clock}", clock(s.t)},
-            {"{late}", clock(2 * s.t)},         {"{u}", digits(s.u, 0)},
-            {"{duty}", digits(s.u / 100, 3)},   {"{y}", digits(s.y)},
-            {"{e}", digits(40 - s.y)},          {"{on}", on_off(s.u)}};
-        for (const auto& [name, text] : figures) {
-            for (std::size_t at = line.find(name); at != line.npos; at = line.find(name))
-                line.replace(at, std::string(name).size(), text);
-        }
-        return line;
-    });
-}
-
-std::string with_commas(std::string text) {
-    for (char& c : text) c = c == '.' ? ',' : c;
-    return text;
-}
 
 CsvOptions seconds(double dt) {
     CsvOptions options;
@@ -123,20 +57,6 @@ TEST_P(Logs, AreReadRight) {
 }
 
 const double kNone = std::nan("");
-
-// The clock of Klipper counts seconds since its start.
-std::string klipper(const std::string& heaters) {
-    std::string out = "Starting Klippy...\n[extruder]\npid_kp = 22.2\nmesh = 0.1, 0.2, 0.3\n";
-    for (const Sample& s : samples()) {
-        std::string line = "Stats " + digits(12345.6 + s.t, 1) +
-                           ": gcodein=0  mcu: mcu_awake=0.002 mcu_task_avg=0.000005 freq=180000000 " + heaters;
-        for (const auto& [name, text] : {std::pair{"{y}", digits(s.y)}, {"{duty}", digits(s.u / 100, 3)}}) {
-            if (const std::size_t at = line.find(name); at != line.npos) line.replace(at, std::strlen(name), text);
-        }
-        out += line + " sysload=0.35 print_time=" + digits(s.t, 3) + "\n";
-    }
-    return out + "Reactor garbage collection: (1, 2, 3)\n";
-}
 
 const std::vector<Log> kLogs = {
     {"headings_without_values",
@@ -241,143 +161,6 @@ const std::vector<Log> kLogs = {
 
 INSTANTIATE_TEST_SUITE_P(Csv, Logs, testing::ValuesIn(kLogs),
                          [](const auto& one) { return std::string(one.param.name); });
-
-std::string told(const std::string& text, const CsvOptions& options = {}) {
-    const auto out = read_csv_record(text, options);
-    const auto* faults = std::get_if<std::vector<CsvFault>>(&out);
-    return faults ? faults->front().where + ": " + faults->front().message : "it was read";
-}
-
-TEST(Csv, HeadingsThatNothingTellsApartAreShownBesideTheValues) {
-    EXPECT_THAT(
-        told("a,b,c,d,e\n" + written("{t},{y},{u}")),
-        HasSubstr("csv: Line 1 has 5 headings and the rows have 3 values, so which belongs to which is open: "
-                  "headings \"a\", \"b\", \"c\", \"d\" and \"e\"; values \"0\", \"20.00\" and \"20\". Give each "
-                  "column one heading."));
-}
-
-TEST(Csv, AHeadingOfTimeOverNumbersThatDoNotRunMakesSurplusHeadingsOpen) {
-    EXPECT_THAT(told("temp,time,u,x,z\n" + written("{t},{y},{u}")), HasSubstr("so which belongs to which is open"));
-}
-
-TEST(Csv, TwoClocksAreRefusedWithTheCure) {
-    EXPECT_THAT(
-        told("PV Time,PV,OP Time,OP\n" + written("{clock},{y},{late},{u}")),
-        HasSubstr("csv has two clocks: \"OP\" has its own times in \"OP Time\", which are not those of \"PV Time\". "
-                  "Export all tags at common times"));
-}
-
-TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
-    const std::string both =
-        klipper("heater_bed: target=60 temp={y} pwm={duty} extruder: target=200 temp=199.5 pwm=0.5");
-    std::string moving = both;
-    moving.replace(moving.find("pwm=0.5"), 7, "pwm=0.4");
-    moving.replace(moving.find("temp=199.5"), 10, "temp=199.7");
-    EXPECT_THAT(told(moving),
-                HasSubstr("columns/u: Several columns may be u (the controller output): \"heater_bed.pwm\" and "
-                          "\"extruder.pwm\". Name one in columns.u."));
-    CsvOptions options;
-    options.columns.y = "heater_bed.temp";
-    const auto chosen = std::get<CsvRecord>(read_csv_record(moving, options));
-    EXPECT_EQ(chosen.u.back(), 0.5);
-    EXPECT_EQ(chosen.r.back(), 60);
-    EXPECT_NEAR(chosen.y.back(), samples().back().y, 0.01);
-}
-
-TEST(Csv, LinesOfOneTagEachAreRefusedInEveryDialect) {
-    const std::string cure = "export it with one column for each tag";
-    EXPECT_THAT(told("\"Time\",\"Series\",\"Value\"\n2026-11-21 14:00:00,temp,20\n2026-11-21 14:00:00,pwm,30\n"),
-                HasSubstr(cure));
-    EXPECT_THAT(told("entity_id,state,last_changed\nsensor.temp,20,2026-11-21T14:00:00Z\nsensor.power,30,2026-11-21T14:"
-                     "00:00Z\n"),
-                HasSubstr(cure));
-    EXPECT_THAT(
-        told(",result,table,_time,_value,_field\n,,0,2026-11-21T14:00:00Z,20,temp\n,,1,2026-11-21T14:00:00Z,30,pwm\n"),
-        HasSubstr(cure));
-}
-
-TEST(Csv, ALogOfSentencesIsRefusedByItsFirstLine) {
-    EXPECT_THAT(
-        told(written("[{clock}][D][sensor:094]: 'Boiler': Sending state {y} \xC2\xB0"
-                     "C with 1 decimals")),
-        HasSubstr("csv has no line of numbers in columns, nor lines that name two values or more each; it begins with "
-                  "\"[14:05:00][D][sensor:094]"));
-}
-
-TEST(Csv, ALogWithoutTimesAsksForTheirSpacing) {
-    EXPECT_THAT(told(written("T:{y},PWM:{u}")),
-                HasSubstr("columns/t: No heading is plainly t (time); name it in columns.t, or give dt."));
-}
-
-TEST(Csv, ASetPointIsNeitherUNorY) {
-    for (const char* name :
-         {"SP", "setpoint", "set point", "Set_Point", "target", "Sollwert", "consigne", "reference", "r", "w",
-          "TIC101.SP", "targetTemp", "T_set", "temp target", "rpm_ref", "SV", "desired speed", "pv_sp"}) {
-        SCOPED_TRACE(name);
-        EXPECT_THAT(told("time," + std::string(name) + ",temp\n" + written("{t},{u},{y}")),
-                    HasSubstr("columns/u: No heading is plainly u"));
-        EXPECT_THAT(told("time," + std::string(name) + ",valve\n" + written("{t},{y},{u}")),
-                    HasSubstr("columns/y: No heading is plainly y"));
-        const auto read = read_csv_record("time," + std::string(name) + ",pv,op\n" + written("{t},7,{y},{u}"), {});
-        ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
-        EXPECT_EQ(std::get<CsvRecord>(read).r, std::vector<double>(kSamples, 7));
-    }
-}
-
-TEST(Csv, ASetPointThatIsWrittenWhereItChangesHolds) {
-    const auto record = std::get<CsvRecord>(read_csv_record("t,u,y,sp\n0,1,2,\n1,1,3,40\n2,1,4,\n3,1,5,50\n", {}));
-    EXPECT_THAT(record.r, ElementsAre(40, 40, 40, 50));
-    const auto empty = std::get<CsvRecord>(read_csv_record("t,u,y,sp\n0,1,2,\n1,1,3,\n", {}));
-    EXPECT_THAT(empty.r, IsEmpty());
-}
-
-TEST(Csv, ASetPointIsChosenLikeAnyColumn) {
-    CsvOptions options;
-    options.columns.r = "Ramp";
-    EXPECT_THAT(std::get<CsvRecord>(read_csv_record("t,u,y,SP,Ramp\n0,1,2,5,6\n1,1,3,5,7\n", options)).r,
-                ElementsAre(6, 7));
-    options.columns.r = "none";
-    EXPECT_THAT(told("t,u,y,SP\n0,1,2,5\n", options), HasSubstr("columns/r: r is \"none\", which is not a heading"));
-}
-
-TEST(Csv, InputAndOutputWithoutASetPointAreToldByWhatTheyDo) {
-    EXPECT_THAT(
-        told("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
-        HasSubstr("\"input\" and \"output\" may be the plant's or the controller's, and the numbers do not tell."));
-}
-
-TEST(Csv, WordsBesideNumbersAreNoLevels) {
-    EXPECT_THAT(told("t,u,y\n0,50,2\n1,OFF,3\n"), HasSubstr("Line 3, column \"u\": \"OFF\" is not a number."));
-    EXPECT_THAT(told("t,u,y\n0,50,ON\n1,51,OFF\n"), HasSubstr("is not a number."));
-}
-
-TEST(Csv, AClockOfTwoPartsIsSaidToBeHoursAndMinutes) {
-    const auto record = std::get<CsvRecord>(read_csv_record("time,u,y\n00:05,1,2\n00:06,1,3\n", {}));
-    EXPECT_THAT(record.t, ElementsAre(0, 60));
-    EXPECT_THAT(record.notes, Contains(HasSubstr("\"00:05\" are read as hours and minutes")));
-}
-
-TEST(Csv, RemarksThatNameSettingsMakeNoLogOfPairs) {
-    const auto read = read_csv_record("time,valve,temp,remark\n" + written("{t},{u},{y},Kp=1 Ki=2 Kd=0"), {});
-    ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
-    EXPECT_EQ(std::get<CsvRecord>(read).u.back(), 50);
-    EXPECT_NEAR(std::get<CsvRecord>(read).y.back(), samples().back().y, 0.01);
-}
-
-TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
-    const auto notes = [](const CsvOptions& options) {
-        return std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n20,1,3\n40,1,3\n", options)).notes;
-    };
-    EXPECT_THAT(notes({}),
-                Contains(HasSubstr("The file tells no unit of time: the times are read as s, 20 or more apart.")));
-    CsvOptions told;
-    told.time_unit_given = true;
-    EXPECT_THAT(notes(told), IsEmpty());
-}
-
-TEST(Csv, PlainTablesGetNoRemarks) {
-    EXPECT_THAT(std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n1,1,3\n", {})).notes, IsEmpty());
-}
 
 // Damaged logs: whatever comes, sentences or finite numbers. Seeded.
 TEST(Csv, DamagedLogsAreReadOrRefused) {

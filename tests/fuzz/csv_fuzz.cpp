@@ -10,8 +10,8 @@
 #include <string>
 
 #include "api/batch/reader.h"
-#include "api/csv/encoding.h"
 #include "api/csv/record.h"
+#include "api/csv/text.h"
 #include "api/json/parse.h"
 
 namespace tunewright::api {

@@ -1,6 +1,7 @@
 #include "tests/records/judgement.h"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <set>
 
@@ -32,8 +33,7 @@ bool names_gain(const Warning& warning) {
 double stated_std(const IdentifiedModel& model, double omega) {
     const auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
     const auto centre = LinearPlant::make(model.plant);
-    if (!region || !centre) return 0;
-    static constexpr double kQuantile[] = {1, 3.841, 5.991, 7.815, 9.488, 11.070, 12.592, 14.067, 15.507};
+    if (!region || !centre || region->dimension() == 0) return 0;
     const std::complex<double> G = centre->at({0, omega});
     double squares = 0;
     for (int k = 0; k < region->dimension(); ++k) {
@@ -42,7 +42,8 @@ double stated_std(const IdentifiedModel& model, double omega) {
         const auto moved = LinearPlant::make(region->at(z));
         if (moved) squares += 4 * std::norm(moved->at({0, omega}) - G);
     }
-    return std::sqrt(squares / kQuantile[region->dimension()]) / std::abs(G);
+    const double quantile = boost::math::quantile(boost::math::chi_squared(region->dimension()), 0.95);
+    return std::sqrt(squares / quantile) / std::abs(G);
 }
 
 void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement& j) {

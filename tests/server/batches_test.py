@@ -1,7 +1,6 @@
-"""Batches over HTTP: three forms in, two forms out, and what happens when something breaks in between."""
+"""Batches over HTTP: three forms in, two forms out, lists, owners."""
 
 import csv
-import http.client
 import io
 import json
 import socket
@@ -13,55 +12,8 @@ import unittest
 import jsonschema
 
 from access_test import bearer, make_key
-from service import FOPDT, LONG, QUICK, Service
-
-NDJSON = {"Content-Type": "application/x-ndjson"}
-CSV = {"Content-Type": "text/csv"}
-
-
-def lines(count, **more):
-    return "".join(json.dumps({"name": "loop %d" % i, "plant": {**FOPDT, "K": 1 + i / 1000}, "tune": [{"method": "simc"}],
-                               **more}) + "\n" for i in range(count))
-
-
-def rows_of(answer):
-    return [json.loads(line) for line in answer.body.decode().splitlines()]
-
-
-def wait_for_end(service, batch, patience=120):
-    end = time.monotonic() + patience
-    while True:
-        shown = service.get("/v1/batches/" + batch).json
-        if shown["status"] == "ended":
-            return shown
-        if time.monotonic() > end:
-            raise AssertionError("the batch is still %s" % shown)
-        time.sleep(0.02)
-
-
-class Upload:
-    """A chunked body that is sent piece by piece."""
-
-    def __init__(self, service, headers=NDJSON, path="/v1/batches"):
-        self.socket = socket.create_connection(("127.0.0.1", service.port), timeout=60)
-        head = "".join("%s: %s\r\n" % item for item in headers.items())
-        self.socket.sendall(("POST %s HTTP/1.1\r\nHost: x\r\n%sTransfer-Encoding: chunked\r\n\r\n" % (path, head)).encode())
-
-    def send(self, text):
-        data = text.encode()
-        self.socket.sendall(b"%x\r\n%s\r\n" % (len(data), data))
-
-    def end(self):
-        try:
-            self.socket.sendall(b"0\r\n\r\n")
-        except BrokenPipeError:
-            pass  # the answer may have come before
-        response = http.client.HTTPResponse(self.socket)
-        response.begin()
-        return response.status, response.read()
-
-    def close(self):
-        self.socket.close()
+from batch_bodies import CSV, NDJSON, Upload, amigo_batch, lines, rows_of, wait_for_end
+from service import LONG, QUICK, Service
 
 
 class BatchesTest(unittest.TestCase):
@@ -335,29 +287,6 @@ class BatchesTest(unittest.TestCase):
             reader.close()
 
 
-def amigo_batch():
-    """The 134 plants of Hagglund and Astrom (2004), as in bench/batch.h."""
-    def lags(times, gain=1):
-        product = gain
-        for T in times:
-            product /= T
-        return {"type": "zpk", "K": product, "zeros": [], "poles": [-1 / T for T in times]}
-
-    first = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.3, 1.5, 2, 4, 6, 8, 10, 20, 50, 100, 200, 500, 1000]
-    dead = [0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
-    plants = [{"type": "fopdt", "K": 1, "T": T, "L": 1} for T in first]
-    plants += [{"type": "sopdt", "K": 1, "T1": T, "T2": T, "L": 1} for T in [0.01] + first[:-1]]
-    plants += [lags([1, T, T]) for T in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 2.0, 5.0, 10.0)]
-    plants += [lags([1.0] * n) for n in (3, 4, 5, 6, 7, 8)]
-    plants += [lags([1, 0.1 * i, (0.1 * i) ** 2, (0.1 * i) ** 3]) for i in range(1, 10)]
-    plants += [{"type": "ipdt", "K": 1, "L": L, "T": 1 - L} for L in (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0)]
-    plants += [{"type": "sopdt", "K": T, "T1": T, "T2": 1 - L, "L": L} for T in (1.0, 2.0, 5.0, 10.0) for L in dead]
-    plants += [{"type": "zpk", "K": -0.1 * i, "zeros": [10 / i], "poles": [-1, -1, -1]} for i in range(1, 12)]
-    plants += [{"type": "zpk", "K": 100 / i ** 2, "zeros": [], "poles": [-1, [-7 / i, 10 / i * 0.51 ** 0.5], [-7 / i, -10 / i * 0.51 ** 0.5]]}
-               for i in range(1, 11)]
-    return plants
-
-
 class OwnersTest(unittest.TestCase):
     def test_a_batch_is_its_owners_alone(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -373,97 +302,6 @@ class OwnersTest(unittest.TestCase):
                 self.assertEqual(service.get("/v1/batches", yours).json["batches"], [])
                 self.assertEqual(service.get("/v1/jobs?batch=" + batch, yours).json["jobs"], [])
                 self.assertEqual(service.post("/v1/batches", lines(1), NDJSON).status, 401)
-
-
-class BatchFaultsTest(unittest.TestCase):
-    def test_a_killed_service_ends_its_batches_after_the_next_start(self):
-        with tempfile.TemporaryDirectory() as folder:
-            store = folder + "/jobs.db"
-            service = Service("--workers", "2", store=store)
-            batch = service.post("/v1/batches", lines(3000), NDJSON).json["id"]
-            upload = Upload(service, path="/v1/batches?name=broken")
-            upload.send(lines(2000))
-            end = time.monotonic() + 30
-            while len(service.get("/v1/batches").json["batches"]) < 2:
-                self.assertLess(time.monotonic(), end)
-                time.sleep(0.01)
-            for _ in range(3):
-                while service.get("/v1/batches/" + batch).json["counts"]["running"] == 0:
-                    if service.get("/v1/batches/" + batch).json["status"] == "ended":
-                        break
-                service.kill()
-                service.start()
-            upload.close()
-            wait_for_end(service, batch)
-            rows = rows_of(service.get("/v1/batches/%s/results?follow=true" % batch))
-            self.assertEqual([row["index"] for row in rows], list(range(3000)))
-            self.assertEqual({row["status"] for row in rows}, {"succeeded"})
-            self.assertEqual([one["id"] for one in service.get("/v1/batches").json["batches"]], [batch])
-            self.assertEqual(service.stop(), 0)
-            service.folder.cleanup()
-
-    def test_a_stop_amid_uploads_and_followers_is_clean(self):
-        with tempfile.TemporaryDirectory() as folder:
-            service = Service("--workers", "2", "--drain-timeout", "0", store=folder + "/jobs.db")
-            uploads = [Upload(service) for _ in range(3)]
-            for upload in uploads:
-                upload.send(lines(3000))
-            batch = service.post("/v1/batches", "".join(json.dumps(LONG) + "\n" for _ in range(20)), NDJSON).json["id"]
-            follower = socket.create_connection(("127.0.0.1", service.port), timeout=60)
-            follower.sendall(("GET /v1/batches/%s/results?follow=true HTTP/1.1\r\nHost: x\r\n\r\n" % batch).encode())
-            self.assertEqual(service.stop(), 0, service.read_log()[-2000:])
-            for connection in [follower] + [upload.socket for upload in uploads]:
-                connection.close()
-            service.start()
-            self.assertEqual([one["id"] for one in service.get("/v1/batches").json["batches"]], [batch])
-            service.post("/v1/batches/%s/cancel" % batch, "")
-            wait_for_end(service, batch)
-            self.assertEqual(service.stop(), 0)
-            service.folder.cleanup()
-
-    def test_a_full_queue_of_entries_is_429_and_keeps_nothing(self):
-        with Service("--workers", "1", "--entry-limit", "1000") as service:
-            answer = service.post("/v1/batches", "".join(json.dumps(LONG) + "\n" for _ in range(2000)), NDJSON)
-            self.assertEqual(answer.status, 429, answer.body)
-            self.assertIn("Retry-After", answer.headers)
-            self.assertEqual(service.get("/v1/batches").json["batches"], [])
-
-    def test_what_is_too_large_is_refused(self):
-        with Service("--max-body", "1", "--max-batch-body", "2") as service:
-            big = json.dumps({**QUICK, "name": "x" * 1_200_000})
-            batch = service.post("/v1/batches", big + "\n" + lines(1), NDJSON)
-            self.assertEqual(batch.status, 202, batch.body)
-            rows = rows_of(service.get("/v1/batches/%s/results?follow=true" % batch.json["id"]))
-            self.assertEqual(rows[0]["error"]["status"], 413)
-            self.assertEqual(rows[1]["status"], "succeeded")
-            self.assertEqual(service.post("/v1/batches", lines(30_000), NDJSON).status, 413)
-            self.assertEqual(len(service.get("/v1/batches").json["batches"]), 1)
-
-
-class TracesTest(unittest.TestCase):
-    def test_traces_of_a_job_are_columns(self):
-        with Service() as service:
-            job = service.post_job({"plant": FOPDT, "units": {"y": "degC"}, "tune": [{"method": "simc"}, {"method": "robust"}],
-                                    "evaluate": {"points": 11, "horizon": 50}}, wait=30)
-            answer = service.get("/v1/jobs/%s/result.csv" % job["id"])
-            self.assertEqual((answer.status, answer.media_type), (200, "text/csv"))
-            table = list(csv.reader(io.StringIO(answer.body.decode(), newline="")))
-            self.assertEqual(table[0][:3], ["t [s]", "simc setpoint y [degC]", "simc setpoint u"])
-            self.assertEqual([float(row[0]) for row in table[1:]], [5.0 * i for i in range(11)])
-            robust = job["result"]["controllers"][1]["responses"]["load"]["u"]
-            self.assertEqual([float(row[table[0].index("robust load u")]) for row in table[1:]], robust)
-            frequency = service.get("/v1/jobs/%s/result.csv?traces=frequency" % job["id"]).body.decode()
-            self.assertTrue(frequency.startswith("simc omega [rad/s],simc L re"), frequency[:100])
-            for path, status in (("none/result.csv", 404), (job["id"] + "/result.csv?traces=all", 422),
-                                 (job["id"] + "/result.csv?traces=model", 404)):
-                self.assertEqual(service.get("/v1/jobs/" + path).status, status)
-            without = service.post_job(QUICK, wait=30)
-            answer = service.get("/v1/jobs/%s/result.csv" % without["id"])
-            self.assertEqual(answer.status, 404)
-            self.assertIn("evaluate.points 0", answer.json["detail"])
-            running = service.post_job(LONG)
-            self.assertEqual(service.get("/v1/jobs/%s/result.csv" % running["id"]).status, 409)
-            service.post("/v1/jobs/%s/cancel" % running["id"], "")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 /// Keeps what one follower was told.
 class Ear {
 public:
-    Followers::Told told() {
+    Followers::Listener told() {
         return [this](const JobNews& news) {
             const std::lock_guard lock(mutex_);
             news_.push_back(news);

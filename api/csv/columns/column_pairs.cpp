@@ -94,7 +94,7 @@ std::variant<std::monostate, NamedPair, std::string> input_beside_output(const C
     if (facts.held(*output, *input)) return NamedPair{*output, *input, levels, moves};
     if (facts.held(*input, *output)) return NamedPair{*input, *output, levels, moves};
     return facts.shown(*input) + " and " + facts.shown(*output) +
-           " may be the plant's or the controller's, and the numbers do not tell. Name u in columns.u and y in "
+           " may be the plant's or the controller's, and the numbers do not show which. Name u in columns.u and y in "
            "columns.y.";
 }
 

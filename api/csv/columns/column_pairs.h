@@ -23,9 +23,9 @@ std::optional<NamedPair> german_letters(const ColumnFacts& facts);
 /// "uEst" and "yEst" beside "uVal" and "yVal": the part to identify with, not the one to check with.
 std::optional<NamedPair> data_set(const ColumnFacts& facts);
 
-/// "input" beside "output": what a controller calls its input is the plant's output. A set point tells that a
-/// controller speaks; else u is the one that stays on its levels. A sentence where neither tells. `free` says whether a
-/// column may be u or y.
+/// "input" beside "output": what a controller calls its input is the plant's output. A set point shows that these
+/// are the controller's words; else u is the one that stays on its levels. A sentence where neither shows it. `free`
+/// says whether a column may be u or y.
 std::variant<std::monostate, NamedPair, std::string> input_beside_output(const ColumnFacts& facts,
                                                                          const std::function<bool(std::size_t)>& free);
 

@@ -1,17 +1,12 @@
 #include "api/csv/columns/column_refusals.h"
 
-#include <algorithm>
-#include <iterator>
+#include <utility>
 
+#include "api/csv/columns/heading_words.h"
 #include "api/describe/suggest.h"
 
 namespace tunewright::api {
 namespace {
-
-template <std::size_t N>
-bool is_one_of(const std::string& word, const std::string_view (&list)[N]) {
-    return std::find(std::begin(list), std::end(list), word) != std::end(list);
-}
 
 std::vector<std::string> quoted_all(const std::vector<std::string>& texts) {
     std::vector<std::string> out;
@@ -54,6 +49,35 @@ std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, s
                                ", which are not those of " + facts.shown(time) +
                                ". Export all tags at common times (sampled or interpolated data), so that u and y "
                                "stand in one line."};
+}
+
+CsvFault column_fault(Role role, std::string message) { return {"columns/" + role_name(role), std::move(message)}; }
+
+CsvFault several_columns(const ColumnFacts& facts, Role role, const std::vector<std::size_t>& columns) {
+    return column_fault(role, "Several columns may be " + role_name(role) + " (" + role_meaning(role) +
+                                  "): " + facts.shown(columns) + ". Name one in columns." + role_name(role) + ".");
+}
+
+CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y) {
+    return column_fault(kOutputRole, facts.shown(u) + " and " + facts.shown(y) +
+                                         " do not belong together by their names. Name u in columns.u and y in "
+                                         "columns.y.");
+}
+
+CsvFault missing_column(const ColumnFacts& facts, Role role) {
+    const std::string name = role_name(role);
+    if (facts.layout().headings.empty()) {
+        return column_fault(role, "The csv has no headings, so " + name + " (" + role_meaning(role) +
+                                      ") cannot be found; give its column number from 1 in columns." + name +
+                                      (role == kTimeRole ? ", or dt." : "."));
+    }
+    return column_fault(role, "No heading is plainly " + name + " (" + role_meaning(role) + "); name it in columns." +
+                                  name + (role == kTimeRole ? ", or give dt" : "") + ". The headings are " +
+                                  facts.headings_listed() + ".");
+}
+
+CsvFault equal_columns(Role role, Role other) {
+    return column_fault(role, role_name(role) + " and " + role_name(other) + " are the same column; choose another.");
 }
 
 std::string surplus_note(const CsvLayout& layout) {

@@ -1,11 +1,13 @@
-// Files of which no column can be told, though each has its heading: what is wrong with them, and the cure.
+// Why the columns of a file cannot be found: one sentence for each case, with the cure.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "api/csv/columns/column_facts.h"
+#include "api/csv/columns/heading.h"
 #include "api/csv/record.h"
 
 namespace tunewright::api {
@@ -15,6 +17,21 @@ std::optional<CsvFault> one_line_a_tag(const ColumnFacts& facts);
 
 /// Historians also export each tag with its own times: values in one row do not belong together. `value` is u or y.
 std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value);
+
+/// A fault at the choice of the role's column: `where` is "columns/t" and so on.
+CsvFault column_fault(Role role, std::string message);
+
+/// Several headings name the role equally plainly.
+CsvFault several_columns(const ColumnFacts& facts, Role role, const std::vector<std::size_t>& columns);
+
+/// u and y were found, but their names are those of different devices.
+CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y);
+
+/// Neither headings nor contents say which column has the role.
+CsvFault missing_column(const ColumnFacts& facts, Role role);
+
+/// One column has both roles.
+CsvFault equal_columns(Role role, Role other);
 
 /// What is said where the first headings are believed to be those of the values, and where they are not.
 std::string surplus_note(const CsvLayout& layout);

@@ -2,21 +2,14 @@
 
 #include <algorithm>
 
+#include "api/csv/columns/chosen_column.h"
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/column_pairs.h"
 #include "api/csv/columns/column_refusals.h"
+#include "api/csv/columns/name_fits.h"
 
 namespace tunewright::api {
 namespace {
-
-struct RoleText {
-    const char* name;
-    const char* meaning;
-};
-constexpr std::array<RoleText, kRoleCount> kRoles = {
-    {{"t", "time"}, {"u", "the controller output"}, {"y", "the measurement"}, {"r", "the set point"}}};
-/// Those without which there is no record.
-constexpr std::size_t kNeededRoles = kReferenceRole;
 
 class ColumnFinder {
 public:
@@ -27,8 +20,8 @@ public:
     FoundColumns find() {
         const std::array<const std::optional<ColumnChoice>*, kRoleCount> choices = {
             &options_.columns.t, &options_.columns.u, &options_.columns.y, &options_.columns.r};
-        for (std::size_t role = 0; role < kRoleCount; ++role) {
-            if (*choices[role]) found_.at[role] = chosen(role, **choices[role]);
+        for (const Role role : kRoles) {
+            if (*choices[role]) found_.at[role] = chosen_column(facts_, role, **choices[role], faults_);
         }
         if (!faults_.empty()) return found_;
         chosen_ = found_.at;
@@ -47,8 +40,8 @@ public:
         if (wanted(kTimeRole)) time_by_content();
         rest_by_content();
         find_reference();
-        for (std::size_t role = 0; role < kNeededRoles; ++role) {
-            if (wanted(role)) report_missing(role);
+        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+            if (wanted(role)) faults_.push_back(missing_column(facts_, role));
         }
         refuse_equal_columns();
         if (faults_.empty()) check_clocks();
@@ -57,52 +50,7 @@ public:
     }
 
 private:
-    bool wanted(std::size_t role) const {
-        return !found_.at[role] && !(role == kTimeRole && (options_.dt || found_.spacing));
-    }
-
-    void fault(std::size_t role, std::string message) {
-        faults_.push_back({std::string("columns/") + kRoles[role].name, std::move(message)});
-    }
-
-    std::optional<std::size_t> chosen(std::size_t role, const ColumnChoice& choice) {
-        const std::string name = kRoles[role].name;
-        if (const int* number = std::get_if<int>(&choice)) {
-            if (*number >= 1 && static_cast<std::size_t>(*number) <= profiles_.size())
-                return static_cast<std::size_t>(*number) - 1;
-            fault(role, name + " is column " + std::to_string(*number) + "; the csv has columns 1 to " +
-                            std::to_string(profiles_.size()) + ".");
-            return std::nullopt;
-        }
-        const std::string& text = std::get<std::string>(choice);
-        if (layout_.headings.empty()) {
-            fault(role, name + " is " + quoted(text) +
-                            ", but the first line of the csv has no headings; give column numbers from 1, or add a "
-                            "heading line.");
-            return std::nullopt;
-        }
-        const auto exact = std::find(layout_.headings.begin(), layout_.headings.end(), text);
-        if (exact != layout_.headings.end()) return static_cast<std::size_t>(exact - layout_.headings.begin());
-        return chosen_loosely(role, text);
-    }
-
-    std::optional<std::size_t> chosen_loosely(std::size_t role, const std::string& text) {
-        std::optional<std::size_t> found;
-        const std::string name = kRoles[role].name, wanted = lower_case(trimmed(text));
-        for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
-            if (lower_case(layout_.headings[i]) != wanted && facts_.heading(i).name != wanted) continue;
-            if (found) {
-                fault(role, name + " is " + quoted(text) + ", which fits several headings: " +
-                                facts_.headings_listed() + ". Write the heading in full.");
-                return std::nullopt;
-            }
-            found = i;
-        }
-        if (!found)
-            fault(role, name + " is " + quoted(text) + ", which is not a heading; the headings are " +
-                            facts_.headings_listed() + ".");
-        return found;
-    }
+    bool wanted(Role role) const { return !found_.at[role] && !(role == kTimeRole && (options_.dt || found_.spacing)); }
 
     bool taken(std::size_t column) const {
         return found_.clock == column || std::find(found_.at.begin(), found_.at.end(), column) != found_.at.end();
@@ -124,66 +72,29 @@ private:
         return numeric && !is_auxiliary(facts_.heading(column));
     }
 
-    void take(std::size_t role, std::size_t column, const std::string& why = "") {
+    void take(Role role, std::size_t column, const std::string& why = "") {
         found_.at[role] = column;
-        if (why.empty() && facts_.heading(column).name == kRoles[role].name) return;
-        found_.notes.push_back("Column " + facts_.shown(column) + " is read as " + kRoles[role].name + ", " +
-                               kRoles[role].meaning + why + ".");
+        if (why.empty() && facts_.heading(column).name == role_name(role)) return;
+        found_.notes.push_back("Column " + facts_.shown(column) + " is read as " + role_name(role) + ", " +
+                               role_meaning(role) + why + ".");
     }
 
-    struct Fits {
-        std::vector<std::size_t> best;    ///< as plain as each other
-        std::vector<std::size_t> others;  ///< of the very name too, but less plain
-    };
-
-    // The plainest name wins; several tags that end alike are not guessed among.
-    Fits fits(Role role) const {
-        std::optional<NameMatch> best;
-        Fits fits;
-        for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
-            if (!may_be(i, role)) continue;
-            const auto now = match(facts_.heading(i), role);
-            if (!now) continue;
-            if (!best || now->level < best->level ||
-                (now->level == best->level && now->level == 1 && now->order < best->order)) {
-                if (best && best->level == 1) fits.others.insert(fits.others.end(), fits.best.begin(), fits.best.end());
-                best = now;
-                fits.best = {i};
-            } else if (now->level == best->level && (now->level > 1 || now->order == best->order)) {
-                fits.best.push_back(i);
-            } else if (now->level == 1) {
-                fits.others.push_back(i);
-            }
-        }
-        return fits;
+    NameFits fits(Role role) const {
+        return fits_by_name(facts_, role, [&](std::size_t column) { return may_be(column, role); });
     }
 
-    void take_fitting(Role role, const Fits& fits) {
+    void take_fitting(Role role, const NameFits& fits) {
         if (fits.best.size() == 1 || (role == kTimeRole && !fits.best.empty())) {
-            take(role, fits.best.front(), rivals(role, fits));
+            take(role, fits.best.front(), rivals(facts_, role, fits));
             return;
         }
         if (fits.best.empty()) return by_very_name(role);
-        fault(role, "Several columns may be " + std::string(kRoles[role].name) + " (" + kRoles[role].meaning +
-                        "): " + facts_.shown(fits.best) + ". Name one in columns." + kRoles[role].name + ".");
-    }
-
-    // What else might have been meant.
-    std::string rivals(Role role, const Fits& fits) const {
-        if (role == kTimeRole || fits.others.empty()) return "";
-        std::vector<std::size_t> moving;
-        for (const std::size_t i : fits.others) {
-            if (profiles_[i].changes > 0) moving.push_back(i);
-        }
-        if (moving.empty()) return "";
-        const std::string why = role == kOutputRole && is_measured(facts_.heading(fits.best.front()))
-                                    ? ", as the measured one; it may also be "
-                                    : "; it may also be ";
-        return why + facts_.shown(moving) + ", which columns." + kRoles[role].name + " chooses";
+        faults_.push_back(several_columns(facts_, role, fits.best));
     }
 
     void read_input_and_output() {
-        Fits u = wanted(kInputRole) ? fits(kInputRole) : Fits{}, y = wanted(kOutputRole) ? fits(kOutputRole) : Fits{};
+        NameFits u = wanted(kInputRole) ? fits(kInputRole) : NameFits{};
+        NameFits y = wanted(kOutputRole) ? fits(kOutputRole) : NameFits{};
         keep_partners(u, y);
         if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
         if (wanted(kInputRole)) take_fitting(kInputRole, u);
@@ -194,45 +105,20 @@ private:
 
     // Of what names alone leave open: what moves, and what belongs together by its names. Tags of a table belong
     // together where one of them was chosen; "heater_bed.temp" of a log, and "Temperature 1", anyway.
-    void keep_partners(Fits& u, Fits& y) {
-        keep_moving(u);
-        keep_moving(y);
+    void keep_partners(NameFits& u, NameFits& y) {
+        keep_moving(facts_, u, found_.notes);
+        keep_moving(facts_, y, found_.notes);
         const bool chosen = chosen_[kInputRole] || chosen_[kOutputRole];
-        const auto known = [&](Role role, const Fits& fits) {
+        const auto known = [&](Role role, const NameFits& fits) {
             return chosen_[role]           ? chosen_[role]
                    : fits.best.size() == 1 ? std::optional(fits.best.front())
                                            : std::nullopt;
         };
         for (const auto same : {stem, number_behind}) {
             if (same == stem && !layout_.pairs && !chosen) continue;
-            if (const auto column = known(kInputRole, u)) keep_beside(*column, same, y);
-            if (const auto column = known(kOutputRole, y)) keep_beside(*column, same, u);
+            if (const auto column = known(kInputRole, u)) keep_beside(facts_, *column, same, y);
+            if (const auto column = known(kOutputRole, y)) keep_beside(facts_, *column, same, u);
         }
-    }
-
-    void keep_beside(std::size_t column, std::string (*same)(const Heading&), Fits& fits) const {
-        const std::string own = same(facts_.heading(column));
-        std::vector<std::size_t> kept, rest;
-        for (const std::size_t i : fits.best) (same(facts_.heading(i)) == own ? kept : rest).push_back(i);
-        if (own.empty() || kept.size() != 1 || rest.empty()) return;
-        fits.best = std::move(kept);
-        fits.others.insert(fits.others.end(), rest.begin(), rest.end());
-    }
-
-    // What stands still is neither what was driven nor what answered.
-    void keep_moving(Fits& fits) {
-        if (fits.best.size() < 2) return;
-        std::vector<std::size_t> moving, rest;
-        int lines = 0;
-        for (const std::size_t i : fits.best) {
-            (profiles_[i].changes > 0 ? moving : rest).push_back(i);
-            lines = std::max(lines, profiles_[i].numbers);
-        }
-        if (moving.empty() || rest.empty()) return;
-        const std::string until = lines < kProfiledLines ? "" : " in the first " + std::to_string(lines) + " lines";
-        found_.notes.push_back(facts_.shown(rest) + (rest.size() == 1 ? " does" : " do") + " not move" + until +
-                               " and " + (rest.size() == 1 ? "was" : "were") + " passed over.");
-        fits.best = std::move(moving);
     }
 
     // In a log of several heaters the one's temperature does not answer the other's power.
@@ -242,8 +128,7 @@ private:
         const std::string u = stem(facts_.heading(*found_.at[kInputRole])),
                           y = stem(facts_.heading(*found_.at[kOutputRole]));
         if (u.empty() || y.empty() || u == y) return;
-        fault(kOutputRole, facts_.shown(*found_.at[kInputRole]) + " and " + facts_.shown(*found_.at[kOutputRole]) +
-                               " do not belong together by their names. Name u in columns.u and y in columns.y.");
+        faults_.push_back(names_apart(facts_, *found_.at[kInputRole], *found_.at[kOutputRole]));
     }
 
     bool take_data_set() {
@@ -256,7 +141,8 @@ private:
         const auto found = input_beside_output(facts_, [&](std::size_t column) { return may_be(column, kInputRole); });
         if (!wanted(kInputRole) || !wanted(kOutputRole)) return;
         if (const auto* pair = std::get_if<NamedPair>(&found)) take_pair(*pair);
-        if (const auto* sentence = std::get_if<std::string>(&found)) fault(kInputRole, *sentence);
+        if (const auto* sentence = std::get_if<std::string>(&found))
+            faults_.push_back(column_fault(kInputRole, *sentence));
     }
 
     void take_pair(const NamedPair& pair) {
@@ -319,10 +205,10 @@ private:
         }
     }
 
-    // The set point is told where it is in the file; nothing depends on it that could be refused.
+    // The set point is reported where the file has one; nothing is refused without it.
     void find_reference() {
         if (found_.at[kReferenceRole]) return;
-        Fits r = fits(kReferenceRole);
+        NameFits r = fits(kReferenceRole);
         if (r.best.empty()) {
             for (std::size_t i = 0; i < facts_.size(); ++i) {
                 if (is_command(facts_.heading(i)) && may_be(i, kReferenceRole)) r.best.push_back(i);
@@ -330,7 +216,7 @@ private:
         }
         for (const Role role : {kOutputRole, kInputRole}) {
             for (const auto same : {stem, number_behind}) {
-                if (found_.at[role]) keep_beside(*found_.at[role], same, r);
+                if (found_.at[role]) keep_beside(facts_, *found_.at[role], same, r);
             }
         }
         if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
@@ -349,7 +235,7 @@ private:
             take(kInputRole, commands.front(), " (no other column is; it may be the set point of an inner loop)");
     }
 
-    // A column of the very name that holds no number: reading it tells which line is wrong.
+    // A column of the very name that holds no number: reading it shows which line is wrong.
     void by_very_name(Role role) {
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
             if (role == kTimeRole && profiles_[i].numbers > 0) continue;
@@ -394,8 +280,9 @@ private:
     }
 
     void rest_by_content() {
-        std::vector<std::size_t> roles, free, switching;
-        for (const std::size_t role : {std::size_t{kTimeRole}, std::size_t{kInputRole}, std::size_t{kOutputRole}}) {
+        std::vector<Role> roles;
+        std::vector<std::size_t> free, switching;
+        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
             if (wanted(role)) roles.push_back(role);
         }
         for (std::size_t i = 0; i < profiles_.size(); ++i) {
@@ -405,7 +292,7 @@ private:
         }
         if (wanted(kInputRole) && switching.size() == 1) {
             take(kInputRole, switching.front(), " (it switches)");
-            std::erase(roles, std::size_t{kInputRole});
+            std::erase(roles, kInputRole);
         }
         if (roles.size() == 1 && free.size() == 1 &&
             (roles.front() != kTimeRole || (!layout_.headings.empty() && facts_.mostly_one_way(free.front()))))
@@ -419,26 +306,11 @@ private:
         }
     }
 
-    void report_missing(std::size_t role) {
-        const std::string name = kRoles[role].name;
-        if (layout_.headings.empty()) {
-            fault(role, "The csv has no headings, so " + name + " (" + kRoles[role].meaning +
-                            ") cannot be found; give its column number from 1 in columns." + name +
-                            (role == kTimeRole ? ", or dt." : "."));
-        } else {
-            fault(role, "No heading is plainly " + name + " (" + kRoles[role].meaning + "); name it in columns." +
-                            name + (role == kTimeRole ? ", or give dt" : "") + ". The headings are " +
-                            facts_.headings_listed() + ".");
-        }
-    }
-
     void refuse_equal_columns() {
-        for (std::size_t role = 1; role < kRoleCount; ++role) {
+        for (const Role role : kRoles) {
             if (!found_.at[role]) continue;
-            for (std::size_t other = 0; other < role; ++other) {
-                if (found_.at[role] && found_.at[role] == found_.at[other])
-                    fault(role, std::string(kRoles[role].name) + " and " + kRoles[other].name +
-                                    " are the same column; choose another.");
+            for (const Role other : kRoles) {
+                if (other < role && found_.at[role] == found_.at[other]) faults_.push_back(equal_columns(role, other));
             }
         }
     }
@@ -459,7 +331,5 @@ FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const 
                           const CsvOptions& options, std::vector<CsvFault>& faults) {
     return ColumnFinder(text, layout, profiles, options, faults).find();
 }
-
-const char* role_name(std::size_t role) { return kRoles[role].name; }
 
 }  // namespace tunewright::api

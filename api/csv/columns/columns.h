@@ -22,11 +22,9 @@ struct FoundColumns {
 };
 
 /// The columns as chosen; then by their headings; then, where headings do not say, by what they hold: time rises, u
-/// stays on its levels while y moves. What remains open is a fault that lists the headings. A set point is told where
-/// it is found, and is never u or y.
+/// stays on its levels while y moves. What remains open is a fault that lists the headings. A set point is reported
+/// where it is found, and is never u or y.
 FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
                           const CsvOptions& options, std::vector<CsvFault>& faults);
-
-const char* role_name(std::size_t role);  ///< t, u, y, r
 
 }  // namespace tunewright::api

@@ -69,6 +69,17 @@ std::optional<NameMatch> reference_match(const Heading& heading) {
 
 }  // namespace
 
+std::string role_name(Role role) {
+    constexpr std::array<const char*, kRoleCount> kNames = {"t", "u", "y", "r"};
+    return kNames.at(role);
+}
+
+std::string role_meaning(Role role) {
+    constexpr std::array<const char*, kRoleCount> kMeanings = {"time", "the controller output", "the measurement",
+                                                               "the set point"};
+    return kMeanings.at(role);
+}
+
 Heading split_heading(std::string_view text) {
     text = trimmed(text);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
@@ -205,11 +216,11 @@ bool is_controller_term(const Heading& heading, bool with_letters) {
 
 std::string stem(const Heading& heading) {
     std::vector<std::string> parts = heading.words;
-    const auto tells = [](const std::string& word) {
+    const auto names_role = [](const std::string& word) {
         return word_place(word, kInputRole) || word_place(word, kOutputRole) || place(word, kReferenceRole) ||
                word == "cv" || word == "val";
     };
-    while (parts.size() > 1 && tells(parts.back())) parts.pop_back();
+    while (parts.size() > 1 && names_role(parts.back())) parts.pop_back();
     if (parts.size() == heading.words.size()) return {};
     std::string out;
     for (const std::string& part : parts) out += part + " ";

@@ -9,8 +9,12 @@
 
 namespace tunewright::api {
 
-/// t, u, y and the set point r, in this order: index of arrays.
+/// The columns of a record. The values are the indices of arrays that hold something for each role.
 enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
+constexpr std::array<Role, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
+
+std::string role_name(Role role);     ///< "t", "u", "y" or "r"
+std::string role_meaning(Role role);  ///< "time", "the controller output", "the measurement" or "the set point"
 
 struct Heading {
     std::string text;                ///< as written, trimmed
@@ -54,7 +58,7 @@ bool is_state(const Heading& heading);
 bool is_controller_term(const Heading& heading, bool with_letters);
 bool is_term_letter(const Heading& heading);
 
-/// What the heading says before the word that tells the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
+/// What the heading says before the word that names the role: "heater_bed.temp" and "heater_bed.pwm" belong together.
 std::string stem(const Heading& heading);
 
 /// "heater 1" and "Temperature 1": the number behind the last word; "" for none.

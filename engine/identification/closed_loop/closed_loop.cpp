@@ -16,7 +16,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMaxFitted = 20'000;
+constexpr int kMaxFitted = 20'000;  ///< samples: an instrumental fit costs several times a plain one
 
 /// r at the record's samples, dimensionless as y; empty where the record has none, or it only tracks y.
 std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record& record) {
@@ -27,7 +27,7 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
     if (known.empty()) return {};
     std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const RecordScale& s = clean.scale;
-    constexpr double kRounding = 1e-9, kSame = 1e-3;
+    constexpr double kRounding = 1e-9, kSame = 1e-3;  // of the record's length; of y's range
     std::vector<double> r;
     std::size_t next = 0;
     double now = known.front().second;
@@ -71,22 +71,27 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double u_range = (std::max(*high, 0.0) - std::min(*low, 0.0)) * r.scale.u_scale;
     return {ErrorKind::not_identifiable, "record",
-            "The record is of a closed loop (" + loop.told.evidence.substr(0, loop.told.evidence.size() - 1) + "), " +
-                why + ": the plant cannot be told from the controller. Put the controller in manual and step u by " +
+            "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
+                why +
+                ": the plant cannot be distinguished from the controller. Put the controller in manual and step u by " +
                 number_text(u_range, 2) + " or so, or step the set point by " + number_text(2 * r.scale.y_scale, 2) +
                 " or so (twice what y moves here) and record it as column r."};
 }
 
 /// A search's structures by instrumental variables, with what each leaves.
 struct Refined {
-    Search search;
+    ModelSearch search;
     std::vector<double> mismatch, gain_error;
     std::vector<double> left;  ///< of what the set point did to y, the share that the model leaves
 
     std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
-constexpr double kMisfit = 25, kUnknownGain = 0.5, kNoError = 1e-5, kFits = 99;
+constexpr double kMismatch = 25;      ///< of InstrumentFit::mismatch: some 10 are chance
+constexpr double kUnknownGain = 0.5;  ///< standard error over the gain
+constexpr double kNoError = 1e-5;     ///< standard error over the gain that no record of a loop can give
+constexpr double kFits = 99;          ///< per cent: so good a free run may have so small an error
+constexpr double kTiny = 1e-300;      ///< keeps a division by what may be 0 finite
 
 /// The sum of squares of what filters of the set point explain of a signal about its mean.
 double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
@@ -101,7 +106,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     return (columns * solver.solve(values)).squaredNorm();
 }
 
-std::optional<Refined> refined(Search search, const CleanRecord& record, const SetPointPart& part,
+std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const SetPointPart& part,
                                std::stop_token stop) {
     if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
@@ -118,16 +123,17 @@ std::optional<Refined> refined(Search search, const CleanRecord& record, const S
         out.search.percents[i] = fit_percent(record, fit);
         // A gain without any error is one that nothing in the equations depends on.
         const bool empty = better->gain_error < kNoError && out.search.percents[i] < kFits;
-        out.left[i] = by_set_point(fit.residual, part) / std::max(done, 1e-300);
+        out.left[i] = by_set_point(fit.residual, part) / std::max(done, kTiny);
         out.mismatch[i] = better->mismatch, out.gain_error[i] = empty ? 1 : better->gain_error;
     }
     return out;
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kKnownGain = 0.3, kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;
+    constexpr double kKnownGain = 0.3;                                     // standard error over the gain
+    constexpr double kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;  // of what the set point did to y
     const double least = *std::ranges::min_element(r.left);
-    return r.search.fits[i].determined && r.mismatch[i] < kMisfit && r.gain_error[i] < kKnownGain &&
+    return r.search.fits[i].determined && r.mismatch[i] < kMismatch && r.gain_error[i] < kKnownGain &&
            r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * least);
 }
 
@@ -135,7 +141,8 @@ bool usable(const Refined& r, std::size_t i) {
 /// or leaves plainly more. A free run that is far worse is no model, and an integrator beside a slow disturbance
 /// whitens as well as a lag does: it must run as well.
 void choose_again(Refined& r) {
-    constexpr double kPrice = 3, kPlainly = 6, kFarWorse = 5, kAsWell = 1.2;
+    constexpr double kPrice = 3, kPlainly = 6;      // of mismatch: for a parameter; for another choice
+    constexpr double kFarWorse = 5, kAsWell = 1.2;  // ratios of sums of squares
     const auto cost = [&](std::size_t i) { return r.mismatch[i] + kPrice * r.search.fits[i].form.parameters(); };
     const auto integrating = [&](std::size_t i) { return is_integrating(r.search.fits[i].form.structure); };
     const std::size_t preferred = r.chosen();
@@ -169,12 +176,12 @@ double gain_error(const IdentifiedModel& model) {
                 return 0.0;
         },
         model.plant);
-    return error->second / std::max(std::abs(K), 1e-300);
+    return error->second / std::max(std::abs(K), kTiny);
 }
 
 /// As the inverse of a proportional controller does.
 bool answers_at_once(const IdentifiedModel& model) {
-    constexpr double kRows = 2;
+    constexpr double kRows = 2;  // spacings of the samples
     return std::any_of(model.candidates.begin(), model.candidates.end(), [&](const Candidate& candidate) {
         const auto* lag = std::get_if<Fopdt>(&candidate.plant);
         return lag != nullptr && std::abs(lag->T) + lag->L < kRows * model.data_quality.sample_time;
@@ -184,7 +191,7 @@ bool answers_at_once(const IdentifiedModel& model) {
 }  // namespace
 
 Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Record& as_given) {
-    constexpr double kFollows = 0.05, kPlain = 10;
+    constexpr double kFollows = 0.05, kPlain = 10;  // share of u's variance; F ratio
     if (!as_given.r.empty() && as_given.r.size() != as_given.t.size()) {
         return Error{ErrorKind::invalid_argument, "record/r",
                      "r has " + std::to_string(as_given.r.size()) + " values and t " +
@@ -198,24 +205,24 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     LoopRecord loop;
     if (!r.empty()) {
         loop.part = set_point_part(input_at_samples(record), r);
-        loop.told.used = LoopExcitation::set_point;
+        loop.found.used = LoopExcitation::set_point;
     } else if (feedback && !feedback->outside.empty()) {
         loop.part =
             set_point_part(input_at_samples(record),
                            steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record));
-        loop.told.used = LoopExcitation::outside_moves;
+        loop.found.used = LoopExcitation::outside_moves;
     }
     const bool follows = loop.part && loop.part->share > kFollows && loop.part->strength > kPlain;
     if (!feedback && !follows) return std::optional<LoopRecord>{};
-    loop.told.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
-    if (loop.part) loop.told.share = loop.part->share;
-    if (!loop.part) loop.told.used = LoopExcitation::none;
+    loop.found.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
+    if (loop.part) loop.found.share = loop.part->share;
+    if (!loop.part) loop.found.used = LoopExcitation::none;
     return std::optional<LoopRecord>(std::move(loop));
 }
 
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control) {
-    constexpr double kWeak = 4, kPlainlyLess = 10;
+    constexpr double kWeak = 4, kPlainlyLess = 10;  // F ratio; difference of mismatch
     if (!loop.part) return nothing_outside(full, loop, "and nothing but feedback moves u");
     if (loop.part->strength < kWeak)
         return nothing_outside(
@@ -237,9 +244,9 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     };
     std::optional<Refined>& best = two_stage && (!direct || better(*two_stage, *direct)) ? two_stage : direct;
     const bool follows = best && best->search.chosen().determined &&
-                         (best->mismatch[best->chosen()] < kMisfit || responds(full, best->search.chosen()));
+                         (best->mismatch[best->chosen()] < kMismatch || responds(full, best->search.chosen()));
     if (!follows) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
-    constexpr double kHalf = 0.5;
+    constexpr double kHalf = 0.5;  // of what the set point did to y
     if (best->left[best->chosen()] > kHalf)
         return nothing_outside(full, loop, "and no structure explains what the moves from outside the loop did to y");
     const double error = best->gain_error[best->chosen()];
@@ -252,7 +259,9 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
 }
 
 void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
-    constexpr double kHardly = 0.005, kPlainly = 0.15, kUnknown = 0.33, kLess = 0.8, kNearly = 0.95, kSomewhat = 0.05;
+    constexpr double kHardly = 0.005, kSomewhat = 0.05, kPlainly = 0.15;  // restlessness
+    constexpr double kUnknown = 0.33;                                     // standard error over the gain
+    constexpr double kLess = 0.8, kNearly = 0.95;  // what the law leaves of u over what the model leaves of y
     const double restless = restlessness(beginning(full));
     if (restless < kHardly) return;
     const CleanRecord record = every_few(full, kMaxFitted);
@@ -264,21 +273,21 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once;
     if (!in_doubt) return;
     LoopRecord loop;
-    loop.told.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
-                         " % of its variance, where the model explains " +
-                         number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
-    model.data_quality.closed_loop = loop.told;
+    loop.found.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
+                          " % of its variance, where the model explains " +
+                          number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
+    model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(),
                           {"closed-loop",
-                           "A controller seems to move u in answer to y: " + loop.told.evidence +
+                           "A controller seems to move u in answer to y: " + loop.found.evidence +
                                " Then the model may be the controller's inverse in place of the plant: "
                                "step u in manual, or step the set point and record it as column r.",
                            WarningLevel::bad});
 }
 
-void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {
-    std::string detail = "A controller moves u in answer to y: " + loop.told.evidence;
-    switch (loop.told.used) {
+void report_loop(const LoopRecord& loop, IdentifiedModel& model) {
+    std::string detail = "A controller moves u in answer to y: " + loop.found.evidence;
+    switch (loop.found.used) {
         case LoopExcitation::set_point:
             detail +=
                 " The model rests on what the moves of the set point did alone; disturbances that the controller "
@@ -295,7 +304,7 @@ void tell_loop(const LoopRecord& loop, IdentifiedModel& model) {
                 "plant's.";
             break;
     }
-    model.data_quality.closed_loop = loop.told;
+    model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(), {"closed-loop", detail});
 }
 

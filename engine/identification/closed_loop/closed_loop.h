@@ -13,7 +13,7 @@ namespace tunewright {
 /// A record in which u answers y. Least squares of y on u would take the controller's answers to disturbances for the
 /// plant's cause, and end between the plant and -1/C (Ljung 1999, section 13.4).
 struct LoopRecord {
-    ClosedLoop told;
+    ClosedLoop found;
     std::optional<SetPointPart> part;  ///< empty: nothing but feedback moves u
 };
 
@@ -33,6 +33,6 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const Loop
 void doubt_open_loop(const CleanRecord& record, IdentifiedModel& model);
 
 /// Fills data_quality.closed_loop and adds warning closed-loop.
-void tell_loop(const LoopRecord& loop, IdentifiedModel& model);
+void report_loop(const LoopRecord& loop, IdentifiedModel& model);
 
 }  // namespace tunewright

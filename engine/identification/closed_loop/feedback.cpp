@@ -10,7 +10,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinMoves = 12;
+constexpr int kMinMoves = 12;     ///< fewer moves of u tell no law
+constexpr double kTiny = 1e-150;  ///< keeps a division by what may be 0 finite; its square is too
 
 /// Least squares that a few outliers, the set point's moves, do not bend.
 struct Regression {
@@ -27,11 +28,13 @@ double quantile(std::vector<double> values, double part) {
 
 /// At most a twentieth of the rows is left out: those beyond four deviations.
 Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
-    constexpr int kRounds = 6;
-    constexpr double kMiddle = 0.8, kOfMiddle = 1.2816, kFar = 4, kKept = 0.95;
+    constexpr int kRounds = 6;                           // until the set of outliers no longer changes, in practice
+    constexpr double kMiddle = 0.8, kOfMiddle = 1.2816;  // that quantile of |normal|, in standard deviations
+    constexpr double kFar = 4, kKept = 0.95;
+    constexpr double kRidge = 1e-12;  // of a column's length squared: dependent columns share their coefficient
     const Eigen::Index n = z.size(), m = X.cols();
     Eigen::VectorXd length(m);
-    for (Eigen::Index k = 0; k < m; ++k) length[k] = std::max(X.col(k).norm(), 1e-150);
+    for (Eigen::Index k = 0; k < m; ++k) length[k] = std::max(X.col(k).norm(), kTiny);
     const Eigen::MatrixXd Y = X * length.cwiseInverse().asDiagonal();
     Regression out;
     out.usual.assign(static_cast<std::size_t>(n), 1);
@@ -43,7 +46,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
             G.selfadjointView<Eigen::Lower>().rankUpdate(Y.row(i).transpose());
             b += z[i] * Y.row(i).transpose();
         }
-        G.diagonal().array() += 1e-12;
+        G.diagonal().array() += kRidge;
         const Eigen::VectorXd scaled = G.selfadjointView<Eigen::Lower>().ldlt().solve(b);
         out.residual = z - Y * scaled;
         out.coefficient = scaled.cwiseQuotient(length);
@@ -59,7 +62,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
 /// Root mean squares of two regressions of the same z over the rows usual to both.
 struct Errors {
     double a = 0, b = 0;
-    double ratio() const { return b / std::max(a, 1e-150); }
+    double ratio() const { return b / std::max(a, kTiny); }
 };
 
 Errors compare(const Regression& a, const Regression& b) {
@@ -124,7 +127,7 @@ double bent_on(const Moves& m, int j) {
 
 /// Ramps and slewing valves: most moves go on at the rate of the move before.
 bool on_ramps(const Moves& m) {
-    constexpr double kSame = 1e-3, kMax = 0.6;
+    constexpr double kSame = 1e-3, kMax = 0.6;  // relative rounding of logged figures; share of the moves
     int same = 0, moved = 0;
     for (int j = 2; j < m.size(); ++j) {
         if (m.du[j] == 0) continue;
@@ -204,9 +207,10 @@ NewsOfY news_of_y(const CleanRecord& r, const std::vector<double>& u) {
     return {regress(own, z), regress(both, z), kFirst};
 }
 
-/// How much of what u's past does not tell of u's moves is told by what both pasts do not tell of y: in an open-loop
-/// test with a clean y and a noisy reading of u, y tells of u, but no news.
-double told_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
+/// The part of u's news (what u's past does not predict of its moves) that y's news (what both pasts do not predict of
+/// y) leaves unexplained, as a ratio of root mean squares. In an open-loop test with a clean y and a noisy reading of
+/// u, y predicts u, but its news do not.
+double unexplained_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
     constexpr int kLags = 6;
     const auto n = static_cast<int>(p.by_u.residual.size()) - kLags;
     Eigen::MatrixXd X(n, kLags + 1);
@@ -225,7 +229,7 @@ double told_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
 /// A logger that writes u after its answer shows y and u of the same row as a controller would. The law of a plant is
 /// a lag with a gain; that of a controller has no lag of y, or, with integral action, no gain from u to y.
 bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
-    constexpr double kLag = 0.2, kGain = 0.7;
+    constexpr double kLag = 0.2, kGain = 0.7;  // coefficients that a controller's law stays below
     const int n = r.samples() - 2;
     Eigen::MatrixXd X(n, 3);
     Eigen::VectorXd z(n);
@@ -239,7 +243,8 @@ bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
 }
 
 bool on_few_levels(std::vector<double> u) {
-    constexpr double kSame = 1e-3;
+    constexpr double kSame = 1e-3;  // of u's range: jitter of a level
+    constexpr int kFew = 3;
     std::sort(u.begin(), u.end());
     const double same = kSame * (u.back() - u.front());
     int levels = 1;
@@ -248,7 +253,7 @@ bool on_few_levels(std::vector<double> u) {
         if (value - last > same) ++levels;
         if (value - last > same) last = value;
     }
-    return levels <= 3;
+    return levels <= kFew;
 }
 
 /// A pseudo-random sequence or a heater by pulse width, whatever jitter or grid u has.
@@ -256,8 +261,8 @@ bool switches_between_two(const CleanRecord& r) { return two_levels(input_levels
 
 /// Moves that the law of the controller leaves over, far beyond what it leaves elsewhere; the first of a few in a row.
 std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, const Predictions& p) {
-    constexpr double kFar = 10, kOfRange = 0.01;
-    constexpr int kApart = 8;
+    constexpr double kFar = 10, kOfRange = 0.01;  // deviations of the law's residual; of u's range
+    constexpr int kApart = 8;                     // moves between two that count apart
     const double law = p.by_y.coefficient[p.y_column];
     std::vector<OutsideMove> found;
     if (law == 0) return found;
@@ -270,16 +275,6 @@ std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, con
         last = j;
     }
     return found;
-}
-
-bool unevenly_spaced(const Moves& m) {
-    constexpr double kOff = 0.1;
-    if (!m.every_row) return false;
-    const std::vector<double> spacings(m.dt.begin() + 1, m.dt.end());
-    const double usual = median(spacings);
-    const auto off =
-        std::count_if(spacings.begin(), spacings.end(), [&](double d) { return std::abs(d - usual) > kOff * usual; });
-    return 5 * off > static_cast<std::ptrdiff_t>(spacings.size());
 }
 
 /// The record's moves, where they could be a controller's.
@@ -308,17 +303,23 @@ std::vector<double> input_at_samples(const CleanRecord& r) {
 }
 
 double restlessness(const CleanRecord& r) {
-    constexpr double kOften = 0.1;
+    constexpr double kOften = 0.1;  // of the rows: tests move u in fewer
     const std::vector<double> u = input_at_samples(r);
     const std::optional<Moves> moves = possible_moves(r, u);
     if (!moves || moves->size() < kOften * r.samples() || is_law_of_lag(r, u)) return 0;
     const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
-    return compare(p.by_u, p.by_u).a / std::max(deviation(u), 1e-150);
+    return compare(p.by_u, p.by_u).a / std::max(deviation(u), kTiny);
 }
 
 std::optional<Feedback> find_feedback(const CleanRecord& r) {
-    constexpr double kNoNews = 1e-6, kExact = 0.03, kMoreThanChance = 1.6, kMoreUneven = 3, kNewsInY = 0.8,
-                     kByNews = 0.3, kQuiet = 3e-4, kLawIsPlain = 0.5;
+    constexpr double kNoNews = 1e-6;         // of u's range: its own past predicts u to rounding
+    constexpr double kExact = 0.03;          // ratio of errors that no open-loop test shows
+    constexpr double kMoreThanChance = 1.6;  // standard errors of the log ratio; more where rows are uneven
+    constexpr double kMoreUneven = 3;
+    constexpr double kNewsInY = 0.8;     // u's past must not lower y's error below that share
+    constexpr double kByNews = 0.3;      // of what y explains of u's moves, its news explain this
+    constexpr double kQuiet = 3e-4;      // of y's range: a y without news is a simulation's
+    constexpr double kLawIsPlain = 0.5;  // ratio of errors at which its outliers are the set point's moves
     const std::vector<double> u = input_at_samples(r);
     const std::optional<Moves> possible = possible_moves(r, u);
     if (!possible) return std::nullopt;
@@ -329,7 +330,7 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
     const bool at_once = same.ratio() <= past.ratio();
     const double ratio = std::min(same.ratio(), past.ratio());
     const double n = static_cast<double>(p.by_u.residual.size());
-    const double margin = unevenly_spaced(moves) ? kMoreUneven : kMoreThanChance;
+    const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
     if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
     const bool exact = ratio < kExact;
     if (!exact || !moves.every_row) {
@@ -337,8 +338,8 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
         const Errors of_y = compare(y.by_y, y.by_both);
         if (of_y.b < kQuiet) return std::nullopt;
         if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
-        const double told = told_by_news(moves, p, y);
-        if (!exact && 1 - told * told < kByNews * (1 - ratio * ratio)) return std::nullopt;
+        const double left = unexplained_by_news(moves, p, y);
+        if (!exact && 1 - left * left < kByNews * (1 - ratio * ratio)) return std::nullopt;
     }
     if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
     Feedback feedback{same.a, at_once ? same.b : past.b, at_once, {}};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -14,9 +14,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kNoLength = 1e-12;  ///< a column of zeros keeps a length to divide by
+constexpr double kTiny = 1e-300;     ///< keeps a division by what may be 0 finite
+
 /// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
 VectorXd whitening(const VectorXd& e) {
-    constexpr int kMax = 8;
+    constexpr int kMax = 8;                 // order
+    constexpr double kPredictable = 1e-12;  // of the variance: what is left is rounding
     const Index n = e.size();
     const int most = static_cast<int>(std::min<Index>(kMax, n / 10));
     VectorXd covariance(most + 1);
@@ -25,7 +29,7 @@ VectorXd whitening(const VectorXd& e) {
     double variance = covariance[0];
     if (!(variance > 0)) return best;
     double least = static_cast<double>(n) * std::log(variance);
-    for (int k = 1; k <= most && variance > 1e-12 * covariance[0]; ++k) {
+    for (int k = 1; k <= most && variance > kPredictable * covariance[0]; ++k) {
         double sum = 0;
         for (int i = 0; i < k; ++i) sum += a[i] * covariance[k - i];
         const double reflection = -sum / variance;
@@ -49,9 +53,11 @@ MatrixXd filtered(const MatrixXd& X, const VectorXd& a) {
     return out;
 }
 
-class Problem {
+/// The sensitivities of a model to its parameters: under the recorded u (J), and under the set point's part of u alone
+/// (Z, the instruments); n_samples rows.
+class LoopSensitivities {
 public:
-    Problem(const CleanRecord& record, const SetPointPart& part)
+    LoopSensitivities(const CleanRecord& record, const SetPointPart& part)
         : record_(record), instrument_(driven_by(part, record)), n_(record.samples()) {}
 
     /// d model/d (searched, linear) with the recorded u, and with the set point's part; and y - model.
@@ -82,11 +88,11 @@ private:
 };
 
 /// The filtered problem, columns scaled to length one, parameters at their bounds left out.
-struct Equations {
+struct InstrumentEquations {
     MatrixXd J, Z;
     VectorXd e, length;
 
-    Equations(const Problem& p, const VectorXd& a, const std::vector<Index>& free) {
+    InstrumentEquations(const LoopSensitivities& p, const VectorXd& a, const std::vector<Index>& free) {
         const MatrixXd all_J = filtered(p.J, a), all_Z = filtered(p.Z, a);
         e = filtered(p.e, a);
         J.resize(e.size(), static_cast<Index>(free.size()));
@@ -94,7 +100,7 @@ struct Equations {
         length.resize(static_cast<Index>(free.size()));
         for (std::size_t k = 0; k < free.size(); ++k) {
             const auto column = static_cast<Index>(k);
-            length[column] = std::max(all_Z.col(free[k]).norm(), 1e-12);
+            length[column] = std::max(all_Z.col(free[k]).norm(), kNoLength);
             J.col(column) = all_J.col(free[k]) / length[column];
             Z.col(column) = all_Z.col(free[k]) / length[column];
         }
@@ -102,8 +108,9 @@ struct Equations {
     VectorXd step() const { return (Z.transpose() * J).fullPivLu().solve(Z.transpose() * e).cwiseQuotient(length); }
     /// The part of e that lies in the instruments' span.
     double merit() const {
+        constexpr double kRidge = 1e-9;  // columns have length 1: dependent instruments count once
         const VectorXd b = Z.transpose() * e;
-        return b.dot((Z.transpose() * Z + 1e-9 * MatrixXd::Identity(Z.cols(), Z.cols())).ldlt().solve(b));
+        return b.dot((Z.transpose() * Z + kRidge * MatrixXd::Identity(Z.cols(), Z.cols())).ldlt().solve(b));
     }
 };
 
@@ -140,7 +147,7 @@ Fit moved(Fit fit, const ShapeBounds& bounds, const std::vector<Index>& free, co
 
 /// No logarithm moves by more than this in a step, no dead time by more than a tenth of the record.
 double allowed_part(const Fit& fit, const std::vector<Index>& free, const VectorXd& step) {
-    constexpr double kLogarithm = 0.7, kDeadTime = 0.1;
+    constexpr double kLogarithm = 0.7, kDeadTime = 0.1;  // a factor of 2; of the record
     const std::vector<int> places = fit.form.searched();
     double part = 1;
     for (std::size_t k = 0; k < free.size(); ++k) {
@@ -154,7 +161,7 @@ double allowed_part(const Fit& fit, const std::vector<Index>& free, const Vector
 }
 
 /// The set point's filters against the filtered residual.
-double mismatch_of(const SetPointPart& part, const Equations& here, const VectorXd& a) {
+double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, const VectorXd& a) {
     const auto n = static_cast<Index>(part.filtered.front().size());
     MatrixXd W(n, static_cast<Index>(part.filtered.size()));
     for (std::size_t k = 0; k < part.filtered.size(); ++k)
@@ -165,13 +172,15 @@ double mismatch_of(const SetPointPart& part, const Equations& here, const Vector
     const VectorXd explained = W * W.colPivHouseholderQr().solve(e);
     const double total = e.squaredNorm();
     if (!(total > 0)) return 0;
+    constexpr double kUnexplained = 1e-12;  // of the variance: rounding
     const double share = explained.squaredNorm() / total;
-    return share / std::max(1e-12, 1 - share) * effective_samples({e.data(), static_cast<std::size_t>(e.size())});
+    return share / std::max(kUnexplained, 1 - share) *
+           effective_samples({e.data(), static_cast<std::size_t>(e.size())});
 }
 
 /// Variance of the gain, in units of its scaled column, by leaving out one stretch of the record after another
 /// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time.
-double jackknife(const Equations& here, Index gain) {
+double jackknife(const InstrumentEquations& here, Index gain) {
     constexpr Index kStretches = 10;
     const Index length = here.e.size() / kStretches;
     const MatrixXd A = here.Z.transpose() * here.J;
@@ -190,7 +199,7 @@ double jackknife(const Equations& here, Index gain) {
 
 /// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
 /// worth.
-double gain_variance(const Equations& here, Index gain) {
+double gain_variance(const InstrumentEquations& here, Index gain) {
     const double m = static_cast<double>(here.J.cols());
     if (gain >= here.J.cols()) return 0;
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
@@ -200,8 +209,8 @@ double gain_variance(const Equations& here, Index gain) {
 }
 
 /// Rows: principal axes of the covariance, one standard deviation long.
-std::vector<std::vector<double>> deviations_of(const Equations& here, const std::vector<Index>& free, Index all,
-                                               double inflation) {
+std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, const std::vector<Index>& free,
+                                               Index all, double inflation) {
     const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
@@ -226,22 +235,24 @@ std::vector<std::vector<double>> deviations_of(const Equations& here, const std:
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
                                                std::stop_token stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
-    constexpr double kSmall = 1e-6, kUsualMismatch = 8, kOfUnfiltered = 0.5;
-    Problem problem(record, part);
+    constexpr double kSmall = 1e-6;        // step in standard lengths of the columns
+    constexpr double kUsualMismatch = 8;   // chance gives so much
+    constexpr double kOfUnfiltered = 0.5;  // of the variance that slow disturbances would give
+    LoopSensitivities rows(record, part);
     const ShapeBounds bounds = shape_bounds(record, start.form.structure);
     Fit fit = start;
-    problem.evaluate(fit);
-    VectorXd a = whitening(problem.e);
+    rows.evaluate(fit);
+    VectorXd a = whitening(rows.e);
     std::vector<Index> free = free_of(fit, bounds, nullptr);
     for (int iteration = 0; iteration < kIterations && !stop.stop_requested(); ++iteration) {
-        if (iteration <= kFilterSettles) a = whitening(problem.e);
+        if (iteration <= kFilterSettles) a = whitening(rows.e);
         // A parameter at its bound is freed where the equations pull it inside.
-        std::vector<Index> every(static_cast<std::size_t>(problem.J.cols()));
+        std::vector<Index> every(static_cast<std::size_t>(rows.J.cols()));
         for (std::size_t k = 0; k < every.size(); ++k) every[k] = static_cast<Index>(k);
-        const VectorXd pushed = Equations(problem, a, every).step();
+        const VectorXd pushed = InstrumentEquations(rows, a, every).step();
         if (!pushed.allFinite()) return std::nullopt;
         free = free_of(fit, bounds, &pushed);
-        const Equations here(problem, a, free);
+        const InstrumentEquations here(rows, a, free);
         const VectorXd step = here.step();
         if (!step.allFinite()) return std::nullopt;
         double share = allowed_part(fit, free, step);
@@ -249,33 +260,32 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
         bool better = false;
         for (int half = 0; half < kHalvings && !better; ++half, share /= 2) {
             const Fit next = moved(fit, bounds, free, step, share);
-            problem.evaluate(next);
-            better = Equations(problem, a, free).merit() < merit;
+            rows.evaluate(next);
+            better = InstrumentEquations(rows, a, free).merit() < merit;
             if (better) fit = next;
         }
-        if (!better) problem.evaluate(fit);
+        if (!better) rows.evaluate(fit);
         const double length = step.cwiseProduct(here.length).norm() * share;
         if (!better || (iteration > kFilterSettles && length < kSmall)) break;
     }
-    const Equations here(problem, a, free);
+    const InstrumentEquations here(rows, a, free);
     InstrumentFit out;
     out.mismatch = mismatch_of(part, here, a);
     out.fit = fit;
-    out.fit.model.assign(problem.model.begin(), problem.model.end());
-    out.fit.residual.assign(problem.e.begin(), problem.e.end());
-    out.fit.sse = problem.e.squaredNorm();
+    out.fit.model.assign(rows.model.begin(), rows.model.end());
+    out.fit.residual.assign(rows.e.begin(), rows.e.end());
+    out.fit.sse = rows.e.squaredNorm();
     const auto gain = fit.form.searched().size();
     const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
     // A filter of a few rows does not make white what a load leaves for the rest of the record.
-    const Equations unfiltered(problem, VectorXd::Ones(1), free);
-    const double scale = here.length[place], white = std::max(gain_variance(here, place), 1e-300);
+    const InstrumentEquations unfiltered(rows, VectorXd::Ones(1), free);
+    const double scale = here.length[place], white = std::max(gain_variance(here, place), kTiny);
     const double slow =
         std::max(kOfUnfiltered * gain_variance(unfiltered, place), jackknife(here, place) / (scale * scale)) / white;
-    out.fit.deviations =
-        deviations_of(here, free, problem.J.cols(), std::max({1.0, out.mismatch / kUsualMismatch, slow}));
+    out.fit.deviations = deviations_of(here, free, rows.J.cols(), std::max({1.0, out.mismatch / kUsualMismatch, slow}));
     double squares = 0;
     for (const auto& row : out.fit.deviations) squares += row[gain] * row[gain];
-    out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), 1e-300);
+    out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), kTiny);
     if (!std::isfinite(out.fit.sse) || !std::isfinite(out.gain_error)) return std::nullopt;
     return out;
 }

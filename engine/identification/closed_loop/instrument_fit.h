@@ -17,11 +17,13 @@ namespace tunewright {
 struct InstrumentFit {
     Fit fit;                ///< `deviations` filled: s^2 (Z'J)^-1 Z'Z (J'Z)^-1 by its principal axes
     double mismatch = 0;    ///< share of the filtered residual's variance that filters of the set point explain, times
-                            ///< the independent samples: about their number, 10, where the structure is right
+                            ///< the independent samples: about the number of filters, 10, where the structure
+                            ///< is right
     double gain_error = 0;  ///< standard error of the gain over its size
 };
 
-/// From `start`'s form, shape and coefficients. Empty where the iteration does not end at a model.
+/// Iterates from `start`'s form, shape and coefficients; `part` is of the record's samples. Empty where the equations
+/// are singular or the result is not finite, and where `stop` asks for an end before there is a model.
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
                                                std::stop_token stop);
 

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 
 namespace tunewright {
 namespace {
 
-constexpr int kFilters = 8, kPoles = 9;
+constexpr int kFilters = 8, kPoles = 9;  ///< of a Laguerre network; of those tried
 
 Eigen::VectorXd low_pass(const Eigen::VectorXd& w, double pole) {
     Eigen::VectorXd x(w.size());
@@ -56,6 +56,7 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
     if (!(size > 0) || n < 4 * kFilters) return std::nullopt;
     moved /= size;
     const double total = (target.array() - target.mean()).square().sum();
+    constexpr double kRidge = 1e-9;  // dependent filters share their coefficients
     double least = -1;
     Eigen::MatrixXd best;
     Eigen::VectorXd coefficient, rest;
@@ -63,22 +64,23 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
         const double rows = 1.5 * std::pow(static_cast<double>(n) / 9, static_cast<double>(k) / (kPoles - 1));
         const Eigen::MatrixXd X = regressors(moved, std::exp(-1 / rows));
         Eigen::MatrixXd G = X.transpose() * X;
-        G.diagonal() *= 1 + 1e-9;
-        G.diagonal().array() += 1e-9 * static_cast<double>(n);
+        G.diagonal() *= 1 + kRidge;
+        G.diagonal().array() += kRidge * static_cast<double>(n);
         const Eigen::VectorXd c = G.ldlt().solve(X.transpose() * target);
         const Eigen::VectorXd left = target - X * c;
         const double sum = left.squaredNorm();
         if (least >= 0 && sum >= least) continue;
         least = sum, best = X, coefficient = c, rest = left;
     }
+    constexpr double kTiny = 1e-300, kUnexplained = 1e-12;  // keep divisions by what may be 0 finite
     SetPointPart part;
     const Eigen::VectorXd explained = best * coefficient;
     for (const double value : explained) part.u.push_back(value - explained[0]);
     for (Eigen::Index k = 1; k < best.cols(); ++k) part.filtered.emplace_back(best.col(k).begin(), best.col(k).end());
-    part.share = std::clamp(1 - least / std::max(total, 1e-300), 0.0, 1.0);
+    part.share = std::clamp(1 - least / std::max(total, kTiny), 0.0, 1.0);
     const double independent = effective_samples({rest.data(), static_cast<std::size_t>(n)});
     const double freedom = std::max(1.0, independent - kFilters - 3);
-    part.strength = part.share * freedom / (std::max(1 - part.share, 1e-12) * (kFilters + 2));
+    part.strength = part.share * freedom / (std::max(1 - part.share, kUnexplained) * (kFilters + 2));
     return part;
 }
 

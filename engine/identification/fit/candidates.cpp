@@ -6,28 +6,27 @@
 #include <numeric>
 
 #include "engine/identification/fit/starting_values.h"
-#include "engine/identification/fit/uncertainty.h"
-#include "engine/identification/record/data_quality.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 
 namespace tunewright {
 namespace {
 
-constexpr int kValleysRefined = 2;  // of the scan; twice as many with a zero, whose sign parts them
-constexpr int kStartsRefined = 2;   // from simpler fits
-constexpr int kThinSamples = 160;
+constexpr int kValleysRefined = 2;  ///< minima of the scan; twice as many with a zero, whose sign parts them
+constexpr int kStartsRefined = 2;   ///< starts from simpler fits
+constexpr int kThinSamples = 160;   ///< enough to rank starts
 constexpr Effort kCoarse{15, 1e-4};
 constexpr Effort kComparison{60, 1e-7};
 /// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
 constexpr Effort kOneStep{4, 1e-2};
 constexpr Effort kFinal{60, 1e-11};
 
-Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shape>& starts, const Effort& effort,
+Fit best_from(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& starts, const Effort& effort,
               std::stop_token stop) {
     Fit best;
     best.form = form;
     bool first = true;
-    for (const Shape& start : starts) {
+    for (const ModelShape& start : starts) {
         Fit fit = fit_shape(data, form, start, effort, stop);
         if (first || (fit.determined && (!best.determined || fit.sse < best.sse))) best = std::move(fit);
         first = false;
@@ -35,12 +34,13 @@ Fit best_from(const FitData& data, const ModelForm& form, const std::vector<Shap
     return best;
 }
 
-std::vector<Shape> most_promising(const FitContext& context, const ModelForm& form, const std::vector<Shape>& starts) {
+std::vector<ModelShape> most_promising(const FitContext& context, const ModelForm& form,
+                                       const std::vector<ModelShape>& starts) {
     const std::vector<double> sums = sums_of_squares(context.few(), form, starts, context.stop);
     std::vector<int> order(starts.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return sums[a] < sums[b]; });
-    std::vector<Shape> best;
+    std::vector<ModelShape> best;
     for (int i : order) {
         if (static_cast<int>(best.size()) < kStartsRefined) best.push_back(starts[i]);
     }
@@ -52,16 +52,16 @@ bool same_form(const ModelForm& a, const ModelForm& b) {
 }
 
 Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
-    std::vector<Shape> nested, extended;
+    std::vector<ModelShape> nested, extended;
     for (const Fit& fit : simpler) {
-        const std::vector<Shape> shapes = extend_shape(fit.shape, form.structure);
+        const std::vector<ModelShape> shapes = extend_shape(fit.shape, form.structure);
         if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
         extended.insert(extended.end(), shapes.begin(), shapes.end());
     }
     // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
-    std::vector<Shape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
+    std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
     if (!extended.empty()) {
-        const std::vector<Shape> best = most_promising(context, form, extended);
+        const std::vector<ModelShape> best = most_promising(context, form, extended);
         starts.insert(starts.end(), best.begin(), best.end());
     }
     Fit fit = best_from(context.few(), form, starts, kCoarse, context.stop);
@@ -82,15 +82,18 @@ constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
 /// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
 /// again.
 bool shows_rest(const CleanRecord& r) {
+    constexpr int kEnoughBefore = 4;  // samples that tell a slope from their noise
     const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });
-    return r.changes() > 1 || before >= 4;
+    return r.changes() > 1 || before >= kEnoughBefore;
 }
 
 /// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
 /// lag.
 bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     const double rest = level_of_rest(fit);
-    if (r.changes() == 1) return std::abs(rest) <= (is_integrating(fit.form.structure) ? 0.5 : 2.0);
+    constexpr double kFarthest = 2, kFarthestIntegrating = 0.5;  // in steps of u
+    if (r.changes() == 1)
+        return std::abs(rest) <= (is_integrating(fit.form.structure) ? kFarthestIntegrating : kFarthest);
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double span = std::max(0.0, *high) - std::min(0.0, *low);
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
@@ -99,13 +102,13 @@ bool plausible_rest(const CleanRecord& r, const Fit& fit) {
 /// A relay at work from the first row on: no part of the record is at rest.
 bool starts_in_relay(const FitContext& context) {
     const CleanRecord& r = context.record;
-    return context.relay && context.start == Start::unseen &&
+    return context.relay && context.start == RecordStart::unseen &&
            std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
 
 /// The starts other than rest that the record leaves open for this structure.
 std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
-    if (context.start == Start::at_rest) return {};
+    if (context.start == RecordStart::at_rest) return {};
     std::vector<ModelForm> starts;
     ModelForm form = from_rest.form;
     if (is_integrating(form.structure) && !form.slope && shows_rest(context.record)) {
@@ -114,13 +117,9 @@ std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_r
         form = from_rest.form;
     }
     form.other_level = true;
-    if (context.start == Start::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
+    if (context.start == RecordStart::moving || leaves_a_pattern(context, from_rest)) starts.push_back(form);
     return starts;
 }
-
-/// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
-/// digits.
-constexpr double kVarianceFloor = 1e-14;
 
 }  // namespace
 
@@ -139,7 +138,8 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
 
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
     const double n = static_cast<double>(fit.residual.size());
-    return fit.sse > 2 * n * context.noise * context.noise && correlation_time(fit.residual) > 3;
+    constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
+    return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
 }
 
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
@@ -159,7 +159,7 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
     // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
-    const double lead = disturbances.slope ? kStrong : context.start == Start::moving ? 0 : kPositive;
+    const double lead = disturbances.slope ? kStrong : context.start == RecordStart::moving ? 0 : kPositive;
     for (const ModelForm& start : other_starts(context, best)) {
         Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
@@ -186,9 +186,10 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     // What the errors of the parameters from fewer samples can cost, several times over.
     const double n = context.record.samples();
     const double noise = best / n + kVarianceFloor;
-    const double reach = 100 * noise * n / context.medium.samples();
+    constexpr double kSeveralTimes = 100, kNearBest = 1.02;
+    const double reach = kSeveralTimes * noise * n / context.medium.samples();
     for (Fit& fit : fits) {
-        if (fit.determined && fit.sse < best * 1.02 + reach)
+        if (fit.determined && fit.sse < best * kNearBest + reach)
             fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
     }
 }
@@ -207,21 +208,18 @@ double information_criterion(const Fit& fit, double independent_samples, double 
 }
 
 double fit_percent(const CleanRecord& record, const Fit& fit) {
-    const double mean = std::accumulate(record.y.begin(), record.y.end(), 0.0) / record.samples();
-    double total = 0, left = 0;
-    for (int i = 0; i < record.samples(); ++i) {
-        total += (record.y[i] - mean) * (record.y[i] - mean);
-        left += fit.residual[i] * fit.residual[i];
-    }
-    return 100 * (1 - std::sqrt(left / total));
+    double left = 0;
+    for (const double e : fit.residual) left += e * e;
+    return 100 * (1 - std::sqrt(left / squares_about_mean(record.y)));
 }
 
 bool looks_integrating(const Fit& fit) {
     const Structure structure = fit.form.structure;
-    if (structure == Structure::fopdt) return fit.shape.T() > 10;
-    if (structure == Structure::unstable) return fit.shape.T() > 2;
-    if (structure == Structure::third && fit.shape.T3() > 10) return true;
-    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > 10;
+    constexpr double kWithoutEnd = 10, kWithoutEndUnstable = 2;  // record lengths
+    if (structure == Structure::fopdt) return fit.shape.T() > kWithoutEnd;
+    if (structure == Structure::unstable) return fit.shape.T() > kWithoutEndUnstable;
+    if (structure == Structure::third && fit.shape.T3() > kWithoutEnd) return true;
+    return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > kWithoutEnd;
 }
 
 /// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
@@ -236,7 +234,7 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
-    constexpr double kPoint = 1, kMaxByNoise = 3;
+    constexpr double kPoint = 1, kMaxByNoise = 3;  // per cent of y's deviation
     const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
     return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMaxByNoise, taken_up);
 }
@@ -263,9 +261,9 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
            " independent samples).";
 }
 
-Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& percents,
-              double independent_samples) {
-    int best = -1, slowest = -1;  // among all, those without end included
+StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
+                       const std::vector<double>& percents, double independent_samples) {
+    int best = -1, slowest = -1;  // `slowest` is the best among all, lags without end included
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined) continue;
         if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;

@@ -7,7 +7,7 @@
 #include "engine/expected.h"
 #include "engine/identification/fit/output_error.h"
 #include "engine/identification/identify.h"
-#include "engine/identification/record/record_start.h"
+#include "engine/identification/record/record_kind.h"
 
 namespace tunewright {
 
@@ -18,7 +18,7 @@ struct FitContext {
     double noise = 0;    ///< standard deviation of what changes from sample to sample, rounding included
     double grid = 0;     ///< step that y is rounded to, 0 if none
     bool relay = false;  ///< a relay test
-    Start start = Start::at_rest;
+    RecordStart start = RecordStart::at_rest;
     std::vector<FrequencyConstraint> anchors;  ///< that every model is held to
     std::stop_token stop;
 
@@ -57,7 +57,7 @@ bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 /// lies below `least_variance`, where that is known of the noise.
 double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
 
-struct Choice {
+struct StructureChoice {
     int index = -1;  ///< into the fits; -1: none is determined
     std::string reason;
 };
@@ -70,8 +70,8 @@ bool looks_integrating(const Fit& fit);
 /// of one with a zero, an unseen start or an unstable pole) and its fit, too, lies within what noise explains: a
 /// hundredth of y's deviation, and up to three more for what so few more parameters take up of noise as strong as the
 /// best fit's residual (95 % of an F distribution). `criteria` and `fit_percent` belong to `fits`.
-Choice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria, const std::vector<double>& fit_percent,
-              double independent_samples);
+StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
+                       const std::vector<double>& fit_percent, double independent_samples);
 
 /// The level of v at which y was at rest before the record; 0 where the form has no other.
 double level_of_rest(const Fit& fit);

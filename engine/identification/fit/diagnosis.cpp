@@ -1,11 +1,11 @@
 #include "engine/identification/fit/diagnosis.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 #include "engine/numerics/statistics.h"
 
@@ -13,10 +13,12 @@ namespace tunewright {
 namespace {
 
 double root_mean_square(const std::vector<double>& x) {
-    double sum = 0;
-    for (double value : x) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(x.size()));
+    return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())).norm() /
+           std::sqrt(static_cast<double>(x.size()));
 }
+
+constexpr double kTiny = 1e-300;         ///< keeps a division by what may be 0 finite
+constexpr double kSettledWithin = 0.05;  ///< of the largest distance from rest, as in settling times of 5 %
 
 bool self_regulating(const Fit& fit) {
     return !is_integrating(fit.form.structure) && fit.form.structure != Structure::unstable;
@@ -33,11 +35,11 @@ double remaining_movement(const CleanRecord& r, const Fit& fit) {
     double moved = 0;
     for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
     const double final_value = fit.linear[0] * r.v_level.back() + offset;
-    return std::abs(final_value - fit.model.back()) / std::max(moved, 1e-300);
+    return std::abs(final_value - fit.model.back()) / std::max(moved, kTiny);
 }
 
 void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {
-    if (!self_regulating(fit) || remaining <= 0.05 || r.changes() > 2) return;
+    if (!self_regulating(fit) || remaining <= kSettledWithin || r.changes() > 2) return;
     warnings.push_back(
         {"unsettled-record",
          "The record ends while y still moves: by the model " + number_text(100 * remaining / (1 + remaining), 3) +
@@ -47,7 +49,10 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
 void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
     const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
-    if (rms > 0.007 && rms > 1.5 * noise && correlation_time(fit.residual) > 3) {
+    constexpr double kVisible = 0.007;                    // of y's range: what an eye sees in the plot
+    constexpr double kMoreThanNoise = 1.5, kPattern = 3;  // times the noise; samples of correlation time
+    constexpr double kFarOff = 8;                         // root mean squares
+    if (rms > kVisible && rms > kMoreThanNoise * noise && correlation_time(fit.residual) > kPattern) {
         warnings.push_back(
             {"structured-residuals", "The model misses y by " + number_text(rms * unit, 3) +
                                          " (r.m.s.), more than noise or rounding (" + number_text(noise * unit, 3) +
@@ -57,7 +62,7 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
     }
     double worst = 0;
     for (double e : fit.residual) worst = std::max(worst, std::abs(e));
-    if (worst > 8 * rms) {
+    if (worst > kFarOff * rms) {
         warnings.push_back({"outliers", "At least one sample lies " + number_text(worst * unit, 3) +
                                             " from the model where " + number_text(rms * unit, 3) +
                                             " is typical; remove false readings from the record."});
@@ -66,14 +71,15 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
 
 void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
                     std::vector<Warning>& warnings) {
+    constexpr double kUncertain = 0.2, kUnknown = 0.5;  // standard error over the parameter, or over half of all lags
     double lag_sum = values.at("L");
     for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? std::abs(values.at(lag)) : 0;
     for (const auto& [name, error] : errors) {
         const bool is_time = name == "L" || name == "T2" || name == "b" || name == "T";
         const double yardstick =
             is_time ? std::max(std::abs(values.at(name)), 0.5 * lag_sum) : std::abs(values.at(name));
-        if (error <= 0.2 * yardstick) continue;
-        const bool unknown_gain = name == "K" && error > 0.5 * yardstick;
+        if (error <= kUncertain * yardstick) continue;
+        const bool unknown_gain = name == "K" && error > kUnknown * yardstick;
         warnings.push_back({"uncertain-parameters",
                             name + " = " + number_text(values.at(name)) + " has a standard error of " +
                                 number_text(error, 2) +
@@ -85,12 +91,14 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
 
 /// A straight line through the samples before the first change of u.
 void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
+    constexpr int kMin = 5;                       // samples that tell a slope from its error
+    constexpr double kMoved = 0.03, kErrors = 5;  // of y's range; standard errors of the slope
     const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    if (n < 5 || r.t[n - 1] <= r.t[0]) return;
+    if (n < kMin || r.t[n - 1] <= r.t[0]) return;
     const auto rest = static_cast<std::size_t>(n);
     const Line line = straight_line(std::span(r.t).first(rest), std::span(r.y).first(rest));
     const double slope = line.slope, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
-    if (moved < 0.03 || std::abs(slope) < 5 * line.slope_std) return;
+    if (moved < kMoved || std::abs(slope) < kErrors * line.slope_std) return;
     warnings.push_back(
         {"not-at-rest",
          "y already moves by " + number_text(moved * r.scale.y_scale, 3) + " before u changes, " +
@@ -99,18 +107,21 @@ void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
 }
 
 void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+    constexpr double kManyDropped = 0.05;  // of the rows
+    constexpr double kFewSteps = 10;       // of y's grid over its range
+    constexpr double kLongLag = 50;        // record lengths: half of the longest lag that is searched for
     const int rows = quality.samples + quality.samples_dropped;
-    if (quality.samples_dropped > 0.05 * rows) {
+    if (quality.samples_dropped > kManyDropped * rows) {
         warnings.push_back({"rows-dropped", std::to_string(quality.samples_dropped) + " of " + std::to_string(rows) +
                                                 " rows could not be used."});
     }
-    if (quality.quantisation * 10 > r.scale.y_scale) {
+    if (quality.quantisation * kFewSteps > r.scale.y_scale) {
         warnings.push_back(
             {"coarse-quantisation", "y covers only " + number_text(r.scale.y_scale / quality.quantisation, 3) +
                                         " steps of its grid (" + number_text(quality.quantisation, 3) +
                                         "). A larger step of u or a finer sensor range gives a better model."});
     }
-    if (fit.form.structure == Structure::fopdt && fit.shape.T() >= 50) {
+    if (fit.form.structure == Structure::fopdt && fit.shape.T() >= kLongLag) {
         warnings.push_back({"looks-integrating",
                             "The time constant is at least 50 times the record's length: the record looks like that of "
                             "an integrating process. Use model ipdt."});
@@ -128,19 +139,18 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
 }  // namespace
 
 bool responds(const CleanRecord& r, const Fit& fit) {
-    const double mean = std::accumulate(r.y.begin(), r.y.end(), 0.0) / r.samples();
-    double constant = 0;
-    for (double y : r.y) constant += (y - mean) * (y - mean);
-    const double floor = 1e-14 * r.samples(), ratio = (constant + floor) / (fit.sse + floor);
+    const double floor = kVarianceFloor * r.samples();
+    const double ratio = (squares_about_mean(r.y) + floor) / (fit.sse + floor);
+    constexpr double kPlainly = 10, kBeyondPrice = 30;  // times the variance; beyond the price of the parameters
     const double n = effective_samples(fit.residual);
-    return ratio > 10 || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + 30;
+    return ratio > kPlainly || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + kBeyondPrice;
 }
 
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
                    const std::map<std::string, double>& standard_errors, const DataQuality& quality) {
     Diagnosis diagnosis;
     const double remaining = remaining_movement(record, fit);
-    diagnosis.settled = remaining < 0.05;
+    diagnosis.settled = remaining < kSettledWithin;
     warn_unsettled(record, fit, remaining, diagnosis.warnings);
     if (!fit.form.other_level && !fit.form.slope) warn_not_at_rest(record, diagnosis.warnings);
     warn_residuals(record, fit, quality, diagnosis.warnings);

@@ -17,12 +17,14 @@ struct Diagnosis {
 };
 
 /// Codes: unsettled-record, structured-residuals, uncertain-parameters, not-at-rest, coarse-quantisation,
-/// undersampled-response, looks-integrating, outliers, rows-dropped.
+/// undersampled-response, looks-integrating, outliers, rows-dropped. `fit` is of all samples of `record`; `values` and
+/// `standard_errors` are its plant's (FittedPlant), in the record's units, with the same names.
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
                    const std::map<std::string, double>& standard_errors, const DataQuality& quality);
 
-/// Whether y responds to u beyond what noise explains: n ln(sse of a constant/sse), n independent
-/// samples, must exceed the parameters' price by 30, or less than a tenth of y's variance be left.
+/// Whether y responds to u beyond what noise explains: n ln(sse of a constant/sse) must exceed the price of the
+/// parameters, (p - 1) ln n, by 30, n being the number of independent samples; or the fit must leave less than a tenth
+/// of y's variance.
 bool responds(const CleanRecord& record, const Fit& fit);
 
 }  // namespace tunewright

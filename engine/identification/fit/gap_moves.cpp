@@ -8,7 +8,8 @@ namespace {
 
 /// The time of the last row before the one at or after `time`.
 double row_before(const CleanRecord& r, double time) {
-    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - 1e-12);
+    constexpr double kRounding = 1e-12;  // of the record's length
+    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kRounding);
     return row == r.t.begin() ? time : *std::prev(row);
 }
 

@@ -6,12 +6,12 @@
 namespace tunewright {
 namespace {
 
-constexpr int kSteps = 16;
+constexpr int kSteps = 16;  ///< of the walk: a load that matters is slow
 
 /// What steps of the load do to y, spread evenly over the record; together they make a walk that ends a standard
 /// deviation of 1 from where it began.
 Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
-    Shape plant = fit.shape;
+    ModelShape plant = fit.shape;
     plant.p[0] = 0;
     const bool zero = fit.form.gains() == 2;
     const double spacing = (t[t.size() - 1] - t[0]) / kSteps;
@@ -68,13 +68,15 @@ Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) 
     const Eigen::VectorXd e = both.col(kSteps).tail(n - m);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * seen);
     // Ascending: the last `used` are not rounding.
-    const double enough = 1e-10 * eigen.eigenvalues()[kSteps - 1];
+    constexpr double kRounding = 1e-10;  // of the greatest eigenvalue
+    const double enough = kRounding * eigen.eigenvalues()[kSteps - 1];
     const auto used = (eigen.eigenvalues().array() > std::max(enough, 0.0)).count();
     if (used == 0) return {};
     const Eigen::VectorXd s = eigen.eigenvalues().tail(used);
     const Eigen::VectorXd z =
         (eigen.eigenvectors().rightCols(used).transpose() * (seen.transpose() * e)).array() / s.array().sqrt();
-    const double rest = std::max(e.squaredNorm() - z.squaredNorm(), 1e-12 * e.squaredNorm());
+    constexpr double kLeast = 1e-12;  // of the squares: their difference is rounding below it
+    const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kLeast * e.squaredNorm());
     Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
     best.a = a;
     best.unlikeliness -=
@@ -97,7 +99,8 @@ Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, 
 std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows& rows) {
     constexpr double kAsLikely = 2;  // of minus twice the logarithm of the likelihood
     const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
-    if (n < m + kSteps + 8 || !(rows.residual.squaredNorm() > 0)) return {};
+    constexpr int kFreedom = 8;  // rows beyond the unknowns, for the strengths
+    if (n < m + kSteps + kFreedom || !(rows.residual.squaredNorm() > 0)) return {};
     const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);
     // The likelihood has one peak over a: beyond what is far less likely there is nothing to find.
     std::vector<Strengths> found;

@@ -66,7 +66,7 @@ void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& 
 
 /// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
 /// integrator's.
-void warn_slow_or_integrating(const Search& search, std::vector<Warning>& warnings) {
+void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& warnings) {
     constexpr double kStrong = 10, kPoint = 1;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const bool integrating = is_integrating(search.chosen().form.structure);
@@ -116,7 +116,7 @@ struct OpenChoice {
 
 /// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
 /// less than 4 above it (Burnham and Anderson 2002, section 2.6).
-std::vector<OpenChoice> open_choices(const Search& search) {
+std::vector<OpenChoice> open_choices(const ModelSearch& search) {
     constexpr double kOpen = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const double log_n = std::log(search.independent);
@@ -162,7 +162,7 @@ void widen_gain(FittedPlant& plant, double variance) {
 
 }  // namespace
 
-IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
+IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) {
     const CleanRecord& record = search.context.record;
     const FitData data = search.context.all();
     IdentifiedModel model;
@@ -238,7 +238,7 @@ IdentifiedModel searched_model(Search search, const CleanRecord& recorded) {
     return model;
 }
 
-IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, double K, double v_rest) {
+IdentifiedModel formula_model(const CleanRecord& record, const ModelShape& shape, double K, double v_rest) {
     static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
     UnitResponse response, level;
     unit_response(record.t, {record.v_time, record.v_level}, shape, 0, response);

@@ -9,10 +9,10 @@ namespace tunewright {
 
 /// Candidates sorted by criterion, the chosen one's figures, and the warnings that the fit gives rise to. `recorded`:
 /// all samples, where the search had block means.
-IdentifiedModel searched_model(Search search, const CleanRecord& recorded);
+IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded);
 
 /// A model by formula: its free run from rest at `v_rest` beside the record, the offset estimated.
-IdentifiedModel formula_model(const CleanRecord& record, const Shape& shape, double K, double v_rest);
+IdentifiedModel formula_model(const CleanRecord& record, const ModelShape& shape, double K, double v_rest);
 
 /// G(sigma + j omega) of Eq. 9, sigma in 1/time.
 struct Shift {

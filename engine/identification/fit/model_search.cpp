@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/identification/fit/gap_moves.h"
-#include "engine/identification/fit/uncertainty.h"
+#include "engine/identification/record/series.h"
 
 namespace tunewright {
 namespace {
@@ -53,19 +53,20 @@ double independent_samples(const std::vector<Fit>& fits) {
     for (const Fit& fit : fits) {
         if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
     }
-    return best == nullptr ? 4 : effective_samples(best->residual);
+    return best == nullptr ? kMinIndependent : effective_samples(best->residual);
 }
 
-Search ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
+ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
     });
-    Search search{std::move(context), std::move(fits), {}, {}, 4, {}, disturbances};
+    ModelSearch search{std::move(context), std::move(fits), {}, {}, kMinIndependent, {}, disturbances};
     finish_fits(search.context, search.fits);
     search.independent = independent_samples(search.fits);
     // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
     constexpr double kMaxNoise = 0.03;
-    const double noise = std::min(search.context.noise, kMaxNoise), least = 0.8 * noise * noise;
+    constexpr double kKnownTo = 0.8;  // of the noise's variance
+    const double noise = std::min(search.context.noise, kMaxNoise), least = kKnownTo * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
@@ -86,13 +87,14 @@ bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
         if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
     }
     if (best == nullptr) return false;
-    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;
+    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;  // noise variances; samples of correlation time
     const double n = static_cast<double>(best->residual.size());
     return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
            correlation_time(best->residual) > kNotWhite;
 }
 
-Search fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances,
+                    const RunControl& control) {
     const Plan plan = plan_for(model, context.record);
     std::vector<Fit> fits;
     for (std::size_t i = 0; i < plan.fitted.size() && !control.stop.stop_requested(); ++i) {
@@ -110,7 +112,8 @@ Search fit_all(FitContext context, ModelChoice model, const Disturbances& distur
 }
 
 /// The chosen structure again with disturbances, and the one that it extends.
-Search fit_some(const Search& search, ModelChoice model, const Disturbances& disturbances, const RunControl& control) {
+ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturbances& disturbances,
+                     const RunControl& control) {
     const Structure chosen = search.chosen().form.structure;
     const Plan answers = plan_for(model, search.context.record);
     std::vector<Fit> fits;
@@ -136,43 +139,36 @@ CleanRecord changed_between_rows(CleanRecord record) {
     return record;
 }
 
-bool irregular(const CleanRecord& record) {
-    const double usual = usual_spacing(record);
-    std::size_t off = 0;
-    for (std::size_t i = 1; i < record.t.size(); ++i)
-        off += std::abs(record.t[i] - record.t[i - 1] - usual) > 0.1 * usual ? 1 : 0;
-    return 5 * off > record.t.size() - 1;
-}
+bool usable(const ModelSearch& search) { return search.choice.index >= 0; }
 
-bool usable(const Search& search) { return search.choice.index >= 0; }
-
-void try_between_rows(Search& search, ModelChoice model, const RunControl& control) {
-    if (!irregular(search.context.record)) return;
+void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    if (!unevenly_spaced(search.context.record)) return;
     const CleanRecord moved = changed_between_rows(search.context.record);
     const Fit& now = search.chosen();
     const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
     // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
     constexpr double kMuchWorse = 1.5;
     if (!fit.determined || fit.sse > kMuchWorse * now.sse) return;
-    Search other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
+    ModelSearch other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
     if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
 }
 
 /// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
 /// that leaves a third of the sum of squares or less.
-void try_gap_moves(Search& search, ModelChoice model, const RunControl& control) {
+void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3;
-    constexpr int kMax = 200;
-    // Misses of a few rows here and there are no pattern, and look like noise.
+    constexpr int kMax = 200;  // moves: each costs a fit for each row that it may belong to
+    // Misses of a few rows here and there are no pattern, and look like noise: the fit itself says whether to look.
     constexpr double kWorthLooking = 95;  // per cent
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const std::vector<int> moves = gap_moves(search.context.record);
     if (moves.empty() || static_cast<int>(moves.size()) > kMax) return;
-    Search other = search;
+    ModelSearch other = search;
     for (int round = 0; round < 2; ++round) {
         CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
-        Search next = fit_all(fit_context(std::move(placed), search.context.relay, control.stop), model, {}, control);
+        ModelSearch next =
+            fit_all(fit_context(std::move(placed), search.context.relay, control.stop), model, {}, control);
         if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
         other = std::move(next);
     }
@@ -191,7 +187,7 @@ bool shows_drift(const CleanRecord& r) {
 
 /// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
 /// in its place, and the choice made again.
-bool another_lag_does(Search& search, ModelChoice model, double by_drift, double independent) {
+bool another_lag_does(ModelSearch& search, ModelChoice model, double by_drift, double independent) {
     constexpr double kAsGood = 2;
     const Plan plan = plan_for(model, search.context.record);
     const auto fitted = [&](Structure structure) {
@@ -208,12 +204,12 @@ bool another_lag_does(Search& search, ModelChoice model, double by_drift, double
 
 /// A slow part beside a quick one that is slower than the record may stand in for a drift: then a drift is tried in its
 /// place, and kept where it explains the record as well.
-void try_drift_for_slow_part(Search& search, ModelChoice model, const RunControl& control) {
+void try_drift_for_slow_part(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kSlow = 0.5, kAsGood = 2;
     const Fit& now = search.chosen();
     if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < kSlow || now.form.slope) return;
     if (!shows_drift(search.context.record)) return;
-    Search other = fit_all(search.context, model, {true, false}, control);
+    ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     const double n = other.independent;
     if (information_criterion(other.chosen(), n) > information_criterion(now, n) + kAsGood) return;
@@ -222,32 +218,34 @@ void try_drift_for_slow_part(Search& search, ModelChoice model, const RunControl
 
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
-void try_drift(Search& search, ModelChoice model, const RunControl& control) {
-    constexpr double kPositive = 6, kStrong = 10;
+void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    constexpr double kPositive = 6, kStrong = 10;  // differences of the criterion (Kass and Raftery 1995, section 3.2)
+    constexpr Effort kRough{30, 1e-6};             // enough to compare criteria
+    constexpr double kWhite = 2, kSteps = 3;       // samples of correlation time; steps of y's grid over the record
     const Fit& now = search.chosen();
     if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
     ModelForm form = now.form;
     form.slope = true;
-    const Fit fit = fit_shape(search.context.some(), form, now.shape, {30, 1e-6}, control.stop);
+    const Fit fit = fit_shape(search.context.some(), form, now.shape, kRough, control.stop);
     const Fit plain = project(search.context.some(), now.form, now.shape);
     if (!fit.determined) return;
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
-    const double time = correlation_time(fit.residual), n = std::max(4.0, fit.residual.size() / time);
+    const double time = correlation_time(fit.residual), n = std::max(kMinIndependent, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < 2 ? kPositive : kStrong)) return;
-    if (std::abs(fit.linear[form.slope_index()]) < 3 * search.context.grid) return;
+    if (lead < (time < kWhite ? kPositive : kStrong)) return;
+    if (std::abs(fit.linear[form.slope_index()]) < kSteps * search.context.grid) return;
     if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
-    Search other = fit_all(search.context, model, {true, false}, control);
+    ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     search = std::move(other);
 }
 
-void try_disturbances(Search& search, ModelChoice model, const RunControl& control) {
+void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3, kFarLess = 30, kStrong = 10, kWorthLooking = 0.005;
     const CleanRecord& record = search.context.record;
-    if (misfit(search.context, search.chosen()) < kWorthLooking) return;
-    const Search* best = &search;
-    std::vector<Search> others;
+    if (unexplained_share(search.context, search.chosen()) < kWorthLooking) return;
+    const ModelSearch* best = &search;
+    std::vector<ModelSearch> others;
     others.reserve(3);
     for (const Disturbances& d : {Disturbances{true, false}, Disturbances{false, true}, Disturbances{true, true}}) {
         if (control.stop.stop_requested()) return;
@@ -255,7 +253,7 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
         // Both together only where neither alone explains the record.
         if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
         others.push_back(fit_some(search, model, d, control));
-        const Search& other = others.back();
+        const ModelSearch& other = others.back();
         if (!usable(other)) continue;
         // A disturbance that leaves a pattern too stands in for a structure that is none of these.
         const double less = best->chosen().sse / other.chosen().sse;
@@ -268,17 +266,21 @@ void try_disturbances(Search& search, ModelChoice model, const RunControl& contr
     search = fit_all(search.context, model, best->disturbances, control);
 }
 
-/// Of an unstable model, over so many time constants that its free run is all but arbitrary.
-bool runs_too_long(const Fit& fit) { return fit.form.structure == Structure::unstable && fit.shape.T() < 0.12; }
+/// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
+bool runs_too_long(const Fit& fit) {
+    constexpr double kShortest = 0.12;  // record lengths: e^(1/0.12) is 4000 times an error at the start
+    return fit.form.structure == Structure::unstable && fit.shape.T() < kShortest;
+}
 
 /// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
-void try_beginning(Search& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
+void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
     if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
+    constexpr int kMinChanges = 3, kMinBeginning = 40;  // of u, and samples: a period of the relay and some more
     for (const double part : {0.35, 0.12, 0.04}) {
         if (control.stop.stop_requested()) return;
         const CleanRecord beginning = first_part(record, part);
-        if (beginning.changes() < 3 || beginning.samples() < 40) return;
-        Search other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
+        if (beginning.changes() < kMinChanges || beginning.samples() < kMinBeginning) return;
+        ModelSearch other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
         if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
         if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;
         search = std::move(other);
@@ -290,26 +292,20 @@ void try_beginning(Search& search, const CleanRecord& record, ModelChoice model,
 }  // namespace
 
 bool at_shortest_lag(const Fit& fit) {
-    constexpr double kNear = 0.2;
+    constexpr double kNear = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
     return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
 }
 
-double misfit(const FitContext& context, const Fit& fit) {
-    const std::vector<double>& y = context.record.y;
-    const double n = static_cast<double>(y.size());
-    const double mean = std::accumulate(y.begin(), y.end(), 0.0) / n;
-    double total = 0, left = 0;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-        total += (y[i] - mean) * (y[i] - mean);
-        left += fit.residual[i] * fit.residual[i];
-    }
-    // The noise is known to some ten per cent.
-    const double noise = 1.1 * context.noise;
-    return std::sqrt(std::max(0.0, left - n * noise * noise) / total);
+double unexplained_share(const FitContext& context, const Fit& fit) {
+    constexpr double kNoiseKnownTo = 1.1;  // the noise is known to some ten per cent
+    double left = 0;
+    for (const double e : fit.residual) left += e * e;
+    const double noise = kNoiseKnownTo * context.noise, n = context.record.samples();
+    return std::sqrt(std::max(0.0, left - n * noise * noise) / squares_about_mean(context.record.y));
 }
 
-Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
-    Search search = fit_all(fit_context(record, relay, control.stop), model, {}, control);
+ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
+    ModelSearch search = fit_all(fit_context(record, relay, control.stop), model, {}, control);
     auto unexplained = [&] {
         return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
     };
@@ -326,7 +322,8 @@ Search search_models(const CleanRecord& record, ModelChoice model, bool relay, c
     return search;
 }
 
-void constrain(Search& search, std::vector<FrequencyConstraint> anchors, ModelChoice model, const RunControl& control) {
+void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
+               const RunControl& control) {
     const Plan plan = plan_for(model, search.context.record);
     FitContext context = search.context;
     context.anchors = std::move(anchors);

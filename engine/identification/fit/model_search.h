@@ -5,40 +5,49 @@
 
 #include "engine/expected.h"
 #include "engine/identification/fit/candidates.h"
+#include "engine/identification/record/series.h"
 #include "engine/progress.h"
 
 namespace tunewright {
 
-/// The fits of one record, on all its samples, with what chooses among them; `criteria` and `percents` belong to
-/// `fits`.
-struct Search {
+/// The fits of one record with what chooses among them. The record is dimensionless (clean_record.h): times in lengths
+/// of the record, y in its range. `fits`, `criteria` and `percents` have equal lengths.
+struct ModelSearch {
     FitContext context;
-    std::vector<Fit> fits;
-    std::vector<double> criteria, percents;
-    double independent = 4;  ///< samples that the best residual is worth
-    Choice choice;
+    std::vector<Fit> fits;  ///< on all samples of context.record
+    std::vector<double>
+        criteria;  ///< n ln(sse/n) + p ln n of each fit, n = `independent` (Schwarz 1978); less is better
+    std::vector<double> percents;          ///< 100 (1 - ||residual||/||y - mean(y)||) of each fit, at most 100
+    double independent = kMinIndependent;  ///< samples that the best residual is worth
+    StructureChoice choice;
     Disturbances disturbances;
-    double part = 1;  ///< of the record, from its start: less than all for an unstable plant's long record
+    double part = 1;  ///< share of the record, from its start: below 1 for an unstable plant's long record
 
+    /// The fit of the chosen structure; only where choice.index >= 0.
     const Fit& chosen() const { return fits[static_cast<std::size_t>(choice.index)]; }
 };
 
-/// Fits the structures that answer `model`. Where the best leaves a pattern: in a record that is not evenly sampled, u
-/// is tried as changing midway between the rows; in one in which u moves more than once (or y creeps before it does), a
-/// drift and a lasting load at an unknown time are tried, and kept if they leave a third of the sum of squares or less
-/// (a thirtieth where a pattern remains).
-/// An unstable plant's free run loses its digits over a long record: in relay tests that no model explains, its
-/// beginning is tried.
-/// Stops early when asked to; the caller looks.
-Search search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
+/// Fits the structures that answer `model`, by output error (output_error.h), and chooses by the information criterion.
+/// Where the best fit leaves a pattern:
+/// - in a record that is not evenly sampled, u is tried as changing midway between the rows;
+/// - in one in which u moves more than once, or y creeps before u does, a drift and a lasting load at an unknown time
+///   are tried, and kept if they leave a third of the sum of squares or less (a thirtieth where a pattern remains);
+/// - an unstable plant's free run loses its digits over a long record: in relay tests that no model explains, the
+///   record's beginning is tried.
+///
+/// `relay`: the record is of a relay test. Nothing is chosen (choice.index < 0) where the record determines no
+/// structure. When control.stop asks for it the search ends early with what it has; the caller looks at the token.
+ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
-/// The same structures once more, held to measured values of the frequency response.
-void constrain(Search& search, std::vector<FrequencyConstraint> anchors, ModelChoice model, const RunControl& control);
+/// Fits the same structures once more, held to `anchors`, measured values of the frequency response.
+void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
+               const RunControl& control);
 
-/// Whether an unstable model's time constant is about the least that a record can show.
+/// Whether an unstable model's time constant is about the least that a record can show, e^kMinUnstable of its length.
 bool at_shortest_lag(const Fit& fit);
 
-/// Root of the mean square that a fit leaves beyond noise, relative to y's standard deviation.
-double misfit(const FitContext& context, const Fit& fit);
+/// sqrt((||residual||^2 - n (1.1 noise)^2)/||y - mean(y)||^2), at least 0: what a fit leaves beyond noise, as a share
+/// of y's standard deviation. `fit` is of all samples of context.record.
+double unexplained_share(const FitContext& context, const Fit& fit);
 
 }  // namespace tunewright

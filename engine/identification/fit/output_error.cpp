@@ -8,10 +8,11 @@
 namespace tunewright {
 namespace {
 
-/// A given y0 is assumed to be an average of many readings: it counts as ten samples.
+/// The square root of 10: a given y0 is assumed to be an average of many readings, and counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
 /// A column whose part outside the others' span is relatively below this is no independent one.
 constexpr double kDependent = 1e-9;
+/// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
 constexpr double kStep = 1e-4;
 
 int anchor_rows(std::span<const FrequencyConstraint> anchors) {
@@ -49,7 +50,7 @@ public:
     }
 
     /// n_rows x linear_size, kept until the next call.
-    const Eigen::MatrixXd& regressors(const Shape& shape) {
+    const Eigen::MatrixXd& regressors(const ModelShape& shape) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
         columns_.setZero();
@@ -72,21 +73,22 @@ public:
         return columns_;
     }
 
-    void project(const Shape& shape, Projection& result) {
+    void project(const ModelShape& shape, Projection& result) {
         orthogonalise(regressors(shape), result);
         result.sse = result.residual.squaredNorm();
     }
 
     /// By normal equations: fast, good to the square root of the precision.
-    double rough_sum(const Shape& shape) {
+    double rough_sum(const ModelShape& shape) {
         const Eigen::MatrixXd& A = regressors(shape);
         const int m = static_cast<int>(A.cols());
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> G(m, m);
         Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> b(m);
+        constexpr double kRidge = 1e-12;  // dependent columns share their coefficient
         for (int k = 0; k < m; ++k) {
             b[k] = A.col(k).dot(y_);
             for (int i = 0; i <= k; ++i) G(i, k) = G(k, i) = A.col(i).dot(A.col(k));
-            G(k, k) *= 1 + 1e-12;
+            G(k, k) *= 1 + kRidge;
         }
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> x = G.ldlt().solve(b);
         const double sum = y_.squaredNorm() - b.dot(x);
@@ -94,7 +96,7 @@ public:
     }
 
     /// d model/d searched, n_rows x searched, kept until the next call.
-    Eigen::MatrixXd& sensitivities(const Shape& shape, const Eigen::VectorXd& linear) {
+    Eigen::MatrixXd& sensitivities(const ModelShape& shape, const Eigen::VectorXd& linear) {
         const std::vector<int> places = form_.searched();
         D_.setZero(rows_, static_cast<Eigen::Index>(places.size()));
         const bool zero = form_.gains() == 2;
@@ -106,7 +108,7 @@ public:
         for (std::size_t k = 1; k < places.size(); ++k) {
             if (places[k] == kLoadTime) continue;
             for (const double sign : {1.0, -1.0}) {
-                Shape moved = shape;
+                ModelShape moved = shape;
                 moved.p[places[k]] += sign * kStep;
                 add_model(static_cast<int>(k), moved, linear, sign / (2 * kStep));
             }
@@ -114,7 +116,7 @@ public:
         return D_;
     }
 
-    Fit finish(const Shape& shape, const Projection& p) const {
+    Fit finish(const ModelShape& shape, const Projection& p) const {
         Fit fit;
         fit.form = form_;
         fit.shape = shape;
@@ -132,12 +134,12 @@ private:
         return {values.data(), static_cast<Eigen::Index>(values.size())};
     }
 
-    void respond(const Shape& shape, int derivatives) {
+    void respond(const ModelShape& shape, int derivatives) {
         static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
         unit_response(record_.t, {record_.v_time, record_.v_level}, shape, derivatives, now_);
         if (form_.other_level) unit_response(record_.t, {kAtOnce, kUnit}, shape, derivatives, level_);
         if (!form_.load) return;
-        Shape undelayed = shape;
+        ModelShape undelayed = shape;
         undelayed.p[0] = 0;
         const double when[] = {shape.load_time()};
         unit_response(record_.t, {when, kUnit}, undelayed, derivatives, load_);
@@ -155,7 +157,7 @@ private:
         if (form_.gains() == 2) target += sign * linear[index + 1] * column(response.x2);
     }
 
-    std::complex<double> anchored(const FrequencyConstraint& anchor, const Shape& shape,
+    std::complex<double> anchored(const FrequencyConstraint& anchor, const ModelShape& shape,
                                   const Eigen::VectorXd& linear) const {
         const std::complex<double> s(0, anchor.omega);
         const std::complex<double> gain = form_.gains() == 2 ? linear[0] + linear[1] * s : linear[0];
@@ -167,7 +169,7 @@ private:
         if (anchor.omega > 0) D_(row + 1, place) += value.imag();
     }
 
-    void add_anchor_slopes(const Shape& shape, const Eigen::VectorXd& linear) {
+    void add_anchor_slopes(const ModelShape& shape, const Eigen::VectorXd& linear) {
         int row = first_anchor_;
         for (const FrequencyConstraint& anchor : anchors_) {
             add_at_anchor(row, 0, anchor, -std::complex<double>(0, anchor.omega) * anchored(anchor, shape, linear));
@@ -176,7 +178,7 @@ private:
     }
 
     /// Adds `weight` times the model at `shape` to column `place`.
-    void add_model(int place, const Shape& shape, const Eigen::VectorXd& linear, double weight) {
+    void add_model(int place, const ModelShape& shape, const Eigen::VectorXd& linear, double weight) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
         auto add = [&](int index, const UnitResponse& response) {
@@ -216,7 +218,8 @@ private:
                 }
             }
             const double rest = q.norm();
-            if (!(rest > kDependent * length) || rest < 1e-150) {
+            constexpr double kTiny = 1e-150;  // its square is still above 0
+            if (!(rest > kDependent * length) || rest < kTiny) {
                 if (k == m - 1) result.determined = false;
                 R(k, k) = 1;
                 q.setZero();
@@ -240,13 +243,13 @@ private:
     UnitResponse now_, level_, load_;
 };
 
-Shape clamped(Shape shape, const ShapeBounds& bounds) {
+ModelShape clamped(ModelShape shape, const ShapeBounds& bounds) {
     for (std::size_t k = 0; k < shape.p.size(); ++k) shape.p[k] = std::clamp(shape.p[k], bounds.low[k], bounds.high[k]);
     return shape;
 }
 
 /// Parameters that a step would push through their bound take no part in it.
-std::vector<int> free_parameters(const Shape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
+std::vector<int> free_parameters(const ModelShape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
                                  const Eigen::VectorXd& descent) {
     std::vector<int> free;
     for (int k = 0; k < descent.size(); ++k) {
@@ -263,7 +266,8 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
     const int m = static_cast<int>(free.size());
     Eigen::MatrixXd A(m, m);
     Eigen::VectorXd b(m);
-    const double floor = 1e-12 * normal.diagonal().maxCoeff();
+    constexpr double kInsensitive = 1e-12;  // a parameter that nothing depends on is damped all the same
+    const double floor = kInsensitive * normal.diagonal().maxCoeff();
     for (int i = 0; i < m; ++i) {
         for (int j = 0; j < m; ++j) A(i, j) = normal(free[i], free[j]);
         A(i, i) += lambda * std::max(A(i, i), floor);
@@ -276,18 +280,18 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
 }
 
 /// A full step in a logarithm beyond this leaves the region where the linearisation means anything.
-Shape moved_by(const Shape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
-               const ShapeBounds& bounds) {
-    constexpr double kLongest = 1.5;
+ModelShape moved_by(const ModelShape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
+                    const ShapeBounds& bounds) {
+    constexpr double kLongest = 1.5;  // a factor of 4.5
     double longest = 0;
     for (int k = 1; k < step.size(); ++k) longest = std::max(longest, std::abs(step[k]));
     const double shrink = longest > kLongest ? kLongest / longest : 1;
-    Shape next = shape;
+    ModelShape next = shape;
     for (int k = 0; k < step.size(); ++k) next.p[places[k]] += shrink * step[k];
     return clamped(next, bounds);
 }
 
-double distance(const Shape& a, const Shape& b) {
+double distance(const ModelShape& a, const ModelShape& b) {
     double largest = 0;
     for (std::size_t k = 0; k < a.p.size(); ++k) largest = std::max(largest, std::abs(a.p[k] - b.p[k]));
     return largest;
@@ -314,14 +318,14 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
     return bounds;
 }
 
-Fit project(const FitData& data, const ModelForm& form, const Shape& shape) {
+Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape) {
     OutputError problem(data, form);
     Projection here;
     problem.project(shape, here);
     return problem.finish(shape, here);
 }
 
-std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<Shape>& shapes,
+std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
                                     std::stop_token stop) {
     OutputError problem(data, form);
     std::vector<double> sums(shapes.size(), std::numeric_limits<double>::max());
@@ -329,13 +333,14 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
     return sums;
 }
 
-Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, const Effort& effort,
+Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
               std::stop_token stop) {
-    constexpr double kSmallestStep = 1e-9, kLargestDamping = 1e10;
+    constexpr double kSmallestStep = 1e-9;    // digits beyond those that any noise leaves
+    constexpr double kLargestDamping = 1e10;  // steps are then rounding
     OutputError problem(data, form);
     const std::vector<int> places = form.searched();
     const ShapeBounds bounds = shape_bounds(*data.record, form.structure);
-    Shape shape = clamped(start, bounds);
+    ModelShape shape = clamped(start, bounds);
     Projection here, there;
     problem.project(shape, here);
     double lambda = 1e-3;
@@ -350,7 +355,7 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, co
         if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
         bool converged = false, better = false;
         while (!better && !converged && lambda < kLargestDamping) {
-            const Shape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
+            const ModelShape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
             const double moved = distance(next, shape);
             problem.project(next, there);
             converged = !(moved > kSmallestStep);

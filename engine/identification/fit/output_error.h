@@ -17,7 +17,7 @@ struct ModelForm {
     Structure structure = Structure::fopdt;
     bool other_level = false;  ///< at rest at an unknown level, which u left for its first value at the first sample
     bool slope = false;        ///< y drifts; integrating structures: the level of rest is unknown
-    bool load = false;         ///< a lasting step of unknown size is added to u from Shape::load_time on, without L
+    bool load = false;  ///< a lasting step of unknown size is added to u from ModelShape::load_time on, without L
 
     int gains() const { return structure == Structure::sopdt_zero ? 2 : 1; }
     int offset_index() const { return gains(); }
@@ -25,7 +25,7 @@ struct ModelForm {
     int slope_index() const { return level_index() + (other_level ? gains() : 0); }
     int load_index() const { return slope_index() + (slope ? 1 : 0); }
     int linear_size() const { return load_index() + (load ? gains() : 0); }
-    /// Places in Shape::p that are searched for.
+    /// Places in ModelShape::p that are searched for.
     std::vector<int> searched() const;
     int parameters() const { return shape_size(structure) + (load ? 1 : 0) + linear_size(); }
 };
@@ -38,6 +38,10 @@ struct ShapeBounds {
 inline constexpr double kMinUnstable = -2.995732273553991;
 ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
 
+/// The residual variance below which fits count as equal, relative to y's range squared: rounding in the record's last
+/// digits.
+inline constexpr double kVarianceFloor = 1e-14;
+
 /// A value of the frequency response that the model is held to: a row of the least-squares problem with this weight
 /// (the inverse of its standard deviation relative to that of y's samples).
 struct FrequencyConstraint {
@@ -49,7 +53,7 @@ struct FrequencyConstraint {
 /// A model fitted to a clean record; dimensionless.
 struct Fit {
     ModelForm form;
-    Shape shape;
+    ModelShape shape;
     std::vector<double> linear;    ///< linear_size() coefficients
     std::vector<double> model;     ///< n_samples: the free run
     std::vector<double> residual;  ///< n_samples: y - model
@@ -72,10 +76,10 @@ struct FitData {
 
 /// The linear coefficients for a fixed shape by orthogonal projection (variable projection: Golub and Pereyra 1973),
 /// and the fit's residual.
-Fit project(const FitData& data, const ModelForm& form, const Shape& shape);
+Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape);
 
 /// The sum of squares alone, of many shapes, to about 1e-10 of y's own: for ranking starts. By normal equations.
-std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<Shape>& shapes,
+std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
                                     std::stop_token stop);
 
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
@@ -87,7 +91,7 @@ struct Effort {
     int most_iterations = 60;
     double tolerance = 1e-11;
 };
-Fit fit_shape(const FitData& data, const ModelForm& form, const Shape& start, const Effort& effort,
+Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
               std::stop_token stop);
 
 /// Fills `fit.J`.

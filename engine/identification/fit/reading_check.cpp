@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -15,7 +16,7 @@ constexpr double kOfRange = 0.05;
 double usual_size(const std::vector<double>& values) {
     std::vector<double> sizes;
     for (const double value : values) sizes.push_back(std::abs(value));
-    return sizes.empty() ? 0 : median(std::move(sizes)) / 0.6745;
+    return sizes.empty() ? 0 : median(std::move(sizes)) / kMedianOfNormal;
 }
 
 std::vector<bool> lone_misses(const Fit& fit) {
@@ -55,7 +56,7 @@ void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
 }
 
 /// How far the model lies from the samples that it was not fitted to, at least; their places are in the whole record.
-double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const Search& found) {
+double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const ModelSearch& found) {
     const Fit there = project(found.context.all(), found.chosen().form, found.chosen().shape);
     UnitResponse response, level;
     static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
@@ -93,13 +94,14 @@ std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& 
     return found.size() <= most ? found : std::vector<std::size_t>{};
 }
 
-Search without_false_readings(Search search, CleanRecord& record, ModelChoice model, const RunControl& control) {
+ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
+                                   const RunControl& control) {
     constexpr double kTimesOthers = 8;
     if (search.context.record.samples() != record.samples() || search.part < 1) return search;
     const std::vector<std::size_t> doubtful = doubtful_samples(record, search.chosen());
     if (doubtful.empty()) return search;
     CleanRecord rest = without_samples(record, doubtful);
-    Search again = search_models(rest, model, search.context.relay, control);
+    ModelSearch again = search_models(rest, model, search.context.relay, control);
     if (again.choice.index < 0 || control.stop.stop_requested()) return search;
     const Fit& fit = again.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));

@@ -7,9 +7,9 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kBlocks = 80;
+constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, few enough to be slow
 
-/// Of all orders from 0 on.
+/// Burg's estimates of the orders 0 to `highest`, or fewer where the series is short.
 std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
     const std::size_t n = e.size();
     std::vector<double> forward(e.begin(), e.end()), backward(e.begin(), e.end());
@@ -39,7 +39,7 @@ std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest)
     return orders;
 }
 
-/// Of the order with the least Akaike criterion.
+/// Burg's estimate of the order with the least Akaike criterion.
 Autoregression autoregression(std::span<const double> e, std::size_t highest) {
     const double n = static_cast<double>(e.size());
     const std::vector<Autoregression> orders = burg(e, highest);

@@ -81,7 +81,8 @@ public:
     SecondOrder(double a1, double a2) : a1_(a1), a2_(a2), sigma_(a1 / (2 * a2)) {
         const double square = sigma_ * sigma_ - 1 / a2;
         // Nearly equal roots are taken as equal: the relative error of the response is below 1e-12.
-        const double w2 = std::abs(square) < 1e-13 * sigma_ * sigma_ ? 0 : square;
+        constexpr double kEqual = 1e-13;
+        const double w2 = std::abs(square) < kEqual * sigma_ * sigma_ ? 0 : square;
         w_ = std::sqrt(std::abs(w2));
         kind_ = w2 == 0 ? Kind::equal : w2 > 0 ? Kind::real : Kind::complex;
         fast_ = sigma_ + w_;
@@ -111,7 +112,8 @@ private:
         double cosine = 0, sine = 0;
         if (kind_ == Kind::real) {
             const double apart = 2 * w_ * dt, slow = std::exp(-slow_ * dt);
-            const double ratio = apart > 0.3 ? std::exp(-apart) - 1 : std::expm1(-apart);
+            constexpr double kNoCancellation = 0.3;  // e^(-x) - 1 keeps its digits from there on, and is faster
+            const double ratio = apart > kNoCancellation ? std::exp(-apart) - 1 : std::expm1(-apart);
             cosine = slow * (1 + 0.5 * ratio);
             sine = -slow * ratio / (2 * w_);
         } else if (kind_ == Kind::equal) {
@@ -188,7 +190,7 @@ private:
 };
 
 template <int kDerivatives, class System>
-void run(std::span<const double> times, const Input& input, double L, System system, UnitResponse& out) {
+void run(std::span<const double> times, const InputSteps& input, double L, System system, UnitResponse& out) {
     double now = 0, v = 0;
     std::size_t j = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
@@ -208,7 +210,7 @@ void run(std::span<const double> times, const Input& input, double L, System sys
 }
 
 template <int kDerivatives>
-void run(std::span<const double> t, const Input& input, const Shape& shape, UnitResponse& out) {
+void run(std::span<const double> t, const InputSteps& input, const ModelShape& shape, UnitResponse& out) {
     switch (shape.structure) {
         case Structure::fopdt: return run<kDerivatives>(t, input, shape.L(), Lag{shape.T()}, out);
         case Structure::unstable: return run<kDerivatives>(t, input, shape.L(), Lag{-shape.T()}, out);
@@ -226,13 +228,13 @@ void run(std::span<const double> t, const Input& input, const Shape& shape, Unit
 
 }  // namespace
 
-double Shape::T() const { return std::exp(p[1]); }
-double Shape::a1() const { return std::exp(p[1]); }
-double Shape::a2() const { return std::exp(2 * p[1] + p[2]); }
+double ModelShape::T() const { return std::exp(p[1]); }
+double ModelShape::a1() const { return std::exp(p[1]); }
+double ModelShape::a2() const { return std::exp(2 * p[1] + p[2]); }
 
-double Shape::T3() const { return std::exp(p[kThirdLag]); }
+double ModelShape::T3() const { return std::exp(p[kThirdLag]); }
 
-double Shape::slowest_lag() const {
+double ModelShape::slowest_lag() const {
     if (!has_quadratic(structure)) return T();
     const double ratio = a2() / (a1() * a1());
     const double of_two = ratio < 0.25 ? 0.5 * a1() * (1 + std::sqrt(1 - 4 * ratio)) : std::sqrt(a2());
@@ -278,7 +280,7 @@ const char* name_of(Structure structure) {
     return "";
 }
 
-std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
+std::complex<double> unit_transfer(const ModelShape& shape, std::complex<double> s) {
     const std::complex<double> delay = std::exp(-shape.L() * s);
     switch (shape.structure) {
         case Structure::fopdt: return delay / (1.0 + shape.T() * s);
@@ -293,7 +295,7 @@ std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s) {
     return 0;
 }
 
-void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+void unit_response(std::span<const double> t, const InputSteps& input, const ModelShape& shape, int derivatives,
                    UnitResponse& response) {
     std::vector<double>* columns[] = {&response.x, &response.x1, &response.x2};
     for (int k = 0; k <= derivatives; ++k) columns[k]->resize(t.size());

@@ -24,7 +24,7 @@ enum class Structure {
 /// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
 /// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
 /// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3.
-struct Shape {
+struct ModelShape {
     Structure structure = Structure::fopdt;
     std::array<double, 5> p{};
 
@@ -37,7 +37,7 @@ struct Shape {
     double slowest_lag() const;  ///< of a self-regulating structure, an oscillation's T for it
 };
 
-/// Places in Shape::p that belong to a structure, the dead time's first.
+/// Places in ModelShape::p that belong to a structure, the dead time's first.
 std::vector<int> shape_places(Structure structure);
 /// 1 to 4: how many they are.
 int shape_size(Structure structure);
@@ -47,7 +47,7 @@ bool has_quadratic(Structure structure);
 /// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
-inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in Shape::p
+inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in ModelShape::p
 
 /// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
 struct UnitResponse {
@@ -55,17 +55,17 @@ struct UnitResponse {
 };
 
 /// e^(-Ls) over the structure's denominator: the transfer function of `unit_response`.
-std::complex<double> unit_transfer(const Shape& shape, std::complex<double> s);
+std::complex<double> unit_transfer(const ModelShape& shape, std::complex<double> s);
 
 /// A piecewise constant input: 0 at first, level[j] from time[j] on; times ascend strictly from 0.
-struct Input {
+struct InputSteps {
     std::span<const double> time, level;
 };
 
 /// Rest before t = 0. Each interval between samples and delayed changes of v is one step with the exact
 /// exponential, so irregular times and dead times between samples cost no accuracy. Work: samples + changes. Only
 /// derivatives up to `derivatives` (0 to 2) are filled.
-void unit_response(std::span<const double> t, const Input& input, const Shape& shape, int derivatives,
+void unit_response(std::span<const double> t, const InputSteps& input, const ModelShape& shape, int derivatives,
                    UnitResponse& response);
 
 }  // namespace tunewright

@@ -27,16 +27,16 @@ std::vector<double> dead_times(const CleanRecord& r, int even) {
     return values;
 }
 
-Shape at(Structure structure, double L, double T, double rho, double load_time = 0, double T3 = 1) {
+ModelShape at(Structure structure, double L, double T, double rho, double load_time = 0, double T3 = 1) {
     return {structure, {L, std::log(T), std::log(rho), load_time, std::log(T3)}};
 }
 
 /// A third lag beside a fitted second order, from next to none to the longest, the others shortened for it; the fitted
 /// one first.
-std::vector<Shape> third_beside(const Shape& second) {
+std::vector<ModelShape> third_beside(const ModelShape& second) {
     const double L = second.L(), a1 = second.a1(), rho = second.a2() / (a1 * a1), load = second.load_time();
     const double slow = std::sqrt(second.a2());
-    std::vector<Shape> shapes = {at(Structure::third, L, a1, rho, load, 1e-3 * a1)};
+    std::vector<ModelShape> shapes = {at(Structure::third, L, a1, rho, load, 1e-3 * a1)};
     if (rho > 0.25) {
         for (const double lag : {0.1, 0.4, 1.2})
             shapes.push_back(at(Structure::third, 0.5 * L, a1, rho, load, lag * slow));
@@ -56,7 +56,7 @@ std::vector<Shape> third_beside(const Shape& second) {
 /// Every combination of the axes' values, the last axis fastest.
 struct Grid {
     std::array<int, 4> size{};
-    std::vector<Shape> shapes;
+    std::vector<ModelShape> shapes;
 
     /// Whether no neighbour along an axis is lower.
     bool is_local_minimum(const std::vector<double>& values, int index) const {
@@ -108,7 +108,7 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
 
 }  // namespace
 
-std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop) {
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop) {
     // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found. The
     // widest always do.
     if (form.load && shape_size(form.structure) > 2) return {};
@@ -120,14 +120,14 @@ std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int m
         if (grid.is_local_minimum(sums, i)) minima.push_back(i);
     }
     std::stable_sort(minima.begin(), minima.end(), [&](int a, int b) { return sums[a] < sums[b]; });
-    std::vector<Shape> best;
+    std::vector<ModelShape> best;
     for (int i : minima) {
         if (static_cast<int>(best.size()) < most) best.push_back(grid.shapes[i]);
     }
     return best;
 }
 
-std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
+std::vector<ModelShape> extend_shape(const ModelShape& simpler, Structure structure) {
     const double L = simpler.L(), load = simpler.load_time();
     const bool wider = structure == Structure::sopdt || structure == Structure::sopdt_zero;
     if (simpler.structure == Structure::fopdt && wider) {
@@ -136,7 +136,7 @@ std::vector<Shape> extend_shape(const Shape& simpler, Structure structure) {
                 at(structure, 0.2 * L, T + 0.8 * L, 0.24, load)};
     }
     if (simpler.structure == Structure::sopdt && structure == Structure::sopdt_zero) {
-        Shape shape = simpler;
+        ModelShape shape = simpler;
         shape.structure = structure;
         return {shape};
     }

@@ -1,19 +1,25 @@
-// Where the fit starts: from the record itself.
+// Where the search for a model's shape starts: from the record itself, and from fits of simpler structures.
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "engine/identification/fit/output_error.h"
 
 namespace tunewright {
 
-/// Shapes worth refining, best first, at most `most`. A coarse scan over the dead time (where local minima live) and
-/// the time constants, gain and offset eliminated at every point; the local minima of the scan are kept. The record
-/// should be thinned out (a few hundred samples).
-std::vector<Shape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop);
+/// Shapes of `form` worth refining, best first, at most `most`; dimensionless. A coarse scan over the dead time (where
+/// local minima live), the time constants and the time of a load, gain and offset eliminated at every point; the local
+/// minima of the scan are kept. The record should be thinned out (thin_out(), a few hundred samples).
+///
+/// Empty for the widest structures (third, ipdt_second), and for a load beside a second order: these start from fits
+/// of simpler structures alone. A scan that is stopped keeps what it has seen.
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop);
 
-/// Shapes of `structure` that equal or nearly equal the fitted simpler one: a nested model is never fitted worse than
-/// the one it contains.
-std::vector<Shape> extend_shape(const Shape& simpler, Structure structure);
+/// Shapes of `structure` that equal or nearly equal the fitted simpler one, the nearest first: a nested model is never
+/// fitted worse than the one that it contains. Empty where `structure` does not contain the simpler one:
+///
+///   fopdt in sopdt and sopdt_zero; sopdt in sopdt_zero and third; ipdt in ipdt_lag; ipdt_lag in ipdt_second.
+std::vector<ModelShape> extend_shape(const ModelShape& simpler, Structure structure);
 
 }  // namespace tunewright

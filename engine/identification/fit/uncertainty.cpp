@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
+#include "engine/identification/record/series.h"
 
 namespace tunewright {
 namespace {
@@ -14,7 +16,7 @@ namespace {
 using Parameters = std::map<std::string, double>;
 
 /// The plant's parameters by symbol, in the record's units. `lags`: name the second order by T1, T2.
-Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shape& shape,
+Parameters parameters_of(const RecordScale& s, const ModelForm& form, const ModelShape& shape,
                          std::span<const double> linear, bool lags) {
     const double K = linear[0] * s.y_scale / s.u_scale;
     Parameters p;
@@ -50,7 +52,11 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Shap
     return p;
 }
 
-bool has_two_lags(const Shape& shape) { return 4 * std::exp(shape.p[2]) <= 1 + 1e-9; }
+/// Whether the quadratic factor is two real lags; equal lags, which a search meets within rounding, count as two.
+bool has_two_lags(const ModelShape& shape) {
+    constexpr double kRounding = 1e-9;
+    return 4 * std::exp(shape.p[2]) <= 1 + kRounding;
+}
 
 Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
     auto at = [&](const char* name) { return p.at(name); };
@@ -87,7 +93,7 @@ std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
 /// Rounding to a grid is the same error over a whole plateau, unless noise dithers it: q/sqrt 12 for no noise, falling
 /// as the grid's first harmonic does, e^(-2 pi^2 sigma^2/q^2) for noise sigma (Widrow and Kollar 2008, chapter 19).
 double common_rounding(double grid, double noise) {
-    constexpr double kPi = 3.141592653589793;
+    constexpr double kPi = std::numbers::pi;
     const double ratio = noise / grid;
     return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
 }
@@ -97,6 +103,7 @@ double common_rounding(double grid, double noise) {
 /// it counts only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
 std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
                                           const Eigen::MatrixXd& inverse, double variance) {
+    constexpr double kDependent = 1e-9;  // what the other columns leave of a power of time is rounding
     if (is_integrating(fit.form.structure)) return {};
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
     const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
@@ -109,10 +116,12 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
         Eigen::VectorXd alone = q - J.topRows(n) * moved;
         if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
         const double size = alone.squaredNorm();
-        if (!(size > 1e-9 * q.squaredNorm())) break;
+        if (!(size > kDependent * q.squaredNorm())) break;
         const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
         before = alone;
-        if (z2 > 2) changes.emplace_back(-slope * (1 - 2 / z2) * moved);
+        // James and Stein's shrinkage of one normal figure, positive part.
+        constexpr double kByChance = 2;
+        if (z2 > kByChance) changes.emplace_back(-slope * (1 - kByChance / z2) * moved);
     }
     return changes;
 }
@@ -185,6 +194,8 @@ struct ScaledProblem {
 
 /// `variance`: the noise's over a long run.
 ScaledProblem scaled_problem(const Fit& fit, double variance) {
+    constexpr double kNoLength = 1e-12;  // a column of zeros keeps a length to divide by
+    constexpr double kSingular = 1e-13;  // eigenvalue of J'J, whose diagonal is 1, that is rounding
     const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
     ScaledProblem p;
     p.shape = static_cast<int>(fit.form.searched().size());
@@ -195,11 +206,11 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
         p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
         // What no sample shows is still no longer than the record, and no lag is thousands of times another.
         if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
-        p.length[k] = std::max(p.J.col(k).norm(), 1e-12);
+        p.length[k] = std::max(p.J.col(k).norm(), kNoLength);
         p.J.col(k) /= p.length[k];
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.J.transpose() * p.J);
-    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-13).cwiseInverse().asDiagonal() *
+    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kSingular).cwiseInverse().asDiagonal() *
                 eigen.eigenvectors().transpose();
     return p;
 }
@@ -225,7 +236,8 @@ Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& lef
 Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise,
                               LoadDoubt load) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
-    const bool on_plateaus = common > 0.02 * grid;
+    constexpr double kDithered = 0.02;  // of a step: noise has made the rounding of one sample another's no more
+    const bool on_plateaus = common > kDithered * grid;
     std::vector<double> t(times.begin(), times.end());
     const Fit fit = on_plateaus ? whole : condensed(whole, t);
     const int m = fit.form.parameters();
@@ -262,53 +274,7 @@ Eigen::MatrixXd given_deviations(const Fit& fit) {
     return deviations;
 }
 
-/// By Geyer's sum, for up to a few thousand samples.
-double summed_correlation_time(std::span<const double> series) {
-    const int n = static_cast<int>(series.size());
-    const int longest = std::min(n / 2, 2000);
-    auto covariance = [&](int lag) {
-        double sum = 0;
-        for (int i = lag; i < n; ++i) sum += series[i] * series[i - lag];
-        return sum;
-    };
-    const double variance = covariance(0);
-    if (!(variance > 0)) return 1;
-    double time = -1;
-    for (int k = 0; k + 1 <= longest; k += 2) {
-        const double pair = (k == 0 ? variance : covariance(k)) + covariance(k + 1);
-        if (pair <= 0) break;
-        time += 2 * pair / variance;
-    }
-    return std::max(1.0, time);
-}
-
 }  // namespace
-
-double correlation_time(std::span<const double> series) {
-    constexpr std::size_t kMaxSummed = 3000;
-    if (series.size() <= kMaxSummed) return summed_correlation_time(series);
-    // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
-    const std::size_t batch = (series.size() + kMaxSummed - 1) / kMaxSummed;
-    std::vector<double> means;
-    double squares = 0;
-    for (std::size_t i = 0; i + batch <= series.size(); i += batch) {
-        double sum = 0;
-        for (std::size_t k = i; k < i + batch; ++k) {
-            sum += series[k];
-            squares += series[k] * series[k];
-        }
-        means.push_back(sum / static_cast<double>(batch));
-    }
-    double between = 0;
-    for (const double mean : means) between += mean * mean;
-    if (!(squares > 0)) return 1;
-    const double size = static_cast<double>(batch);
-    return std::max(1.0, size * size * between / squares * summed_correlation_time(means));
-}
-
-double effective_samples(std::span<const double> residual) {
-    return std::max(4.0, static_cast<double>(residual.size()) / correlation_time(residual));
-}
 
 Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
     const bool lags = has_two_lags(fit.shape);
@@ -316,6 +282,7 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
 }
 
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise, LoadDoubt load) {
+    constexpr double kLargest = 1e150;  // its square, the variance, is still finite
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
     FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
@@ -333,7 +300,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         Parameters side[2];
         for (int k = 0; k < 2; ++k) {
             const double sign = k == 0 ? part : -part;
-            Shape shape = fit.shape;
+            ModelShape shape = fit.shape;
             std::vector<double> linear = fit.linear;
             for (int i = 0; i < size; ++i) shape.p[places[i]] += sign * deviations(axis, i);
             for (std::size_t i = 0; i < linear.size(); ++i)
@@ -343,7 +310,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         }
         std::vector<double> half;
         for (const auto& [name, value] : side[0])
-            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -1e150, 1e150));
+            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -kLargest, kLargest));
         for (std::size_t i = 0; i < half.size(); ++i) {
             for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
         }

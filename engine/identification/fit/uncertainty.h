@@ -12,14 +12,6 @@
 
 namespace tunewright {
 
-/// The integrated autocorrelation time of a series, in samples, >= 1: 1 + 2 sum rho_k, the sum ended by Geyer's initial
-/// positive sequence (Geyer 1992, section 3.3), of more than 3,000 samples by means of batches. White noise: 1. n
-/// samples are worth n/(this) independent ones.
-double correlation_time(std::span<const double> series);
-
-/// Independent samples that a residual is worth, at least 4.
-double effective_samples(std::span<const double> residual);
-
 /// The plant of a fit in the record's units, and the standard errors of its parameters.
 struct FittedPlant {
     Plant plant;

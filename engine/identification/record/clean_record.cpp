@@ -29,9 +29,10 @@ std::optional<Error> check_columns(const Record& r) {
     return std::nullopt;
 }
 
-std::optional<Error> check_rows(const Record& r, const Rows& rows, const Cleaning& done) {
+std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const Cleaning& done) {
     const int n = static_cast<int>(rows.t.size());
-    if (done.backward > 0.1 * static_cast<double>(r.t.size())) {
+    constexpr double kFewBackward = 0.1;  // of the rows: more are several records, or none
+    if (done.backward > kFewBackward * static_cast<double>(r.t.size())) {
         return Error{ErrorKind::invalid_argument, "record/t",
                      "Times run backward in " + std::to_string(done.backward) + " of " + std::to_string(r.t.size()) +
                          " rows (first at " + row_text(done, done.first_backward) +
@@ -65,7 +66,7 @@ std::optional<Error> check_rows(const Record& r, const Rows& rows, const Cleanin
     return std::nullopt;
 }
 
-void scale_rows(const Rows& rows, CleanRecord& clean) {
+void scale_rows(const RecordRows& rows, CleanRecord& clean) {
     RecordScale& s = clean.scale;
     const auto [y_low, y_high] = std::minmax_element(rows.y.begin(), rows.y.end());
     const double origin = std::min(rows.t.front(), rows.change_time.front());
@@ -134,7 +135,7 @@ std::string row_text(const Cleaning& cleaning, int row) {
 Expected<CleanRecord> clean_record(const Record& record) {
     if (auto error = check_columns(record)) return *error;
     CleanRecord clean;
-    Rows rows = collect_rows(record, clean.cleaning);
+    RecordRows rows = collect_rows(record, clean.cleaning);
     drop_false_readings(rows, clean.cleaning);
     drop_late_moves(rows, clean.cleaning);
     if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
@@ -187,6 +188,14 @@ std::vector<double> spacings(const CleanRecord& r) {
 double usual_spacing(const CleanRecord& r) {
     std::vector<double> all = spacings(r);
     return all.empty() ? 0 : median(std::move(all));
+}
+
+bool unevenly_spaced(const CleanRecord& record) {
+    const double usual = usual_spacing(record);
+    std::size_t off = 0;
+    for (std::size_t i = 1; i < record.t.size(); ++i)
+        off += std::abs(record.t[i] - record.t[i - 1] - usual) > kOffSpacing * usual ? 1 : 0;
+    return 5 * off > record.t.size() - 1;
 }
 
 CleanRecord thin_out(const CleanRecord& record, int most) {

@@ -29,7 +29,7 @@ struct Cleaning {
     int missing_u = 0;                      ///< u was held
     int missing_y = 0;                      ///< u of the row was used
     double hole_from = 0, hole_to = 0;      ///< the longest time without y because of that, record's unit
-    std::vector<int> spikes;                ///< left out: readings of y that are false plainly (false_readings.h)
+    std::vector<int> spikes;                ///< left out: readings of y that are false plainly (record_rows.h)
     std::vector<double> spike_times;        ///< of the same, record's unit
     int late_moves = 0;                     ///< left out: changes of u that no sample follows
     int limited_u = 0;                      ///< rows in which u was cut to its limits
@@ -77,6 +77,12 @@ std::vector<double> spacings(const CleanRecord& record);
 
 /// Their median; 0 where there is none.
 double usual_spacing(const CleanRecord& record);
+
+/// A spacing that differs from the usual one by more than this share of it is another spacing, not jitter of the clock.
+inline constexpr double kOffSpacing = 0.1;
+
+/// Whether more than a fifth of the times from one sample to the next, equal times included, differ from the usual one.
+bool unevenly_spaced(const CleanRecord& record);
 
 /// A record of at most about `most` samples with the same input, denser after the large changes of u: for coarse
 /// searches. An input of very many changes is averaged over blocks.

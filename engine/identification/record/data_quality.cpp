@@ -6,6 +6,8 @@
 #include <string>
 
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/saturation.h"
+#include "engine/identification/record/series.h"
 #include "engine/identification/wording.h"
 #include "engine/numerics/statistics.h"
 
@@ -14,11 +16,12 @@ namespace {
 
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings = tunewright::spacings(r);
+    constexpr double kFewOdd = 0.01;  // of the spacings: a row that a logger missed now and then
     const double typical = median(spacings);
     const auto odd = std::count_if(spacings.begin(), spacings.end(),
-                                   [&](double d) { return std::abs(d - typical) > 0.1 * typical; });
+                                   [&](double d) { return std::abs(d - typical) > kOffSpacing * typical; });
     quality.sample_time = typical * r.scale.t_scale;
-    quality.irregular = static_cast<double>(odd) > 0.01 * static_cast<double>(spacings.size());
+    quality.irregular = static_cast<double>(odd) > kFewOdd * static_cast<double>(spacings.size());
     if (quality.irregular) quality.notes.push_back("The samples are not evenly spaced; each is used at its own time.");
 
     // Loggers that write on change have long spacings all the time: only what is rare is a gap.
@@ -111,7 +114,8 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
 }
 
 bool on_a_level(const TwoLevels& u, double v) {
-    const double same = 0.1 * (u.high - u.low);
+    constexpr double kSame = 0.1;
+    const double same = kSame * (u.high - u.low);
     return std::abs(v - u.low) < same || std::abs(v - u.high) < same;
 }
 
@@ -129,7 +133,7 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     const double duration = t.back() - t.front();
     // Two samples determine a line without telling its error.
     const double slope = line.slope, error = n > 2 ? line.slope_std : std::abs(slope);
-    constexpr double kMoved = 0.03, kErrors = 5;
+    constexpr double kMoved = 0.03, kErrors = 5;  // of y's range; standard errors of the slope
     PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
     pretest.at_rest = std::abs(slope) * duration < kMoved || std::abs(slope) < kErrors * error;
     quality.pretest = pretest;
@@ -162,7 +166,8 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
     const double noise = noise_std(r.y), grid = quantisation_step(r.y);
     quality.noise_std = noise * r.scale.y_scale;
     quality.quantisation = grid * r.scale.y_scale;
-    if (grid > 0.5 * noise && grid > 1e-3) {
+    constexpr double kBesideNoise = 0.5, kVisible = 1e-3;  // of the noise; of y's range
+    if (grid > kBesideNoise * noise && grid > kVisible) {
         quality.notes.push_back("y lies on a grid of " + number_text(quality.quantisation) + " (its range is " +
                                 number_text(r.scale.y_scale) + ").");
     }
@@ -178,48 +183,11 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
 bool look_swapped(const CleanRecord& r) {
     int y_moves = 0;
     for (int i = 1; i < r.samples(); ++i) y_moves += r.y[i] != r.y[i - 1] ? 1 : 0;
-    constexpr int kFew = 30;
+    constexpr int kFew = 30;  // moves of y
     return y_moves > 0 && y_moves <= std::max(3, r.samples() / 100) && y_moves <= kFew && 2 * r.changes() > r.samples();
 }
 
 }  // namespace
-
-double noise_std(std::span<const double> y) {
-    // A second difference of white noise has six times its variance; the median of |.| of a normal variable is 0.6745
-    // of its deviation.
-    std::vector<double> differences;
-    double squares = 0;
-    for (std::size_t i = 2; i < y.size(); ++i) {
-        const double d = y[i] - 2 * y[i - 1] + y[i - 2];
-        differences.push_back(std::abs(d));
-        squares += d * d;
-    }
-    if (differences.empty()) return 0;
-    const double by_square = std::sqrt(squares / static_cast<double>(differences.size()) / 6);
-    const double by_median = median(std::move(differences)) / 0.6745 / std::sqrt(6.0);
-    return by_median > 0 ? std::min(by_median, by_square) : by_square;
-}
-
-double quantisation_step(std::span<const double> y) {
-    std::vector<double> values(y.begin(), y.end());
-    std::sort(values.begin(), values.end());
-    const double range = values.back() - values.front();
-    const double same = 1e-9 * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
-    values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
-                 values.end());
-    if (values.size() == 2) return range;
-    if (values.size() < 3) return 0;
-    double smallest = range;
-    for (std::size_t i = 1; i < values.size(); ++i) smallest = std::min(smallest, values[i] - values[i - 1]);
-    double count = 0;
-    for (std::size_t i = 1; i < values.size(); ++i) count += std::round((values[i] - values[i - 1]) / smallest);
-    const double step = range / count;
-    for (double value : values) {
-        const double places = (value - values.front()) / step;
-        if (std::abs(places - std::round(places)) > 0.1) return 0;
-    }
-    return step;
-}
 
 DataQuality describe_record(const CleanRecord& r) {
     DataQuality quality;
@@ -244,7 +212,7 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
                                 " % of the samples: a sensor or a valve stood at its end, which no linear model can "
                                 "follow. Repeat the test with a smaller step, or cut the record before that."});
     }
-    constexpr double kLongGap = 0.03, kManyMissing = 0.05;
+    constexpr double kLongGap = 0.03, kManyMissing = 0.05;  // of the record's length; of its rows
     if (quality.gaps && quality.gaps->longest > kLongGap * r.scale.t_scale) {
         warnings.push_back({"gaps", "Nothing was recorded for " + number_text(quality.gaps->longest) +
                                         " from t = " + number_text(quality.gaps->at) + ", " +

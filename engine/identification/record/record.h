@@ -8,19 +8,23 @@
 
 namespace tunewright {
 
-/// `several_steps` is an answer's word: fewer than 20 changes of u that are no relay's.
+/// What kind of test a record is of, as the user says or as found (record_kind.h). `several_steps` is only ever found:
+/// fewer than 20 changes of u that are no relay's.
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
-/// hold). Lengths are equal; r is empty or as long and has a number in each row.
+/// hold). t, u and y have equal lengths; r and line are empty or as long.
 struct Record {
     std::vector<double> t;       ///< time in the user's unit, any start
     std::vector<double> u;       ///< controller output (plant input)
     std::vector<double> y;       ///< measurement
-    std::vector<double> r = {};  ///< set point, in y's unit; empty: none
+    std::vector<double> r = {};  ///< set point, in y's unit, a number in each row; empty: none
     RecordKind kind = RecordKind::automatic;
-    std::optional<double> u0, y0;                        ///< values before the first sample, in the record's units
-    std::optional<std::array<double, 2>> u_limits = {};  ///< low < high: the actuator goes no further, whatever u says
+    std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
+
+    /// low < high: the actuator goes no further, whatever u says.
+    std::optional<std::array<double, 2>> u_limits = {};
+
     std::vector<int> line;  ///< of each sample in the file that it comes from, for sentences; empty: no file
 };
 

@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
+#include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
 namespace {
 
-constexpr int kMinSwitches = 3;
-constexpr int kMaxSteps = 20;
+constexpr int kMinSwitches = 3;  ///< a whole period of a relay
+constexpr int kMaxSteps = 20;    ///< more moves are no steps that somebody made by hand
 
 double spread(const std::vector<double>& x) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
@@ -19,7 +21,8 @@ double spread(const std::vector<double>& x) {
 
 /// y just before `time`: what a relay has seen when it switched.
 double y_before(const CleanRecord& r, double time) {
-    const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + 1e-12);
+    constexpr double kRounding = 1e-12;  // of the record's length
+    const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + kRounding);
     return r.y[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - r.t.begin() - 1))];
 }
 
@@ -54,7 +57,7 @@ bool regular(const HalfPeriods& halves, double tolerance) {
 
 /// Whether y is nearly the same at all switches up, and at all switches down.
 bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
-    constexpr double kTolerance = 0.2;
+    constexpr double kTolerance = 0.2;  // of what y moves: hysteresis, noise and late samples
     std::vector<double> seen[2];
     for (std::size_t k = 0; k < u.switch_time.size(); ++k) seen[k % 2].push_back(y_before(r, u.switch_time[k]));
     const auto first = std::lower_bound(r.t.begin(), r.t.end(), u.switch_time.front()) - r.t.begin();
@@ -65,15 +68,18 @@ bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
 
 /// Whether y rests when u switches: in most half periods its last fifth moves little beside the whole.
 bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
+    constexpr std::ptrdiff_t kMin = 5;  // samples: a tenth of a half period needs some
+    constexpr double kAtRest = 0.03;    // of what y moves in the half period
     int resting = 0, halves = 0;
     for (std::size_t k = 1; k < u.switch_time.size(); ++k) {
         const double from = u.switch_time[k - 1], to = u.switch_time[k], tenth = (to - from) / 10;
         const double late = std::abs(y_mean(r, to - tenth, to) - y_mean(r, to - 2 * tenth, to - tenth));
         const auto first = std::lower_bound(r.t.begin(), r.t.end(), from),
                    last = std::upper_bound(first, r.t.end(), to);
-        if (last - first < 5) continue;
+        if (last - first < kMin) continue;
         ++halves;
-        if (late < 0.03 * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())})) ++resting;
+        if (late < kAtRest * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())}))
+            ++resting;
     }
     return 2 * resting > halves;
 }
@@ -81,8 +87,10 @@ bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
 bool is_relay(const CleanRecord& r, const TwoLevels& u) {
     if (static_cast<int>(u.switch_time.size()) < kMinSwitches) return false;
     const HalfPeriods halves = half_periods(u);
-    const bool repeats = u.switch_time.size() >= 5 && regular(halves, 0.1);
-    const bool follows_y = regular(halves, 0.5) && switched_by_y(r, u);
+    constexpr std::size_t kTwoPeriods = 5;            // switches
+    constexpr double kRegular = 0.1, kRoughly = 0.5;  // deviation of the half periods over their mean
+    const bool repeats = u.switch_time.size() >= kTwoPeriods && regular(halves, kRegular);
+    const bool follows_y = regular(halves, kRoughly) && switched_by_y(r, u);
     return (repeats || follows_y) && !rests_before_switches(r, u);
 }
 
@@ -101,7 +109,7 @@ double widest_gap(std::vector<double> levels, double& gap) {
 
 /// The levels [first, last) as two groups; false where they are not two.
 bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, TwoLevels& out) {
-    constexpr double kDistinct = 10;
+    constexpr double kDistinct = 10;  // gap between the groups over the spread inside them
     const std::vector<double> used(levels.level.begin() + static_cast<std::ptrdiff_t>(first),
                                    levels.level.begin() + static_cast<std::ptrdiff_t>(last));
     double gap = 0;
@@ -115,6 +123,11 @@ bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, T
         if ((levels.level[i] > border) != (levels.level[i - 1] > border)) out.switch_time.push_back(levels.time[i]);
     }
     return true;
+}
+
+/// Whether u comes back to its first level, as that of a relay that is at work from the first row on does.
+bool comes_back(const CleanRecord& r) {
+    return r.changes() > 1 && std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
 
 }  // namespace
@@ -171,6 +184,31 @@ const char* name_of(RecordKind kind) {
         case RecordKind::general: return "general";
     }
     return "auto";
+}
+
+RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
+    constexpr std::size_t kMin = 5;      // samples that tell a slope from its error
+    constexpr double kErrors = 5;        // standard errors of the slope
+    constexpr double kVisible = 0.03;    // of y's range, over the rows before the first change of u
+    constexpr double kTimesScatter = 4;  // what scatters about the line
+    constexpr double kInTheEnd = 0.05;   // of y's range, over the whole record
+    if (r.u0_given) return RecordStart::at_rest;
+    const auto n = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
+    if (n < kMin || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? RecordStart::at_rest : RecordStart::unseen;
+    const std::span t(r.t.data(), n), y(r.y.data(), n);
+    if (relay && comes_back(r)) {
+        constexpr double kStill = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings
+        const auto [low, high] = std::minmax_element(y.begin(), y.end());
+        return *high - *low <= std::max(kStill, kTimesNoise * noise) ? RecordStart::at_rest : RecordStart::unseen;
+    }
+    const Line line = straight_line(t, y);
+    const double slope = std::abs(line.slope), moved = slope * (t.back() - t[0]);
+    if (slope <= kErrors * line.slope_std) return RecordStart::at_rest;
+    std::vector<double> left;
+    for (std::size_t i = 0; i < n; ++i) left.push_back(y[i] - line.y_mean - line.slope * (t[i] - line.t_mean));
+    if (moved > kVisible && moved > kTimesScatter * deviation(left)) return RecordStart::moving;
+    const bool certain = slope > kErrors * line.slope_std * std::sqrt(correlation_time(left));
+    return certain && slope * (r.t.back() - r.t[0]) > kInTheEnd ? RecordStart::moving : RecordStart::at_rest;
 }
 
 }  // namespace tunewright

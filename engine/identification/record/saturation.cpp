@@ -1,13 +1,13 @@
+#include "engine/identification/record/saturation.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "engine/identification/record/data_quality.h"
 
 namespace tunewright {
 namespace {
 
-constexpr int kMinRun = 5;
-constexpr double kMinShare = 0.01;
+constexpr int kMinRun = 5;          ///< samples
+constexpr double kMinShare = 0.01;  ///< of the samples
 
 /// Movement of y over the few samples that end at i, per sample.
 double speed(const CleanRecord& r, int i, int samples) {
@@ -32,7 +32,7 @@ bool alternates(const CleanRecord& r) {
         turns += d * before < 0 ? 1 : 0;
         before = d;
     }
-    constexpr double kTurning = 0.3;
+    constexpr double kTurning = 0.3;  // of the moves: white noise turns in two thirds
     return turns > kTurning * moves;
 }
 
@@ -56,7 +56,10 @@ int samples_at(const CleanRecord& r, double level, double same, bool noisy, doub
 }  // namespace
 
 std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
-    constexpr double kSame = 1e-9, kCoarse = 1.0 / 30, kNoisy = 2, kMinNoise = 1e-3, kPart = 1.0 / 6;
+    constexpr double kSame = 1e-9;                  // of y's range: rounding in binary
+    constexpr double kCoarse = 1.0 / 30;            // of y's range: on so few steps every y stands still
+    constexpr double kNoisy = 2, kMinNoise = 1e-3;  // steps of the grid; of y's range
+    constexpr double kPart = 1.0 / 6;               // of y's fastest movement
     if (grid > kCoarse) return {};
     const int window = std::clamp(r.samples() / 200, 3, 50);
     const double least_speed = kPart * fastest(r, window);
@@ -66,6 +69,26 @@ std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double gri
         const int count = samples_at(r, level, kSame, noisy, least_speed, window);
         if (count < kMinShare * r.samples() || count < kMinRun) continue;
         found.push_back({r.scale.y_origin + r.scale.y_scale * level, static_cast<double>(count) / r.samples()});
+    }
+    return found;
+}
+
+std::vector<InputLimits> plain_limits(const Record& record) {
+    static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
+                                             {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
+    constexpr double kBeyond = 0.05, kMinOutside = 0.02, kMinInside = 0.1;
+    std::vector<InputLimits> found;
+    for (const InputLimits& limits : kUsual) {
+        const auto [low, high] = limits;
+        const double margin = kBeyond * (high - low);
+        int inside = 0, outside = 0, all = 0;
+        for (const double u : record.u) {
+            if (!std::isfinite(u)) continue;
+            ++all;
+            inside += u > low && u < high ? 1 : 0;
+            outside += u < low - margin || u > high + margin ? 1 : 0;
+        }
+        if (inside > kMinInside * all && outside > kMinOutside * all) found.push_back(limits);
     }
     return found;
 }

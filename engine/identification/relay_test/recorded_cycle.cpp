@@ -31,10 +31,11 @@ public:
     /// The integral of (y - y0 - slope (t - from)) e^(-st) over [from, to] by trapezoids.
     Complex of_y(double from, double to, Complex s, double y0, double slope) const {
         // e^(-s(t - from)) from sample to sample; evenly spaced ones share their factor.
+        constexpr double kSameStep = 1e-15;  // of the record: rounding of evenly spaced times
         Complex turned = 1, factor = 1;
         double factor_of = 0, last = from;
         auto value = [&](double t, double y) {
-            if (std::abs(t - last - factor_of) > 1e-15) factor_of = t - last, factor = std::exp(-s * factor_of);
+            if (std::abs(t - last - factor_of) > kSameStep) factor_of = t - last, factor = std::exp(-s * factor_of);
             turned *= factor;
             return (y - y0 - slope * (t - from)) * turned;
         };
@@ -54,10 +55,11 @@ public:
 
     /// The integral of (v - v0) e^(-st) over [from, to], exactly.
     Complex of_v(double from, double to, Complex s, double v0) const {
+        constexpr double kFlat = 1e-8;  // below it (1 - e^(-sh))/s loses more digits than h is off
         Complex sum = 0;
         auto piece = [&](double a, double b, double v) {
             const double h = b - a;
-            const Complex whole = std::abs(s) * h < 1e-8 ? Complex(h) : (1.0 - std::exp(-s * h)) / s;
+            const Complex whole = std::abs(s) * h < kFlat ? Complex(h) : (1.0 - std::exp(-s * h)) / s;
             sum += (v - v0) * std::exp(-s * (a - from)) * whole;
         };
         auto j = std::upper_bound(r_.v_time.begin(), r_.v_time.end(), from) - r_.v_time.begin();
@@ -121,10 +123,13 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
         if (k > 0) steps.push_back(periods[k].mean - periods[k - 1].mean);
     }
     const double length = mean(lengths), half = mean(halves), step = mean(steps);
-    const double length_tolerance = 1.5 * spacing + 4 * deviation(lengths) + 2e-3 * length;
-    const double half_tolerance = 0.01 * half + 2 * noise + 4 * deviation(halves);
-    const double step_tolerance = 0.01 * half + 4 * noise / std::sqrt(std::max(1, samples_a_period)) +
-                                  4 * deviation(steps) + std::abs(step) + spacing / length * half;
+    constexpr double kSpacings = 1.5;                   // both ends of a period are seen at the next sample
+    constexpr double kErrors = 4;                       // standard deviations
+    constexpr double kOfLength = 2e-3, kOfHalf = 0.01;  // what a steady oscillation is known to at best
+    const double length_tolerance = kSpacings * spacing + kErrors * deviation(lengths) + kOfLength * length;
+    const double half_tolerance = kOfHalf * half + 2 * noise + kErrors * deviation(halves);
+    const double step_tolerance = kOfHalf * half + kErrors * noise / std::sqrt(std::max(1, samples_a_period)) +
+                                  kErrors * deviation(steps) + std::abs(step) + spacing / length * half;
     std::size_t first = n - 1;
     for (std::size_t k = n; k-- > 0;) {
         const Period& p = periods[k];
@@ -148,6 +153,9 @@ Line creep(const std::vector<Period>& periods, std::size_t first) {
     return straight_line(middles, means);
 }
 
+/// What y may differ by without having moved: standard deviations of its noise, and a share of its swing.
+constexpr double kErrors = 4, kOfSwing = 0.002;
+
 /// The mean of y before the plant has answered: up to the relay's start; or, where the record starts with it, of the
 /// earlier half of the first samples until one leaves their mean (an answer shows in noise only some time after it
 /// began).
@@ -158,7 +166,8 @@ double y_before_answer(const CleanRecord& r, double relay_start, double noise, d
     std::vector<double> sums;
     for (int i = 0; i < r.samples(); ++i) {
         const double y = r.y[static_cast<std::size_t>(i)], t = r.t[static_cast<std::size_t>(i)];
-        const bool answered = before ? t > relay_start : n > 0 && std::abs(y - sum / n) > 4 * noise + 0.002 * swing;
+        const bool answered =
+            before ? t > relay_start : n > 0 && std::abs(y - sum / n) > kErrors * noise + kOfSwing * swing;
         if (answered && n > 0) break;
         sum += y;
         sums.push_back(sum);
@@ -178,7 +187,7 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     const double zero = -r.scale.u_rest / r.scale.u_scale, y_zero = -r.scale.y_origin / r.scale.y_scale;
     const bool deviations = zero > u.low && zero < u.high;
     rest.v = deviations ? zero : 0.5 * (u.low + u.high);
-    if (deviations && !r.y_rest && std::abs(rest.y - y_zero) < 4 * noise / std::sqrt(n) + 0.002 * swing)
+    if (deviations && !r.y_rest && std::abs(rest.y - y_zero) < kErrors * noise / std::sqrt(n) + kOfSwing * swing)
         rest.y = y_zero;
     return rest;
 }
@@ -210,10 +219,10 @@ Pooled pool(const Signals& signals, const RecordedCycle& cycle, int order) {
 }
 
 void add_harmonics(const Signals& signals, double noise, RecordedCycle& cycle) {
-    constexpr int kHighest = 25;
+    constexpr int kHighest = 25, kSamplesAWave = 8;  // order; fewer samples do not show a harmonic
     const int samples = signals.samples(cycle.start, cycle.start + cycle.period * cycle.periods);
     const double by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
-    for (int k = 1; k <= kHighest && k * 8 * cycle.periods <= samples; ++k) {
+    for (int k = 1; k <= kHighest && k * kSamplesAWave * cycle.periods <= samples; ++k) {
         const Pooled pooled = pool(signals, cycle, k);
         cycle.harmonics.push_back(
             {k, pooled.U, pooled.Y, pooled.Y / pooled.U, std::max(pooled.scatter, by_noise) / std::abs(pooled.U)});
@@ -234,8 +243,10 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
     }
     cycle.period_scatter = deviation(lengths);
     cycle.y_half = mean(halves);
-    const bool creeps = cycle.periods >= 4 && std::abs(line.slope) > 6 * line.slope_std &&
-                        std::abs(line.slope) * length > 0.01 * cycle.y_half;
+    constexpr int kMinPeriods = 4;
+    constexpr double kSlopeErrors = 6, kVisible = 0.01;  // standard errors; of half a swing over all periods
+    const bool creeps = cycle.periods >= kMinPeriods && std::abs(line.slope) > kSlopeErrors * line.slope_std &&
+                        std::abs(line.slope) * length > kVisible * cycle.y_half;
     cycle.drift = creeps ? line.slope : 0;
     cycle.v_mean = signals.of_v(cycle.start, cycle.start + length, 0, 0).real() / length;
     cycle.y_mean = signals.of_y(cycle.start, cycle.start + length, 0, 0, 0).real() / length;
@@ -245,6 +256,7 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
 /// noise, one that is not steady yet adds scatter.
 void take_best_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t steady, double noise,
                        RecordedCycle& cycle) {
+    constexpr double kClearlyMore = 0.7;
     double least = std::numeric_limits<double>::max();
     RecordedCycle best;
     for (std::size_t first = steady; first + 2 <= periods.size(); ++first) {
@@ -254,7 +266,7 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
         const double n = now.periods, by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
         const double uncertainty = std::max(pool(signals, now, 1).scatter, by_noise) * (1 + 1 / (n - 1));
         // Only what is clearly more certain is worth fewer periods: the scatter of a few is itself uncertain.
-        if (uncertainty < 0.7 * least) least = uncertainty, best = now;
+        if (uncertainty < kClearlyMore * least) least = uncertainty, best = now;
     }
     if (best.periods > 0)
         cycle = best;
@@ -264,7 +276,10 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
 
 }  // namespace
 
-bool RecordedCycle::biased() const { return std::abs(v_middle - rest.v) > 0.05 * v_half; }
+bool RecordedCycle::biased() const {
+    constexpr double kBiased = 0.05;  // of half a swing: a level of rest is seldom known better
+    return std::abs(v_middle - rest.v) > kBiased * v_half;
+}
 
 double RecordedCycle::static_gain() const { return (y_mean - rest.y) / (v_mean - rest.v); }
 
@@ -290,7 +305,9 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     }
     RecordedCycle cycle;
     const double relay_level = u.first_is_up ? u.low : u.high;
-    const bool pre_test = std::abs(levels.level.front() - relay_level) > 0.02 * (u.high - u.low) && levels.moves() > 0;
+    constexpr double kSameLevel = 0.02;  // of the distance between the levels
+    const bool pre_test =
+        std::abs(levels.level.front() - relay_level) > kSameLevel * (u.high - u.low) && levels.moves() > 0;
     cycle.relay_start = pre_test ? levels.time[1] : 0;
     cycle.recorded_periods = static_cast<int>(periods.size());
     const double spacing = r.t.back() / std::max(1, r.samples() - 1);

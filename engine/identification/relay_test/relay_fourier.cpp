@@ -1,7 +1,9 @@
 #include "engine/identification/relay_test/relay_fourier.h"
 
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 
@@ -34,7 +36,7 @@ Complex denominator(Structure structure, double T, Complex s) {
     }
 }
 
-Shape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
+ModelShape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
 
 /// The gain and dead time that meet Eqs. 11 and 12 at this T.
 struct Matched {
@@ -63,24 +65,17 @@ double excess(const Polar& point, double omega, Structure structure, double T, d
     return std::log(std::abs(m.K) / (std::abs(denominator(structure, T, s)) * magnitude)) - sigma * m.L;
 }
 
-/// Newton in ln T between two signs; a step that leaves the bracket becomes a bisection.
-double solve(const std::function<double(double)>& f, double low, double high) {
-    double at_low = f(low), x = 0.5 * (low + high);
-    for (int i = 0; i < 100 && high - low > 1e-14 * std::max(1.0, std::abs(x)); ++i) {
-        const double value = f(x);
-        if (value == 0) return x;
-        ((value > 0) == (at_low > 0) ? low : high) = x;
-        if ((value > 0) == (at_low > 0)) at_low = value;
-        constexpr double kStep = 1e-6;
-        const double slope = (f(x + kStep) - f(x - kStep)) / (2 * kStep), next = x - value / slope;
-        x = next > low && next < high ? next : 0.5 * (low + high);
-    }
-    return x;
+/// ln T between two points at which Eq. 13 has opposite signs (TOMS 748: Alefeld, Potra and Shi 1995).
+double solve(const std::function<double(double)>& f, double low, double high, double at_low, double at_high) {
+    std::uintmax_t most = 100;
+    const auto [left, right] = boost::math::tools::toms748_solve(f, low, high, at_low, at_high,
+                                                                 boost::math::tools::eps_tolerance<double>(), most);
+    return 0.5 * (left + right);
 }
 
 }  // namespace
 
-double harmonic_misfit(const RecordedCycle& cycle, const Shape& shape, double K) {
+double harmonic_misfit(const RecordedCycle& cycle, const ModelShape& shape, double K) {
     double sum = 0;
     for (const Harmonic& h : cycle.harmonics) {
         const Complex s(0, h.order * cycle.omega());
@@ -107,16 +102,18 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
     const Polar point = polar(cycle);
     const double omega = cycle.omega(), magnitude = std::abs(shifted);
     auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
-    constexpr int kIntervals = 400;
-    const double low = std::log(1e-4 / omega), high = std::log(1e4 / omega);
+    constexpr int kIntervals = 400;                     // two roots of one structure lie farther apart
+    constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond, the lag is none, or an integrator
+    constexpr double kRounding = 1e-9;                  // a dead time of 0, of the record's length
+    const double low = std::log(kShortest / omega), high = std::log(kLongest / omega);
     std::vector<RelayModel> models;
     double before = f(low);
     for (int i = 1; i <= kIntervals; ++i) {
         const double a = low + (high - low) * (i - 1) / kIntervals, b = low + (high - low) * i / kIntervals;
         const double after = f(b);
         if ((before > 0) != (after > 0)) {
-            RelayModel model = model_at(cycle, point, structure, std::exp(solve(f, a, b)));
-            if (model.shape.L() >= -1e-9) {
+            RelayModel model = model_at(cycle, point, structure, std::exp(solve(f, a, b, before, after)));
+            if (model.shape.L() >= -kRounding) {
                 model.shape.p[0] = std::max(0.0, model.shape.p[0]);
                 models.push_back(model);
             }

@@ -14,14 +14,14 @@ namespace tunewright {
 
 /// A model by the formulas; dimensionless. `structure`: fopdt, unstable, ipdt or ipdt_lag.
 struct RelayModel {
-    Shape shape;
+    ModelShape shape;
     double K = 0;                 ///< gain; slope for integrating structures
     double fit_rms = 0;           ///< root of Eq. 15's mean square over the steady periods, by their harmonics
     bool by_static_gain = false;  ///< Eq. 14 was used in place of Eq. 13
 };
 
 /// sqrt(2 sum |Y_k - G(jk omega) U_k|^2) for a model of this shape and gain.
-double harmonic_misfit(const RecordedCycle& cycle, const Shape& shape, double K);
+double harmonic_misfit(const RecordedCycle& cycle, const ModelShape& shape, double K);
 
 /// k_p from Eq. 14, tau from Eq. 11, theta from Eq. 12. Empty where |k_p| <= A_u or its sign contradicts the phase.
 std::optional<RelayModel> biased_fopdt(const RecordedCycle& cycle);

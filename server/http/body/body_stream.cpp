@@ -112,7 +112,7 @@ void BodyStream::ask() {
     more();
 }
 
-void BodyStream::close(bool tell) {
+void BodyStream::close(bool notify) {
     // The callbacks often hold what holds this stream: let go of them, outside the lock.
     std::function<void()> left;
     std::function<void()> more;
@@ -126,7 +126,7 @@ void BodyStream::close(bool tell) {
         more.swap(more_);
         wake.swap(wake_);
     }
-    if (tell && left) left();
+    if (notify && left) left();
 }
 
 }  // namespace tunewright::server::http

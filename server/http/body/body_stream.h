@@ -59,7 +59,7 @@ private:
     Written take();
     void taken();
     void ask();
-    void close(bool tell);
+    void close(bool notify);
 
     enum class Last { no, end, broken };
     bool put(std::string piece, Last last);
@@ -76,7 +76,7 @@ private:
     bool woken_ = false;  ///< the loop knows and has not looked yet
     std::function<void()> more_;
     std::function<void()> left_;
-    std::function<void()> wake_;  ///< tells the loop that there is something to do
+    std::function<void()> wake_;  ///< wakes the loop when there is something to do
 };
 
 }  // namespace tunewright::server::http

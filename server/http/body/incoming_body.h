@@ -28,7 +28,7 @@ public:
     bool asked() const;
     /// Answers the handler's read().
     void give(std::string bytes);
-    /// The body is over in this way; whoever waits, or asks later, is told. The first one counts.
+    /// The body is over in this way; whoever waits, or asks later, learns it. Only the first call counts.
     void finish(State how);
 
     BodyDecoder decoder;

@@ -18,7 +18,7 @@ namespace tunewright::server {
 /// A body that is to become a batch.
 struct BatchOrder {
     api::BatchQuestion question;
-    std::string asked;  ///< what else tells two bodies apart, such as the parameters of the call
+    std::string asked;  ///< what else distinguishes two bodies, such as the parameters of the call
     std::string idempotency_key;
     std::string owner;  ///< as in NewBatch
     std::string flow;

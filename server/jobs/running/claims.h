@@ -27,7 +27,7 @@ struct ClaimSettings {
     std::function<UnixMs()> now;
     std::size_t most_held = 64;                        ///< no claim while so many are held, results not stored included
     std::size_t most_unsaved = std::size_t{64} << 20;  ///< nor while results of so many bytes wait for the store
-    std::function<void(const std::vector<JobRecord>&)> claimed;  ///< told on the store's thread
+    std::function<void(const std::vector<JobRecord>&)> claimed;  ///< called on the store's thread
     std::function<void(std::shared_ptr<HeldJob>)> late;          ///< one that came after close(): it is the listener's
 };
 

@@ -26,20 +26,20 @@ void Leases::renew(HeldJob::Clock::time_point young) {
     if (renewing_.exchange(true)) return;
     std::vector<Renewal> renewals;
     std::vector<std::shared_ptr<HeldJob>> asked;
-    std::map<std::string, std::pair<int, unsigned>> told;
-    if (resend_.exchange(false)) told_.clear();
+    std::map<std::string, std::pair<int, unsigned>> sent;
+    if (resend_.exchange(false)) sent_.clear();
     for (const auto& held : held_.all()) {
         if (held->claimed_at > young) continue;
         Renewal renewal{held->job.id, held->job.attempts, ""};
         const std::pair revision{held->job.attempts, held->revision()};
-        const auto last = told_.find(renewal.id);
-        if (revision.second > 0 && (last == told_.end() || last->second != revision))
+        const auto last = sent_.find(renewal.id);
+        if (revision.second > 0 && (last == sent_.end() || last->second != revision))
             renewal.progress = api::progress_json(*held->progress());
-        told.emplace(renewal.id, revision);
+        sent.emplace(renewal.id, revision);
         renewals.push_back(std::move(renewal));
         asked.push_back(held);
     }
-    told_ = std::move(told);
+    sent_ = std::move(sent);
     if (renewals.empty()) {
         renewing_ = false;
         return;
@@ -59,7 +59,7 @@ void Leases::renew(HeldJob::Clock::time_point young) {
 void Leases::renewed(const std::vector<std::shared_ptr<HeldJob>>& asked, const std::vector<Renewed>& answers) {
     for (std::size_t i = 0; i < std::min(asked.size(), answers.size()); i++) {
         const std::shared_ptr<HeldJob>& held = asked[i];
-        // One whose end is on its way into the store is told there.
+        // One whose end is on its way into the store is sent there.
         if (held->stage() == HeldJob::Stage::ending || held_.find(held->job.id) != held) continue;
         if (!answers[i].held)
             settings_.lost(held);

@@ -49,10 +49,10 @@ private:
     LeaseSettings settings_;
     std::atomic<bool> renewing_ = false;
     std::atomic<bool> reclaiming_ = false;
-    UnixMs last_wall_ = 0;  ///< these and told_ of the caller's thread alone
+    UnixMs last_wall_ = 0;  ///< these and sent_ of the caller's thread alone
     HeldJob::Clock::time_point last_steady_{};
     std::atomic<bool> resend_ = false;
-    std::map<std::string, std::pair<int, unsigned>> told_;  ///< attempt and revision of the progress last sent
+    std::map<std::string, std::pair<int, unsigned>> sent_;  ///< attempt and revision of the progress last sent
 };
 
 }  // namespace tunewright::server

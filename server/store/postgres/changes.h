@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/store/batch_changes.h"
 #include "server/store/postgres/session.h"
-#include "server/store/store.h"
 
 namespace tunewright::server::postgres {
 
@@ -24,25 +24,15 @@ std::vector<Renewed> renew_jobs(Session& session, const std::vector<Renewal>& re
 std::optional<JobStatus> release_job(Session& session, const std::string& id, int attempts, UnixMs now);
 Recovery reclaim_jobs(Session& session, UnixMs now, int attempts, const std::string& error);
 
-// ---- batches (batches.cpp): what touches every entry goes in slices, each in a transaction with whatever else waits
-constexpr std::size_t kSlice = 250;
+// ---- batches (batches.cpp): what touches every entry goes in slices of kSlice entries, each in a transaction with
+// whatever else waits
 void open_batch(Session& session, const NewBatch& batch);
 bool add_entries(Session& session, const std::string& id, const std::vector<NewEntry>& entries, UnixMs now);
-/// Of existing and conflict the batch is leaving.
-struct SealedBatch {
-    Sealed answer;
-    std::optional<std::int64_t> leaving;
-};
 SealedBatch seal_batch(Session& session, const BatchSeal& seal);
 /// From now on it is not seen any more; delete_entries() does the rest. Its seq, or nothing where there is none.
 std::optional<std::int64_t> leave_batch(Session& session, const std::string& id);
 /// One slice of a leaving batch, at the end the batch itself. How many jobs went: 0 when nothing is left.
 std::size_t delete_entries(Session& session, std::int64_t batch, std::size_t most);
-/// As JobStore::remove_batch(); of `removed` the batch is leaving.
-struct RemovedBatch {
-    RemoveEffect effect = RemoveEffect::none;
-    std::int64_t leaving = 0;
-};
 RemovedBatch remove_batch(Session& session, const std::string& id);
 /// No more entries are taken; cancel_entries() does the rest. Its seq, or nothing where there is none.
 std::optional<std::int64_t> begin_cancel(Session& session, const std::string& id);

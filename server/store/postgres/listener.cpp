@@ -19,12 +19,12 @@ constexpr int kMaxPauseMs = 2000;
 
 class Receiver : public pqxx::notification_receiver {
 public:
-    Receiver(pqxx::connection_base& connection, std::function<void(const std::string&)> told)
-        : pqxx::notification_receiver(connection, kChannel), told_(std::move(told)) {}
-    void operator()(const std::string& payload, int) override { told_(payload); }
+    Receiver(pqxx::connection_base& connection, std::function<void(const std::string&)> listener)
+        : pqxx::notification_receiver(connection, kChannel), listener_(std::move(listener)) {}
+    void operator()(const std::string& payload, int) override { listener_(payload); }
 
 private:
-    std::function<void(const std::string&)> told_;
+    std::function<void(const std::string&)> listener_;
 };
 
 }  // namespace
@@ -45,14 +45,14 @@ Listener::~Listener() {
     ::close(wake_);
 }
 
-void Listener::watch(std::function<void(const StoreNotice&)> told) {
+void Listener::watch(std::function<void(const StoreNotice&)> listener) {
     const std::lock_guard lock(mutex_);
-    told_ = std::move(told);
+    listener_ = std::move(listener);
 }
 
-void Listener::tell(const StoreNotice& notice) {
+void Listener::pass_on(const StoreNotice& notice) {
     const std::lock_guard lock(mutex_);
-    if (told_) told_(notice);
+    if (listener_) listener_(notice);
 }
 
 bool Listener::pause(int milliseconds) {
@@ -83,12 +83,12 @@ void Listener::listen() {
     const std::unique_ptr<Link> link = connect(address_);
     pqxx::connection& connection = link->connection;
     const Receiver receiver(connection, [this](const std::string& payload) {
-        read_payload(payload, own_tag_, [this](const StoreNotice& notice) { tell(notice); });
+        read_payload(payload, own_tag_, [this](const StoreNotice& notice) { pass_on(notice); });
     });
     tried();
     if (!connected_.exchange(true)) {
-        tell({StoreNotice::Kind::queued, ""});
-        tell({StoreNotice::Kind::ended, ""});
+        pass_on({StoreNotice::Kind::queued, ""});
+        pass_on({StoreNotice::Kind::ended, ""});
     }
     while (!stopping_) {
         std::array<pollfd, 2> waited{{{connection.sock(), POLLIN, 0}, {wake_, POLLIN, 0}}};

@@ -16,13 +16,13 @@ namespace tunewright::server::postgres {
 
 class Listener {
 public:
-    /// Listens already when it returns, if the database is there. Notices with this tag are our own and not told.
+    /// Listens already when it returns, if the database is there. Notices with this tag are our own and not passed on.
     Listener(Address address, std::string own_tag);
     ~Listener();
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
 
-    void watch(std::function<void(const StoreNotice&)> told);
+    void watch(std::function<void(const StoreNotice&)> listener);
     bool connected() const { return connected_; }
 
 private:
@@ -32,7 +32,7 @@ private:
     void tried();
     /// False when it is time to stop.
     bool pause(int milliseconds);
-    void tell(const StoreNotice& notice);
+    void pass_on(const StoreNotice& notice);
 
     Address address_;
     std::string own_tag_;
@@ -40,7 +40,7 @@ private:
     std::atomic<bool> stopping_ = false;
     std::atomic<bool> connected_ = true;
     std::mutex mutex_;
-    std::function<void(const StoreNotice&)> told_;
+    std::function<void(const StoreNotice&)> listener_;
     std::latch first_try_{1};
     bool tried_ = false;
     std::jthread thread_;

@@ -40,17 +40,17 @@ std::string Notices::statements(const std::string& tag) const {
 }
 
 void read_payload(std::string_view payload, std::string_view own_tag,
-                  const std::function<void(const StoreNotice&)>& told) {
+                  const std::function<void(const StoreNotice&)>& listener) {
     if (next_word(payload) == own_tag) return;
     const std::string_view kind = next_word(payload);
-    if (kind == "q") return told({StoreNotice::Kind::queued, ""});
+    if (kind == "q") return listener({StoreNotice::Kind::queued, ""});
     StoreNotice notice;
     notice.kind = kind == "p"   ? StoreNotice::Kind::progress
                   : kind == "c" ? StoreNotice::Kind::cancel
                                 : StoreNotice::Kind::ended;
     do {
         notice.id = from_column(next_word(payload));
-        told(notice);
+        listener(notice);
     } while (!payload.empty());
 }
 

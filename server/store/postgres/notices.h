@@ -1,4 +1,4 @@
-// What replicas tell each other: small payloads on one channel, "TAG KIND ID ID ...", sent with the commit.
+// What replicas send each other: small payloads on one channel, "TAG KIND ID ID ...", sent with the commit.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace tunewright::server::postgres {
 
 constexpr const char* kChannel = "tunewright";
 
-/// What one transaction has to tell.
+/// The notices of one transaction.
 class Notices {
 public:
     void queued() { queued_ = true; }
@@ -29,8 +29,8 @@ private:
     std::vector<std::string> progress_, ended_, cancel_;
 };
 
-/// Calls `told` for each notice of a payload of another process.
+/// Calls `listener` for each notice of a payload of another process.
 void read_payload(std::string_view payload, std::string_view own_tag,
-                  const std::function<void(const StoreNotice&)>& told);
+                  const std::function<void(const StoreNotice&)>& listener);
 
 }  // namespace tunewright::server::postgres

@@ -1,4 +1,4 @@
-// Reads, one statement each.
+// What is read from the database, one statement each.
 #pragma once
 
 #include <string>
@@ -9,14 +9,22 @@
 
 namespace tunewright::server::postgres {
 
+/// The job with request, result and progress; nothing where there is none, or its batch is being deleted.
 std::optional<JobRecord> find_record(Session& session, const std::string& id);
+/// The states of those of the jobs that there are, in no particular order.
 std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids);
+/// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Session& session, const JobQuery& query);
+/// How many single jobs, and how many entries of batches, wait.
 JobStore::Depth count_waiting(Session& session);
+/// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id);
+/// The id of the batch that `owner` posted under this idempotency key.
 std::optional<std::string> find_batch_of_key(Session& session, const std::string& owner, const std::string& key);
+/// A page of batches, newest first: those before `before_seq`, of `owner` alone where one is given.
 BatchPage list_batches(Session& session, const std::optional<std::string>& owner, int limit,
                        std::optional<std::int64_t> before_seq);
+/// At most `limit` rows of a batch's results in the order of its entries, beginning with index `from`.
 std::vector<BatchRow> find_rows(Session& session, const std::string& batch, std::int64_t from, std::size_t limit);
 
 }  // namespace tunewright::server::postgres

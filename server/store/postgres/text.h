@@ -1,4 +1,4 @@
-// Texts on their way to PostgreSQL and back.
+// Any bytes as texts of PostgreSQL, and back.
 #pragma once
 
 #include <string>
@@ -10,11 +10,13 @@ namespace tunewright::server::postgres {
 /// PostgreSQL's texts hold valid UTF-8 without zero bytes. Every other byte, and the byte 1 itself, becomes the byte 1
 /// and two hexadecimal digits: any bytes go in and come out again, and equal texts stay equal.
 std::string to_column(std::string_view text);
+/// The bytes that to_column() made `column` of.
 std::string from_column(std::string_view column);
 
 /// The literal of a text[] of these texts, each as to_column() makes it.
 class TextArray {
 public:
+    /// Any bytes.
     void add(std::string_view text);
     /// A number, a word: something that needs neither quotes nor to_column().
     void add_plain(std::string_view text);

@@ -22,7 +22,7 @@
 
 namespace tunewright::server::postgres {
 
-/// A question to the writer with its answer, which may be found twice before it is told.
+/// A question to the writer with its answer, which may be found twice before it is given.
 template <class In, class Out>
 struct Ask {
     In in;

@@ -5,31 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "server/store/batch_changes.h"
 #include "server/store/sqlite/connection.h"
 
 namespace tunewright::server {
 
-/// Entries that one slice touches: some milliseconds.
-constexpr std::size_t kSlice = 250;
-
 void open_batch(Connection& store, const NewBatch& batch);
 bool add_entries(Connection& store, const std::string& id, const std::vector<NewEntry>& entries, UnixMs now);
-/// Of existing and conflict the batch is leaving.
-struct SealedBatch {
-    Sealed answer;
-    std::optional<std::int64_t> leaving;
-};
 SealedBatch seal_batch(Connection& store, const BatchSeal& seal);
 
 /// From now on it is not seen any more; delete_entries() does the rest. Its seq, or nothing where there is none.
 std::optional<std::int64_t> leave_batch(Connection& store, const std::string& id);
 /// One slice of a leaving batch, at the end the batch itself. How many jobs went: 0 when nothing is left.
 std::size_t delete_entries(Connection& store, std::int64_t batch, std::size_t most);
-/// As JobStore::remove_batch(); of `removed` the batch is leaving.
-struct RemovedBatch {
-    RemoveEffect effect = RemoveEffect::none;
-    std::int64_t leaving = 0;
-};
 RemovedBatch remove_batch(Connection& store, const std::string& id);
 
 /// No more entries are taken; cancel_entries() does the rest. Its seq, or nothing where there is none.

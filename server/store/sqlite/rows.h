@@ -1,4 +1,4 @@
-// How jobs and batches stand in the tables' rows: the one place that knows the order of the columns.
+// Jobs and batches as rows of the tables: the one place that knows the order of the columns.
 #pragma once
 
 #include <string>
@@ -16,11 +16,13 @@ extern const std::string kRecordTables;
 /// True for jobs that can be seen: those of a batch that is being deleted cannot.
 extern const std::string kVisible;
 
+/// From the current row of a query that selects the columns of the same name.
 JobSummary read_summary(const Connection::Use& row);
 JobState read_state(const Connection::Use& row);
 JobRecord read_record(const Connection::Use& row);
 
-extern const std::string kBatchColumns;  ///< of `batches b`
+/// Columns of a batch, of `batches b`.
+extern const std::string kBatchColumns;
 BatchSummary read_batch(const Connection::Use& row);
 
 }  // namespace tunewright::server

@@ -1,6 +1,8 @@
 // Whether the stated errors are true: joint 95 % regions of many simulated records against the plant they came from.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "engine/identification/identify.h"
@@ -15,26 +17,23 @@ using testing::first_order;
 using testing::simulate;
 
 constexpr int kSeeds = 200;
-/// 95 % of chi-square with three degrees of freedom.
-constexpr double kQuantile = 7.8147;
+const double kRegion = boost::math::quantile(boost::math::chi_squared(3), 0.95);
 
 struct Truth {
     double K, T, L;
 };
 
-/// d' C^-1 d for a 3 x 3 covariance, by Cramer's rule on scaled entries.
+/// d' C^-1 d for a 3 x 3 covariance; rows and columns are scaled, because K, T and L have different units.
 double squared_distance(const std::vector<std::vector<double>>& C, const std::vector<double>& d) {
-    double s[3], M[3][3], v[3];
-    for (int i = 0; i < 3; ++i) s[i] = std::sqrt(C[i][i]);
-    for (int i = 0; i < 3; ++i) {
-        v[i] = d[i] / s[i];
-        for (int j = 0; j < 3; ++j) M[i][j] = C[i][j] / (s[i] * s[j]);
+    Eigen::Matrix3d M;
+    Eigen::Vector3d v;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        v[row] = d[i] / std::sqrt(C[i][i]);
+        for (std::size_t j = 0; j < 3; ++j)
+            M(row, static_cast<Eigen::Index>(j)) = C[i][j] / std::sqrt(C[i][i] * C[j][j]);
     }
-    const double a = M[0][1], b = M[0][2], c = M[1][2];
-    const double det = 1 + 2 * a * b * c - a * a - b * b - c * c;
-    const double q = v[0] * v[0] * (1 - c * c) + v[1] * v[1] * (1 - b * b) + v[2] * v[2] * (1 - a * a) +
-                     2 * v[0] * v[1] * (b * c - a) + 2 * v[0] * v[2] * (a * c - b) + 2 * v[1] * v[2] * (a * b - c);
-    return q / det;
+    return v.dot(M.ldlt().solve(v));
 }
 
 /// The share of 200 records whose joint 95 % region holds the plant. `disturb` makes the record of one seed.
@@ -53,7 +52,7 @@ double coverage(const Truth& plant, int samples, double spacing, double step_tim
         std::vector<double> error;
         for (const std::string& name : model->covariance.names)
             error.push_back(name == "K" ? found.K - plant.K : name == "T" ? found.T - plant.T : found.L - plant.L);
-        inside += squared_distance(model->covariance.matrix, error) <= kQuantile;
+        inside += squared_distance(model->covariance.matrix, error) <= kRegion;
     }
     return static_cast<double>(inside) / kSeeds;
 }

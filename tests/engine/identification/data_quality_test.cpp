@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "engine/identification/record/false_readings.h"
+#include "engine/identification/record/record_rows.h"
 #include "tests/engine/identification/simulated_record.h"
 
 namespace tunewright {

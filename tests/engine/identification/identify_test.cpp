@@ -1,4 +1,4 @@
-// Parameters recovered from simulated records, scaling laws, refusals.
+// Parameters recovered from simulated records, scaling laws, warnings, progress.
 #include "engine/identification/identify.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tests/engine/identification/identified.h"
 #include "tests/engine/identification/simulated_record.h"
 
 namespace tunewright {
@@ -14,30 +15,6 @@ namespace {
 
 using namespace tunewright::testing;
 using ::testing::HasSubstr;
-
-IdentifiedModel identified(const Record& record, ModelChoice model = ModelChoice::automatic) {
-    IdentifyOptions options;
-    options.model = model;
-    auto result = identify(record, options, {});
-    EXPECT_TRUE(result) << (result ? "" : result.error().message);
-    return result ? *result : IdentifiedModel{};
-}
-
-template <class Type>
-Type plant_as(const IdentifiedModel& model) {
-    EXPECT_TRUE(std::holds_alternative<Type>(model.plant)) << model.choice_reason;
-    return std::holds_alternative<Type>(model.plant) ? std::get<Type>(model.plant) : Type{};
-}
-
-bool warns(const IdentifiedModel& model, const std::string& code) {
-    return std::any_of(model.warnings.begin(), model.warnings.end(), [&](const Warning& w) { return w.code == code; });
-}
-
-Error refusal(const Record& record, const IdentifyOptions& options = {}) {
-    auto result = identify(record, options, {});
-    EXPECT_FALSE(result);
-    return result ? Error{} : result.error();
-}
 
 TEST(Identify, DeadTimeBetweenSamplesIsExact) {
     for (const double L : {0.0, 0.137, 0.5, 3.377, 3.999}) {
@@ -327,57 +304,6 @@ TEST(Identify, CandidatesAreSortedAndTheChoiceIsExplained) {
     EXPECT_THAT(identified(record, ModelChoice::sopdt).choice_reason, HasSubstr("asked for"));
 }
 
-TEST(Identify, FewerThanEightSamplesAreRefusedWithTheirNumber) {
-    const Error error = refusal(simulate(even_times(3, 1), 0, 0, {{1, 1}}, first_order(1, 2, 0)));
-    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
-    EXPECT_THAT(error.message, HasSubstr("has 3 usable samples"));
-    EXPECT_EQ(refusal(Record{}).kind, ErrorKind::not_identifiable);
-}
-
-TEST(Identify, ConstantMeasurementIsRefused) {
-    const Error error = refusal(simulate(even_times(100, 1), 0, 21.5, {{10, 1}}, first_order(0, 2, 0)));
-    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
-    EXPECT_THAT(error.message, HasSubstr("y never moves (it is 21.5"));
-}
-
-TEST(Identify, StepInTheLastSamplesIsRefused) {
-    Record record = simulate(even_times(100, 1), 0, 20, {{97, 1}}, first_order(1, 12, 3));
-    add_noise(record, 0.01, 6);
-    const Error error = refusal(record);
-    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
-    EXPECT_THAT(error.message, HasSubstr("with 2 sample(s) after it"));
-}
-
-TEST(Identify, MeasurementThatIgnoresTheInputIsRefused) {
-    for (unsigned seed = 0; seed < 10; ++seed) {
-        Record record = simulate(even_times(300, 1), 0, 20, {{100, 1}}, first_order(0, 1, 0));
-        add_noise(record, 0.5, 40 + seed, seed % 2 ? 0.9 : 0);
-        const Error error = refusal(record);
-        EXPECT_EQ(error.kind, ErrorKind::not_identifiable) << seed;
-        EXPECT_THAT(error.message, HasSubstr("does not respond"));
-    }
-}
-
-TEST(Identify, RefusalOfAnAskedModelNamesItAndItsAlternative) {
-    Record record = simulate(even_times(300, 1), 0, 20, {{100, 1}}, first_order(0, 1, 0));
-    add_noise(record, 0.5, 40);
-    IdentifyOptions options;
-    options.model = ModelChoice::ipdt;
-    const Error error = refusal(record, options);
-    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
-    EXPECT_EQ(error.where, "identify/model");
-    EXPECT_THAT(error.message, HasSubstr("No ipdt model explains y"));
-    EXPECT_THAT(error.message, HasSubstr("Use model auto"));
-}
-
-TEST(Identify, ColumnsOfUnequalLengthAreAnInvalidArgument) {
-    Record record = simulate(even_times(100, 1), 0, 0, {{10, 1}}, first_order(1, 12, 3));
-    record.y.pop_back();
-    const Error error = refusal(record);
-    EXPECT_EQ(error.kind, ErrorKind::invalid_argument);
-    EXPECT_THAT(error.message, HasSubstr("100, 100 and 99 values"));
-}
-
 TEST(Identify, RecordFromNewestToOldestIsTurnedRoundAndSaid) {
     const Record record = simulate(even_times(200, 0.5), 0, 0, {{5, 1}}, first_order(2, 8, 1.3));
     Record backward = record;
@@ -386,26 +312,6 @@ TEST(Identify, RecordFromNewestToOldestIsTurnedRoundAndSaid) {
     EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 1e-6);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, 1.3, 1e-5);
     EXPECT_TRUE(warns(model, "reversed-time"));
-}
-
-TEST(Identify, ARecordPastedTwiceIsAnInvalidArgument) {
-    Record record = simulate(even_times(200, 0.5), 0, 0, {{5, 1}}, first_order(2, 8, 1.3));
-    for (auto* column : {&record.t, &record.u, &record.y}) {
-        const std::vector<double> once = *column;
-        column->insert(column->end(), once.begin(), once.end());
-    }
-    const Error error = refusal(record);
-    EXPECT_EQ(error.kind, ErrorKind::invalid_argument);
-    EXPECT_THAT(error.message, HasSubstr("Times run backward in 199 of 400 rows (first at row 200)"));
-}
-
-TEST(Identify, RelayFormulasRefuseARecordWithoutARelay) {
-    IdentifyOptions options;
-    options.method = IdentifyMethod::relay_fourier;
-    const Error error = refusal(simulate(even_times(100, 1), 0, 0, {{10, 1}}, first_order(1, 12, 3)), options);
-    EXPECT_EQ(error.kind, ErrorKind::not_identifiable);
-    EXPECT_EQ(error.where, "record/u");
-    EXPECT_THAT(error.message, HasSubstr("output_error"));
 }
 
 TEST(Identify, ReportsProgressAndStopsWhenAsked) {

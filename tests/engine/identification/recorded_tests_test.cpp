@@ -5,28 +5,16 @@
 #include <cmath>
 #include <complex>
 
-#include "engine/identification/identify.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "tests/engine/identification/identified.h"
 #include "tests/engine/identification/record_files.h"
 
 namespace tunewright {
 namespace {
 
+using testing::identified;
 using testing::read_record;
-
-IdentifiedModel identified(const Record& record, ModelChoice model = ModelChoice::automatic) {
-    IdentifyOptions options;
-    options.model = model;
-    auto result = identify(record, options, {});
-    EXPECT_TRUE(result) << (result ? "" : result.error().message);
-    return result ? *result : IdentifiedModel{};
-}
-
-Error refusal(const Record& record) {
-    auto result = identify(record, {}, {});
-    EXPECT_FALSE(result);
-    return result ? Error{} : result.error();
-}
+using testing::refusal;
 
 void expect_relative(double got, double want, double tolerance, const char* what) {
     EXPECT_NEAR(got, want, tolerance * std::abs(want)) << what;

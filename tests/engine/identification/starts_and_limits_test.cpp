@@ -10,8 +10,8 @@
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/fit/response.h"
 #include "engine/identification/identify.h"
-#include "engine/identification/record/input_limits.h"
-#include "engine/identification/record/record_start.h"
+#include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/saturation.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/request/tune.h"
 #include "tests/engine/identification/simulated_record.h"
@@ -43,7 +43,7 @@ StepCurve lags(double K, std::vector<double> T) {
     };
 }
 
-TEST(RecordStart, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
+TEST(Start, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
     for (unsigned seed = 1; seed <= 20; ++seed) {
         Record record = simulate(even_times(600, 1), 0, 50, {{10, 5}}, lags(1.4, {80, 19, 17, 15, 13}));
         add_noise(record, 0.03, seed);
@@ -54,17 +54,17 @@ TEST(RecordStart, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
     }
 }
 
-TEST(RecordStart, TellsRestFromMotion) {
+TEST(Start, TellsRestFromMotion) {
     const auto start = [](const Record& record) { return start_of(*clean_record(record), false, 0.001); };
     Record resting = simulate(even_times(300, 1), 0, 0, {{60, 1}}, first_order(1, 20, 2));
     add_noise(resting, 0.01, 3, 0.95);
-    EXPECT_EQ(start(resting), Start::at_rest);
+    EXPECT_EQ(start(resting), RecordStart::at_rest);
     const Record moving = simulate(even_times(300, 1), 3, 0, {{0, 1}, {60, 2}}, first_order(1, 20, 2));
-    EXPECT_EQ(start(moving), Start::moving);
+    EXPECT_EQ(start(moving), RecordStart::moving);
     Record given = moving;
     given.u0 = 3;
-    EXPECT_EQ(start(given), Start::at_rest);
-    EXPECT_EQ(start(simulate(even_times(300, 1), 0, 0, {{1, 1}, {60, 2}}, first_order(1, 20, 2))), Start::unseen);
+    EXPECT_EQ(start(given), RecordStart::at_rest);
+    EXPECT_EQ(start(simulate(even_times(300, 1), 0, 0, {{1, 1}, {60, 2}}, first_order(1, 20, 2))), RecordStart::unseen);
 }
 
 TEST(Records, AMoveWithTheLastRowIsNone) {
@@ -198,8 +198,8 @@ TEST(InputLimits, AreNotFoundWhereUReachesThePlantWhole) {
 TEST(Response, ThirdOrderIsTheSumOfItsExponentials) {
     // Lags 0.05, 0.11, 0.3 of a record of length 1.
     const double T3 = 0.05, Ta = 0.11, Tb = 0.3;
-    const Shape shape{Structure::third,
-                      {0.02, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, std::log(T3)}};
+    const ModelShape shape{Structure::third,
+                           {0.02, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, std::log(T3)}};
     std::vector<double> t;
     for (int i = 0; i < 50; ++i) t.push_back(i / 50.0 + 0.003 * std::sin(i));
     std::sort(t.begin(), t.end());
@@ -218,8 +218,8 @@ TEST(Response, ThirdOrderIsTheSumOfItsExponentials) {
 
 TEST(Response, AnIntegratorOfTwoLagsIsTheIntegralOfTheirResponse) {
     const double Ta = 0.05, Tb = 0.2;
-    const Shape shape{Structure::ipdt_second,
-                      {0, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, 0}};
+    const ModelShape shape{Structure::ipdt_second,
+                           {0, std::log(Ta + Tb), std::log(Ta * Tb / ((Ta + Tb) * (Ta + Tb))), 0, 0}};
     static constexpr double kAt[] = {0}, kUnit[] = {1};
     const std::vector<double> t = {0.01, 0.3, 0.31, 1};
     UnitResponse got;

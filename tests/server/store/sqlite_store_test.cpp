@@ -7,7 +7,7 @@
 
 #include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/store_conformance.h"
-#include "tests/server/store/temporary_folder.h"
+#include "tests/server/store/store_file.h"
 
 namespace tunewright::server {
 namespace {

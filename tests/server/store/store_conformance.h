@@ -27,6 +27,21 @@ T completed(Start start) {
     return std::get<T>(std::move(outcome));
 }
 
+/// Changes of jobs that a store's tables must refuse, of the jobs "ended", "running" and "waiting" in these states:
+/// what follows UPDATE ... SET.
+inline constexpr const char* kForbiddenChanges[] = {
+    "status = 'queued', finished_at = NULL WHERE id = 'ended'",
+    "status = 'failed' WHERE id = 'ended'",
+    "attempts = 0 WHERE id = 'running'",
+    "attempts = 5 WHERE id = 'running'",
+    "worker = NULL WHERE id = 'running'",
+    "lease_until = NULL WHERE id = 'running'",
+    "status = 'succeeded', worker = NULL, lease_until = NULL WHERE id = 'running'",
+    "status = 'succeeded', finished_at = 1 WHERE id = 'waiting'",
+    "status = 'running' WHERE id = 'waiting'",
+    "finished_at = 1 WHERE id = 'waiting'",
+};
+
 /// A place for a store, empty at first; open() may be called again after the store before has gone.
 class StorePlace {
 public:

@@ -1,13 +1,32 @@
-// The store's file, past the store: for what the database itself holds and refuses.
+// A folder for one test with the store's file in it, and statements that go past the store to the database itself.
 #pragma once
 
 #include <sqlite3.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
 namespace tunewright::server {
+
+/// The folder is deleted when the test ends.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "tunewright-store-XXXXXX").string();
+        path_ = ::mkdtemp(name.data());
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+    std::string file() const { return (path_ / "jobs.db").string(); }
+
+private:
+    std::filesystem::path path_;
+};
 
 /// Runs statements; the first column of the last row, "" if there is none. Throws what SQLite says.
 inline std::string run_sqlite(const std::string& file, const std::string& sql) {

@@ -1,4 +1,4 @@
-#include "api/csv/encoding.h"
+#include "api/csv/text.h"
 
 #include <algorithm>
 #include <array>
@@ -105,6 +105,16 @@ std::string_view utf8_text(std::string_view bytes, std::string& storage) {
     if (is_utf8(bytes)) return bytes;
     storage = from_windows(bytes);
     return storage;
+}
+
+std::optional<std::string_view> next_line(std::string_view text, std::size_t& at) {
+    if (at >= text.size()) return std::nullopt;
+    const std::size_t newline = std::min(text.find('\n', at), text.size());
+    const std::size_t end = std::min(at + std::min(text.substr(at, newline - at).find('\r'), newline - at), newline);
+    const std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    if (end + 1 < text.size() && text[end] == '\r' && text[end + 1] == '\n') ++at;
+    return line;
 }
 
 }  // namespace tunewright::api

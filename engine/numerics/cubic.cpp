@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
+
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 
@@ -29,13 +30,10 @@ std::optional<double> first_rise(const Cubic& c, double h, double noise) {
     for (int i = 0; i < n; ++i) {
         if (!(value_at(c, mark[std::size_t(i)]) > noise)) continue;
         if (i == 0) return 0;
-        double low = mark[std::size_t(i - 1)], high = mark[std::size_t(i)];
+        const double low = mark[std::size_t(i - 1)], high = mark[std::size_t(i)];
         if (value_at(c, low) > 0) return low;
-        for (int k = 0; k < 60 && high - low > 4 * std::numeric_limits<double>::epsilon() * high; ++k) {
-            const double middle = 0.5 * (low + high);
-            (value_at(c, middle) > 0 ? high : low) = middle;
-        }
-        return high;
+        return first_positive([&c](double s) { return value_at(c, s); }, low, high, value_at(c, low),
+                              value_at(c, high));
     }
     return std::nullopt;
 }

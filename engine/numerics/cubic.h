@@ -15,8 +15,8 @@ inline double slope_at(const Cubic& c, double s) { return c[1] + s * (c[2] + s *
 /// From values and slopes at both ends of a step of length h (cubic Hermite).
 Cubic hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
 
-/// First s in [0, h] where c rises above 0, if it reaches more than `noise` within the step: bisection between the
-/// turning points, to rounding.
+/// First s in [0, h] where c rises above 0, if it reaches more than `noise` within the step; located between the
+/// turning points to rounding.
 std::optional<double> first_rise(const Cubic& c, double h, double noise);
 
 }  // namespace tunewright

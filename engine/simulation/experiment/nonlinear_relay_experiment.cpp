@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "engine/number_text.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/plant_run.h"

@@ -6,6 +6,7 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/ode_integrator.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {

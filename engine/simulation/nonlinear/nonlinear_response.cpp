@@ -6,6 +6,7 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/ode_integrator.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/simulation/limited/break_points.h"
 #include "engine/simulation/linear/response_recorder.h"
 #include "engine/simulation/nonlinear/fault_ahead.h"

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
@@ -15,6 +16,7 @@ using Index = std::size_t;
 constexpr double kStepsPerRadian = 10;
 constexpr double kDecay = 25;  // e^-25 = 1e-11
 constexpr int kLevels = 60;
+constexpr double kExtremumTolerance = 1e-15;  // of the step
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -53,14 +55,9 @@ double Quintic::slope(double tau) const {
 }
 
 std::optional<double> Quintic::extremum() const {
-    double low = 0, high = h_;
-    const double first = slope(low), last = slope(high);
+    const double first = slope(0), last = slope(h_);
     if (!(first * last < 0)) return std::nullopt;
-    for (int i = 0; i < 60 && high - low > 1e-16 * h_; ++i) {
-        const double middle = (low + high) / 2;
-        (slope(middle) * first > 0 ? low : high) = middle;
-    }
-    return (low + high) / 2;
+    return root_between([this](double tau) { return slope(tau); }, 0, h_, first, last, kExtremumTolerance * h_);
 }
 
 RelayMotion::RelayMotion(const LinearPlant& plant, double direction)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
+#include "engine/number_text.h"
 #include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
@@ -16,11 +16,8 @@ Error invalid(const std::string& field, const std::string& message) {
     return {ErrorKind::invalid_argument, "plant/" + field, message};
 }
 
-std::string shown(double value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
-}
+/// A value that the user gave, with the digits that people give.
+std::string as_given(double value) { return text(value, 6); }
 
 std::optional<Error> check_finite(const char* field, double value) {
     if (std::isfinite(value)) return std::nullopt;
@@ -76,7 +73,7 @@ Expected<Factors> factor_of(const OscillatorySopdt& p) {
     if (auto error = check_finite("zeta", p.zeta)) return *error;
     if (p.T < 0)
         return invalid(
-            "T", "T is " + shown(p.T) + "; with zeta it must be >= 0 (a negative zeta makes the plant unstable).");
+            "T", "T is " + as_given(p.T) + "; with zeta it must be >= 0 (a negative zeta makes the plant unstable).");
     Factors factors{.gain = p.K, .integrators = 0, .zeros = {}, .poles = {}};
     if (p.T == 0) return factors;
     factors.gain /= p.T * p.T;
@@ -151,14 +148,14 @@ std::optional<std::string> sort_pairs(const std::vector<Complex>& given, std::ve
             return std::abs(std::conj(other) - value) <= 1e-9 * std::abs(value);
         });
         if (partner == negative.end())
-            return "Complex values come in conjugate pairs; [" + shown(value.real()) + ", " + shown(value.imag()) +
+            return "Complex values come in conjugate pairs; [" + as_given(value.real()) + ", " + as_given(value.imag()) +
                    "] has no partner.";
         negative.erase(partner);
         add_pair(sorted, value);
     }
     if (!negative.empty())
-        return "Complex values come in conjugate pairs; [" + shown(negative[0].real()) + ", " +
-               shown(negative[0].imag()) + "] has no partner.";
+        return "Complex values come in conjugate pairs; [" + as_given(negative[0].real()) + ", " +
+               as_given(negative[0].imag()) + "] has no partner.";
     return std::nullopt;
 }
 
@@ -208,8 +205,8 @@ std::optional<Error> cancel_hidden_modes(Factors& factors, double scale) {
         }
         if (pole->real() >= -1e-10 * scale)
             return Error{ErrorKind::unsupported, "plant/A",
-                         "The mode at s = " + shown(pole->real()) +
-                             (pole->imag() != 0 ? " + " + shown(pole->imag()) + "j" : "") +
+                         "The mode at s = " + as_given(pole->real()) +
+                             (pole->imag() != 0 ? " + " + as_given(pole->imag()) + "j" : "") +
                              " is not stable and input or output cannot reach it, so no controller can stabilise it. "
                              "Remove it from the model if it is not real."};
         factors.poles.erase(pole);
@@ -253,7 +250,7 @@ Expected<Factors> factor_of(const StateSpace& p) {
 Expected<Factors> factor(const Plant& plant) {
     const double L = dead_time(plant);
     if (auto error = check_finite("L", L)) return *error;
-    if (L < 0) return invalid("L", "L is " + shown(L) + "; a dead time must be >= 0.");
+    if (L < 0) return invalid("L", "L is " + as_given(L) + "; a dead time must be >= 0.");
     return std::visit([](const auto& p) { return factor_of(p); }, plant);
 }
 

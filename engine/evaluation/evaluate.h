@@ -14,11 +14,6 @@
 
 namespace tunewright {
 
-struct ActuatorLimits {
-    double min = 0;  ///< deviation from the operating point, < 0 or = 0
-    double max = 0;  ///< > min
-};
-
 struct NoiseOptions {
     double std = 0;          ///< standard deviation of the white measurement noise, >= 0
     double sample_time = 0;  ///< > 0; 0: the loop's own (loop/noise.h)

@@ -8,10 +8,10 @@
 
 namespace tunewright {
 
-Cubic hermite_taylor(double h, double v0, double slope0, double v1, double slope1) {
-    const double difference = v1 - v0;
-    return {v0, slope0, (6 * difference - h * (4 * slope0 + 2 * slope1)) / (h * h),
-            (-12 * difference + 6 * h * (slope0 + slope1)) / (h * h * h)};
+Cubic hermite_taylor(double h, Signal start, Signal end) {
+    const double difference = end.value - start.value;
+    return {start.value, start.slope, (6 * difference - h * (4 * start.slope + 2 * end.slope)) / (h * h),
+            (-12 * difference + 6 * h * (start.slope + end.slope)) / (h * h * h)};
 }
 
 std::optional<double> first_rise(const Cubic& c, double h, double noise) {

@@ -16,7 +16,8 @@ std::string state(int i) { return "x" + std::to_string(i + 1); }
 std::string weighted_states(std::span<const double> row) {
     std::string result;
     for (std::size_t i = 0; i < row.size(); ++i)
-        if (row[i] != 0) result += (result.empty() ? "" : " + ") + coefficient(row[i]) + "*" + state(static_cast<int>(i));
+        if (row[i] != 0)
+            result += (result.empty() ? "" : " + ") + coefficient(row[i]) + "*" + state(static_cast<int>(i));
     return result;
 }
 

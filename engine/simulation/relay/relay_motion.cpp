@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/sign_change.h"
@@ -17,18 +16,6 @@ constexpr double kStepsPerRadian = 10;
 constexpr double kDecay = 25;  // e^-25 = 1e-11
 constexpr int kLevels = 60;
 constexpr double kExtremumTolerance = 1e-15;  // of the step
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-// a A for a row a.
-std::vector<double> row_times(const std::vector<double>& a, const std::vector<double>& A, int n) {
-    std::vector<double> out(Index(n), 0.0);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) out[Index(j)] += a[Index(i)] * A[Index(i * n + j)];
-    return out;
-}
 
 }  // namespace
 
@@ -69,8 +56,8 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
       D_(direction * plant.realisation().D),
       levels_(Index(kLevels)) {
     for (double& c : C_) c *= direction;
-    CA_ = row_times(C_, A_, n_);
-    CAA_ = row_times(CA_, A_, n_);
+    CA_ = row_times(C_, A_);
+    CAA_ = row_times(CA_, A_);
     CB_ = dot(C_, B_);
     CAB_ = dot(CA_, B_);
     double fastest = 0;

@@ -20,9 +20,7 @@ constexpr double kPatience = 1e12;  // times the shortest step, for ramps
 
 double held_start(const LinearPlant& plant, const RelayLevels& levels) {
     if (plant.dead_time() > 0 || levels.hysteresis > 0) return 0;
-    double lags = 0;
-    for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
-    return lags / 2;
+    return plant.time_scale() / 2;
 }
 
 RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, double held)

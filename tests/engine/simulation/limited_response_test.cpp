@@ -30,7 +30,7 @@ struct Figures {
 /// linear between steps. Filters: none (without derivative), derivative, measurement_second_order.
 class PlainSimulation {
 public:
-    PlainSimulation(const LinearPlant& plant, const ParallelPid& c, StepInputs in, OutputLimits limits, double Tt)
+    PlainSimulation(const LinearPlant& plant, const ParallelPid& c, StepInputs in, ActuatorLimits limits, double Tt)
         : p_(plant.realisation()), c_(c), in_(in), limits_(limits), Tt_(Tt), L_(plant.dead_time()) {}
 
     Figures run(double horizon, double dt) {
@@ -108,7 +108,7 @@ private:
     const Realisation& p_;
     ParallelPid c_;
     StepInputs in_;
-    OutputLimits limits_;
+    ActuatorLimits limits_;
     double Tt_, L_;
 };
 
@@ -117,7 +117,7 @@ struct Case {
     Plant plant;
     ParallelPid gains;
     StepInputs in;
-    OutputLimits limits;
+    ActuatorLimits limits;
     double horizon, dt;
 };
 
@@ -306,7 +306,7 @@ TEST(LimitedResponse, AntiWindupCutsTheOvershootOfWindup) {
     const auto plant = made(Ipdt{.K = 1, .L = 0.2});
     const ParallelPid gains{.Kp = 1.5, .Ki = 0.6};
     const StepInputs in{5, 0};
-    const OutputLimits limits{-0.5, 0.5};
+    const ActuatorLimits limits{-0.5, 0.5};
     const auto response = simulate_limited(plant, gains, in, limits, {});
     const double overshoot = extremes_of_y(response.nodes).max - 5;
     const double windup = PlainSimulation(plant, gains, in, limits, kInfinity).run(60, 2e-3).overshoot;
@@ -357,7 +357,7 @@ TEST(LimitedResponse, EscapesEndFinitelyAndSaySo) {
         Plant plant;
         ParallelPid gains;
         StepInputs in;
-        OutputLimits limits;
+        ActuatorLimits limits;
     } escapes[] = {
         {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // pushed out for ever
         {Fopdt{.K = -1, .T = -1, .L = 0}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},

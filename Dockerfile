@@ -3,7 +3,7 @@
 FROM debian:bookworm-slim AS binary
 RUN apt-get update && apt-get install -y --no-install-recommends \
         g++ make cmake ninja-build pkg-config libcpp-httplib-dev nlohmann-json3-dev libeigen3-dev libnlopt-dev \
-        libsqlitecpp-dev libsqlite3-dev libpqxx-dev libpq-dev libspdlog-dev libcli11-dev prometheus-cpp-dev \
+        libsqlitecpp-dev libsqlite3-dev libpqxx-dev libpq-dev libspdlog-dev libfmt-dev libcli11-dev prometheus-cpp-dev \
         libboost-dev libssl-dev zlib1g-dev \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
@@ -25,7 +25,7 @@ RUN npm run build
 
 FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
-        libcpp-httplib0.11 libnlopt0 libsqlite3-0 libpqxx-6.4 libspdlog1.10 libprometheus-cpp-core1.0 \
+        libcpp-httplib0.11 libnlopt0 libsqlite3-0 libpqxx-6.4 libspdlog1.10 libfmt9 libprometheus-cpp-core1.0 \
     && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
     && useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin tunewright \
     && install -d -o tunewright -g tunewright /var/lib/tunewright

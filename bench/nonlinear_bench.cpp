@@ -59,7 +59,7 @@ BENCHMARK(pi_loop_dead_time)->Unit(benchmark::kMicrosecond);
 
 void pi_loop_limited(benchmark::State& state) {
     NonlinearOptions options = two_minutes(true, 0);
-    options.actuator = OutputLimits{-50, 50};
+    options.actuator = ActuatorLimits{-50, 50};
     loop(state, reactor("T"), kPi, 10, options);
 }
 BENCHMARK(pi_loop_limited)->Unit(benchmark::kMicrosecond);

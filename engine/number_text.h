@@ -1,16 +1,14 @@
-// A number inside a sentence.
+// A number inside a sentence: the one formatter of the engine. Its source is the one that knows {fmt}.
 #pragma once
 
-#include <cstdio>
 #include <string>
 
 namespace tunewright {
 
-/// Four significant digits, shortest form: "0.25", "1.3e-05".
-inline std::string text(double x) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.4g", x);
-    return buffer;
-}
+/// At most `digits` significant digits (1 to 17), the shortest form of them: "0.25", "1.3e-05", "1e+06".
+std::string text(double x, int digits = 4);
+
+/// The fewest digits that read back as the same double: "0.1", "1e-300".
+std::string exact_text(double x);
 
 }  // namespace tunewright

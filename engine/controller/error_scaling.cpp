@@ -1,9 +1,13 @@
 #include "engine/controller/error_scaling.h"
 
+#include "engine/numerics/sign_change.h"
+
 namespace tunewright {
 namespace {
 
-constexpr double kLargeArgument = 300;  // beyond it the Bessel functions' asymptote is exact enough
+constexpr double kLargeArgument = 300;         // beyond it the Bessel functions' asymptote is exact enough
+constexpr double kLargestAmplitude = 1e12;     // in delta_r: the gain is below 1e-35 there
+constexpr double kAmplitudeTolerance = 1e-13;  // of the bracket's upper end, at most twice the amplitude
 
 }  // namespace
 
@@ -15,13 +19,10 @@ double ErrorScaling::gain_of_amplitude(double A) const {
 }
 
 double ErrorScaling::amplitude_of_gain(double k) const {
-    double low = 0, high = delta_r;
-    while (gain_of_amplitude(high) > k && high < 1e12 * delta_r) high *= 2;
-    for (int i = 0; i < 100 && high - low > 1e-12 * high; ++i) {
-        const double middle = 0.5 * (low + high);
-        (gain_of_amplitude(middle) > k ? low : high) = middle;
-    }
-    return high;
+    const auto surplus = [&](double A) { return gain_of_amplitude(A) - k; };
+    double high = delta_r, at_high = surplus(high);
+    while (at_high > 0 && high < kLargestAmplitude * delta_r) at_high = surplus(high *= 2);
+    return root_between(surplus, 0, high, 1 - k, at_high, kAmplitudeTolerance * high);
 }
 
 }  // namespace tunewright

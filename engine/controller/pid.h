@@ -30,6 +30,13 @@ struct Filter {
     bool operator==(const Filter&) const = default;
 };
 
+/// Of u, as deviations from the operating point, in units of u: min < max, min <= 0 <= max; infinite where there is
+/// none.
+struct ActuatorLimits {
+    double min = 0;
+    double max = 0;
+};
+
 /// The ideal (standard, non-interacting) form. `Ti` infinite: no integral action.
 struct Pid {
     double Kp = 0;

@@ -14,7 +14,6 @@
 #include "engine/simulation/limited/limited_response.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
-#include "engine/simulation/nonlinear/npid_response.h"
 
 namespace tunewright {
 namespace {

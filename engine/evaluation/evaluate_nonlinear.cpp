@@ -28,16 +28,12 @@ struct Runs {
     static bool incomplete(const NonlinearResponse& run) { return run.escaped || !run.ended.empty(); }
 };
 
-std::optional<OutputLimits> actuator_of(const EvaluateOptions& o) {
-    return o.actuator ? std::optional(OutputLimits{o.actuator->min, o.actuator->max}) : std::nullopt;
-}
-
 Runs simulate(const NonlinearSystem& system, const Controller& controller, const EvaluateOptions& o,
               std::optional<double> horizon) {
     NonlinearOptions options;
     options.horizon = horizon;
     options.max_steps = kMaxSteps;
-    options.actuator = actuator_of(o);
+    options.actuator = o.actuator;
     if (const auto* npid = std::get_if<Npid>(&controller)) options.delta_r = npid->delta_r;
     const ParallelPid law = gains(controller);
     return {simulate_nonlinear(system, law, {o.setpoint_step, 0}, options),
@@ -119,10 +115,9 @@ void add_performance(Evaluation& evaluation, const Runs& runs, const EvaluateOpt
 }  // namespace
 
 EvaluateOptions limited_as(const NonlinearSystem& plant, EvaluateOptions options) {
-    const OutputLimits limits = input_limits(plant, actuator_of(options));
+    const ActuatorLimits limits = input_limits(plant, options.actuator);
     options.actuator.reset();
-    if (std::isfinite(limits.min) || std::isfinite(limits.max))
-        options.actuator = ActuatorLimits{limits.min, limits.max};
+    if (std::isfinite(limits.min) || std::isfinite(limits.max)) options.actuator = limits;
     return options;
 }
 

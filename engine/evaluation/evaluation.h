@@ -12,11 +12,6 @@
 
 namespace tunewright {
 
-struct ActuatorLimits {
-    double min = 0;  ///< deviation from the operating point, < 0 or = 0
-    double max = 0;  ///< > min
-};
-
 struct NoiseOptions {
     double std = 0;          ///< standard deviation of the white measurement noise, >= 0
     double sample_time = 0;  ///< > 0; 0: the loop's own (loop/noise.h)
@@ -32,7 +27,8 @@ struct EvaluateOptions {
     std::optional<NoiseOptions> noise;
     double rank_Ms = 2.0;               ///< entries with Ms above it rank last
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
-    bool tradeoff = false;              ///< entries tell the trade-off between servo and regulation (tradeoff_entry.h)
+    bool tradeoff =
+        false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.

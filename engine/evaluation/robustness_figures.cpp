@@ -2,17 +2,12 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
+#include <string>
+
+#include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
-
-std::string shown(double value) {
-    std::ostringstream out;
-    out.precision(3);
-    out << value;
-    return out.str();
-}
 
 /// |L| = 1, |L| real and so on, as the contract names them.
 void store_margins(Robustness& r, const Margins& m) {
@@ -46,7 +41,7 @@ Robustness robustness_of(const Peaks& peaks, const Margins& margins) {
     const bool by_S = peaks.S.value >= peaks.T.value;
     const Peak& largest = by_S ? peaks.S : peaks.T;
     r.binding = std::string(by_S ? "Ms" : "Mt") +
-                (std::isfinite(largest.omega) ? " at omega " + shown(largest.omega) : " at infinite frequency");
+                (std::isfinite(largest.omega) ? " at omega " + text(largest.omega, 3) : " at infinite frequency");
     return r;
 }
 

@@ -4,24 +4,24 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/loop/peaks.h"
+#include "engine/numerics/log_maximum.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kMaxTurn = 0.25;  // rad of d between two frequencies that are looked at
-constexpr double kNoGain = 0.5;    // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
+constexpr double kMaxTurn = 0.25;         // rad of d between two frequencies that are looked at
+constexpr double kNoGain = 0.5;           // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
+constexpr double kEdgeTolerance = 1e-13;  // relative, of the frequency at which |T| passes 1/2
 
 /// 1/d at one frequency: 0 where |T| is too small to matter.
 double inverse_tolerance(double omega, double gain) { return gain < kNoGain ? 0 : omega / (2 * std::asin(0.5 / gain)); }
 
-/// Where |T| passes 1/2 between two frequencies: bisection in log omega.
-double band_edge(const Loop& loop, double inside, double outside) {
-    for (int i = 0; i < 50 && std::abs(inside / outside - 1) > 1e-13; ++i) {
-        const double middle = std::sqrt(inside * outside);
-        (std::abs(loop.at(middle).T) >= kNoGain ? inside : outside) = middle;
-    }
-    return inside;
+/// The frequency at which |T| passes 1/2 between neighbouring points i and k of the grid.
+double band_edge(const Loop& loop, const LoopGrid& grid, std::size_t i, std::size_t k) {
+    const auto gain = [&](std::size_t at) { return std::abs(grid.point[at].T) - kNoGain; };
+    return log_root([&](double omega) { return std::abs(loop.at(omega).T) - kNoGain; }, grid.omega[i], grid.omega[k],
+                    gain(i), gain(k), kEdgeTolerance);
 }
 
 }  // namespace
@@ -35,13 +35,12 @@ double small_gain_dead_time(const Loop& loop, const LoopGrid& grid) {
     for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
         const double left = value(i - 1), here = value(i), right = value(i + 1);
         if (here == 0) continue;
-        if (left == 0)
-            largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid.omega[i], grid.omega[i - 1]));
-        if (right == 0)
-            largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid.omega[i], grid.omega[i + 1]));
+        if (left == 0) largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid, i, i - 1));
+        if (right == 0) largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid, i, i + 1));
         if (left == 0 || right == 0) largest = std::max(largest, here);
         if (here >= left && here >= right && left > 0 && right > 0)
-            largest = std::max(largest, maximise(f, grid.omega[i - 1], grid.omega[i], grid.omega[i + 1]).value);
+            largest =
+                std::max(largest, log_maximum(f, grid.omega[i - 1], {grid.omega[i], here}, grid.omega[i + 1]).value);
     }
     return largest > 0 ? 1 / largest : std::numeric_limits<double>::infinity();
 }
@@ -53,7 +52,7 @@ double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d) {
     double before = 0, here = 0, at = 0, from = 0;  // the last two frequencies and their values
     const auto visit = [&](double omega, double value) {
         if (here >= before && here >= value && from > 0 && here > 0.9 * largest)
-            largest = std::max(largest, maximise(f, from, at, omega).value);
+            largest = std::max(largest, log_maximum(f, from, {at, here}, omega).value);
         from = at;
         before = here;
         at = omega;

@@ -5,9 +5,11 @@
 #include <limits>
 #include <vector>
 
-#include "engine/loop/peaks.h"
+#include "engine/loop/frequency_grid.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/log_maximum.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
@@ -17,6 +19,7 @@ constexpr double kGridStep = 0.1;  // minima between points are refined
 constexpr int kGridDensity = 20;
 constexpr int kMaxBeyond = 400;
 constexpr double kStrideBeyond = 1.1;
+constexpr double kCrossingTolerance = 1e-12;  // relative, of the frequency at which G is real
 
 /// Popov's plane: x = Re G, y = omega Im G.
 struct PopovPoint {
@@ -48,7 +51,8 @@ public:
             const bool inner = resolved && i > 0 && i + 1 < points_.size();
             if (!inner || f(p) > f(points_[i - 1]) || f(p) > f(points_[i + 1])) continue;
             const auto minus = [&](double omega) { return -f(at(omega)); };
-            if (-maximise(minus, points_[i - 1].omega, p.omega, points_[i + 1].omega).value <= -1) return false;
+            const Maximum nearest = log_maximum(minus, points_[i - 1].omega, {p.omega, -f(p)}, points_[i + 1].omega);
+            if (nearest.value >= 1) return false;
         }
         return holds_beyond(q);
     }
@@ -99,12 +103,9 @@ private:
         return std::abs(Ki_) * (1 / omega + q) * std::abs(pd_.plant().at({0, omega})) / (1 - loop_gain);
     }
 
-    PopovPoint zero_of_y(PopovPoint a, PopovPoint b) const {
-        for (int i = 0; i < 60 && b.omega - a.omega > 1e-12 * b.omega; ++i) {
-            const PopovPoint middle = at(0.5 * (a.omega + b.omega));
-            ((middle.y < 0) == (a.y < 0) ? a : b) = middle;
-        }
-        return b;
+    PopovPoint zero_of_y(const PopovPoint& a, const PopovPoint& b) const {
+        return at(
+            log_root([this](double omega) { return at(omega).y; }, a.omega, b.omega, a.y, b.y, kCrossingTolerance));
     }
 
     double Ki_;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/numerics/fast_complex.h"
-#include "engine/numerics/log_root.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {

@@ -145,9 +145,8 @@ double default_noise_sample_time(const Loop& loop) {
     if (filter.type != FilterType::none) return 0.1 * filter.Tf;
     const double crossover = find_margins(loop, make_loop_grid(loop)).gain_crossover;
     if (crossover > 0) return 0.01 * 2 * kPi / crossover;
-    double lags = loop.plant().dead_time();
-    for (const auto pole : loop.plant().poles()) lags += 1 / std::abs(pole);
-    return 0.01 * (lags > 0 ? lags : 1);
+    const double time = loop.plant().time_scale();
+    return 0.01 * (time > 0 ? time : 1);
 }
 
 }  // namespace tunewright

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/log_maximum.h"
 
 namespace tunewright {
 namespace {
@@ -29,8 +30,8 @@ Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magni
     const auto f = [&](double omega) { return magnitude(at(omega)); };
     for (std::size_t i = 1; i + 1 < n; ++i) {
         if (value[i] < threshold || value[i] < value[i - 1] || value[i] < value[i + 1]) continue;
-        const Peak peak = maximise(f, grid.omega[i - 1], grid.omega[i], grid.omega[i + 1]);
-        if (peak.value > best.value) best = peak;
+        const auto peak = log_maximum(f, grid.omega[i - 1], {grid.omega[i], value[i]}, grid.omega[i + 1]);
+        if (peak.value > best.value) best = {peak.value, peak.x};
     }
     return best;
 }
@@ -48,8 +49,8 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
             const double omega = from + k * step;
             const double here = f(omega);
             if (here < kWorthRefining * best.value || here < f(omega - step) || here < f(omega + step)) continue;
-            const Peak peak = maximise(f, omega - step, omega, omega + step);
-            if (peak.value > best.value) best = peak;
+            const auto peak = log_maximum(f, omega - step, {omega, here}, omega + step);
+            if (peak.value > best.value) best = {peak.value, peak.x};
         }
     };
     const auto gain = [&](std::size_t i) { return magnitude(grid.point[i].L); };
@@ -82,58 +83,6 @@ void raise_by_limits(const Loop& loop, Peaks& peaks) {
 }
 
 }  // namespace
-
-Peak maximise(const std::function<double(double)>& f, double left, double centre, double right) {
-    // Brent (1973): golden section with parabolic steps, in x = log omega.
-    constexpr double golden = 0.3819660112501051, tolerance = 1e-8;
-    double a = std::log(left), b = std::log(right), x = std::log(centre), w = x, v = x;
-    const auto g = [&](double at) { return -f(std::exp(at)); };
-    double fx = g(x), fw = fx, fv = fx, step = 0, before = 0;
-    for (int iteration = 0; iteration < 60; ++iteration) {
-        const double middle = 0.5 * (a + b);
-        if (std::abs(x - middle) <= 2 * tolerance - 0.5 * (b - a)) break;
-        double p = 0, q = 0, r = 0;
-        if (std::abs(before) > tolerance) {
-            r = (x - w) * (fx - fv);
-            q = (x - v) * (fx - fw);
-            p = (x - v) * q - (x - w) * r;
-            q = 2 * (q - r);
-            if (q > 0) p = -p;
-            q = std::abs(q);
-        }
-        if (std::abs(p) < std::abs(0.5 * q * before) && p > q * (a - x) && p < q * (b - x)) {
-            before = step;
-            step = p / q;
-        } else {
-            before = (x < middle ? b : a) - x;
-            step = golden * before;
-        }
-        const double u = x + (std::abs(step) >= tolerance ? step : std::copysign(tolerance, step));
-        const double fu = g(u);
-        if (fu <= fx) {
-            (u < x ? b : a) = x;
-            v = w;
-            fv = fw;
-            w = x;
-            fw = fx;
-            x = u;
-            fx = fu;
-            if (std::abs(fw - fx) <= 1e-14 * std::abs(fx)) break;
-        } else {
-            (u < x ? a : b) = u;
-            if (fu <= fw || w == x) {
-                v = w;
-                fv = fw;
-                w = u;
-                fw = fu;
-            } else if (fu <= fv || v == x || v == w) {
-                v = u;
-                fv = fu;
-            }
-        }
-    }
-    return {-fx, std::exp(x)};
-}
 
 LoopGrid make_peak_grid(const Loop& loop) {
     LoopGrid grid = make_loop_grid(loop);

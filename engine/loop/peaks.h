@@ -29,8 +29,4 @@ Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const Loop
 /// A grid fine enough for `find_peaks` also where all of |S| - 1 is small.
 LoopGrid make_peak_grid(const Loop& loop);
 
-/// Maximum of f over (left, right) in log omega, Brent's method from a bracket around `centre`. Relative error of f
-/// about 1e-12.
-Peak maximise(const std::function<double(double)>& f, double left, double centre, double right);
-
 }  // namespace tunewright

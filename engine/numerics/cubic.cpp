@@ -2,15 +2,16 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
+
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 
-Cubic hermite_taylor(double h, double v0, double slope0, double v1, double slope1) {
-    const double difference = v1 - v0;
-    return {v0, slope0, (6 * difference - h * (4 * slope0 + 2 * slope1)) / (h * h),
-            (-12 * difference + 6 * h * (slope0 + slope1)) / (h * h * h)};
+Cubic hermite_taylor(double h, Signal start, Signal end) {
+    const double difference = end.value - start.value;
+    return {start.value, start.slope, (6 * difference - h * (4 * start.slope + 2 * end.slope)) / (h * h),
+            (-12 * difference + 6 * h * (start.slope + end.slope)) / (h * h * h)};
 }
 
 std::optional<double> first_rise(const Cubic& c, double h, double noise) {
@@ -29,13 +30,10 @@ std::optional<double> first_rise(const Cubic& c, double h, double noise) {
     for (int i = 0; i < n; ++i) {
         if (!(value_at(c, mark[std::size_t(i)]) > noise)) continue;
         if (i == 0) return 0;
-        double low = mark[std::size_t(i - 1)], high = mark[std::size_t(i)];
+        const double low = mark[std::size_t(i - 1)], high = mark[std::size_t(i)];
         if (value_at(c, low) > 0) return low;
-        for (int k = 0; k < 60 && high - low > 4 * std::numeric_limits<double>::epsilon() * high; ++k) {
-            const double middle = 0.5 * (low + high);
-            (value_at(c, middle) > 0 ? high : low) = middle;
-        }
-        return high;
+        return first_positive([&c](double s) { return value_at(c, s); }, low, high, value_at(c, low),
+                              value_at(c, high));
     }
     return std::nullopt;
 }

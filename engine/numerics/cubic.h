@@ -12,11 +12,23 @@ using Cubic = std::array<double, 4>;
 inline double value_at(const Cubic& c, double s) { return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] / 6)); }
 inline double slope_at(const Cubic& c, double s) { return c[1] + s * (c[2] + s * c[3] / 2); }
 
-/// From values and slopes at both ends of a step of length h (cubic Hermite).
-Cubic hermite_taylor(double h, double v0, double slope0, double v1, double slope1);
+/// A quantity at one instant: its value and its derivative in time.
+struct Signal {
+    double value = 0, slope = 0;
+};
 
-/// First s in [0, h] where c rises above 0, if it reaches more than `noise` within the step: bisection between the
-/// turning points, to rounding.
+/// The cubic through values and slopes at both ends of a step of length h > 0 (Hermite), its value halfway, its
+/// integral over the step.
+Cubic hermite_taylor(double h, Signal start, Signal end);
+inline double hermite_midpoint(double h, Signal start, Signal end) {
+    return 0.5 * (start.value + end.value) + h * (start.slope - end.slope) / 8;
+}
+inline double hermite_integral(double h, Signal start, Signal end) {
+    return 0.5 * h * (start.value + end.value) + h * h * (start.slope - end.slope) / 12;
+}
+
+/// First s in [0, h] where c rises above 0, if it reaches more than `noise` within the step; located between the
+/// turning points to rounding.
 std::optional<double> first_rise(const Cubic& c, double h, double noise);
 
 }  // namespace tunewright

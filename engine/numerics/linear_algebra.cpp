@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Matrix>(values.data(), n, n); }
 
 // Diagonal similarity by powers of two that makes row and column norms alike (Osborne 1960; Parlett and Reinsch 1969).
-// A few sweeps do in practice; numbers at the ends of the range may go on for ever.
+// A few sweeps do in practice; numbers at the ends of the range may never come to an end.
 void balance(Matrix& A) {
     constexpr int kMaxSweeps = 100;
     const auto n = A.rows();
@@ -99,6 +99,21 @@ std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows) {
     std::vector<double> matrix;
     for (const auto& row : rows) matrix.insert(matrix.end(), row.begin(), row.end());
     return matrix;
+}
+
+std::vector<double> row_times(std::span<const double> a, std::span<const double> A) {
+    const auto n = static_cast<Eigen::Index>(a.size());
+    std::vector<double> row(a.size());
+    Eigen::Map<Eigen::RowVectorXd>(row.data(), n) =
+        Eigen::Map<const Eigen::RowVectorXd>(a.data(), n) * Eigen::Map<const Matrix>(A.data(), n, n);
+    return row;
+}
+
+std::vector<double> product(std::span<const double> A, std::span<const double> B, int n) {
+    std::vector<double> result(A.size());
+    Eigen::Map<Matrix>(result.data(), n, n).noalias() =
+        Eigen::Map<const Matrix>(A.data(), n, n) * Eigen::Map<const Matrix>(B.data(), n, n);
+    return result;
 }
 
 std::vector<Complex> eigenvalues(std::span<const double> matrix, int n) {

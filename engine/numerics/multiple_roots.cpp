@@ -97,7 +97,7 @@ private:
 
     Index partner(Index k) const { return roots_[k].imag() > 0 ? k + 1 : k - 1; }
 
-    /// Newton's method on the derivative of which the centre is a simple root.
+    /// Newton's method on the (m - 1)th derivative, whose root at the centre is simple.
     Complex refined(Complex centre, Index m) const {
         std::vector<double> p = given_;
         for (Index k = 1; k < m; ++k) {

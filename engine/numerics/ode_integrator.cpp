@@ -260,27 +260,4 @@ double OdeIntegrator::next_length() const { return work_->h; }
 bool OdeIntegrator::stiff() const { return work_->last_implicit; }
 void OdeIntegrator::at(double t, std::span<double> x) const { work_->at(t, x); }
 
-std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks) {
-    double low = a;
-    for (int i = 1; i <= looks + 1; ++i) {
-        double high = i > looks ? b : a + (b - a) * i / (looks + 1);
-        if (!(g(high) > 0)) {
-            low = high;
-            continue;
-        }
-        // The secant's root halves the bracket at least every second time, or bisection does.
-        double g_low = std::min(g(low), 0.0), g_high = g(high);
-        for (int k = 0; k < 100 && high - low > 2 * kEpsilon * std::abs(high); ++k) {
-            double middle = low - g_low * (high - low) / (g_high - g_low);
-            if (k % 3 == 2 || !(middle > low && middle < high)) middle = 0.5 * (low + high);
-            if (!(middle > low && middle < high)) break;
-            const double value = g(middle);
-            (value > 0 ? high : low) = middle;
-            (value > 0 ? g_high : g_low) = value;
-        }
-        return high;
-    }
-    return std::nullopt;
-}
-
 }  // namespace tunewright

@@ -12,7 +12,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 
 namespace tunewright {
@@ -69,9 +68,5 @@ private:
     struct Work;
     std::unique_ptr<Work> work_;
 };
-
-/// The first s in (a, b] at which g, which is not above 0 at a, rises above it; located to rounding. `looks` points
-/// between a and b are looked at for an excursion that is over at b.
-std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks = 4);
 
 }  // namespace tunewright

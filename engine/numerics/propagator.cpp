@@ -11,28 +11,8 @@ namespace {
 
 using Index = std::size_t;
 
-void multiply(const std::vector<double>& A, const std::vector<double>& x, std::vector<double>& out, int n) {
-    const double* row = A.data();
-    for (int i = 0; i < n; ++i, row += n) {
-        double sum = 0;
-        for (int j = 0; j < n; ++j) sum += row[j] * x[Index(j)];
-        out[Index(i)] = sum;
-    }
-}
-
-std::vector<double> product(const std::vector<double>& A, const std::vector<double>& B, int n) {
-    std::vector<double> C(Index(n * n), 0.0);
-    for (int i = 0; i < n; ++i)
-        for (int k = 0; k < n; ++k) {
-            const double a = A[Index(i * n + k)];
-            if (a == 0) continue;
-            for (int j = 0; j < n; ++j) C[Index(i * n + j)] += a * B[Index(k * n + j)];
-        }
-    return C;
-}
-
 /// sum_{m>=0} F^m h^(m+k)/(m+k)! x: k = 0 the exponential's action, k = j + 1 the moment of s^j/j!.
-std::vector<double> phi_action(const std::vector<double>& F, std::vector<double> x, double h, int k, int n) {
+std::vector<double> phi_action(const std::vector<double>& F, std::vector<double> x, double h, int k) {
     double factor = 1;
     for (int i = 1; i <= k; ++i) factor *= h / i;
     for (double& value : x) value *= factor;
@@ -41,7 +21,7 @@ std::vector<double> phi_action(const std::vector<double>& F, std::vector<double>
     for (Index i = 0; i < x.size(); ++i) largest[i] = std::abs(x[i]);
     bool adds = true;
     for (int m = 1; adds && m < 40; ++m) {
-        multiply(F, x, next, n);
+        multiply(F, x, next);
         adds = false;
         for (Index i = 0; i < x.size(); ++i) {
             x[i] = next[i] * h / (m + k);
@@ -68,12 +48,12 @@ ExactStep Propagator::step(double h) const {
     std::vector<double> unit(Index(n_), 0.0);
     for (int j = 0; j < n_; ++j) {
         unit[Index(j)] = 1;
-        const auto column = phi_action(F_, unit, step.h, 0, n_);
+        const auto column = phi_action(F_, unit, step.h, 0);
         for (int i = 0; i < n_; ++i) step.Phi[Index(i * n_ + j)] = column[Index(i)];
         unit[Index(j)] = 0;
     }
-    for (int j = 0; j < 4; ++j) step.Gamma[Index(j)] = phi_action(F_, G_, step.h, j + 1, n_);
-    step.constant = phi_action(F_, b_, step.h, 1, n_);
+    for (int j = 0; j < 4; ++j) step.Gamma[Index(j)] = phi_action(F_, G_, step.h, j + 1);
+    step.constant = phi_action(F_, b_, step.h, 1);
     for (int i = 0; i < halvings; ++i) step = compose(step, step);
     return step;
 }
@@ -91,7 +71,7 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
     std::vector<double> carried(Index(n_), 0.0);
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
     for (int j = 0; j < 4; ++j) {
-        multiply(second.Phi, first.Gamma[Index(j)], carried, n_);
+        multiply(second.Phi, first.Gamma[Index(j)], carried);
         double weight = 1;
         for (int i = j; i >= 0; --i) {
             for (Index r = 0; r < Index(n_); ++r) carried[r] += second.Gamma[Index(i)][r] * weight;
@@ -99,7 +79,7 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
         }
         whole.Gamma[Index(j)] = carried;
     }
-    multiply(second.Phi, first.constant, carried, n_);
+    multiply(second.Phi, first.constant, carried);
     for (Index r = 0; r < Index(n_); ++r) carried[r] += second.constant[r];
     whole.constant = carried;
     return whole;

@@ -85,7 +85,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
         return at_field("omega/0",
                         "At the lowest frequency, " + text(points.omega[0]) + ", the plant already turns by " +
                             text(off_axis * 180 / kPi) +
-                            " degrees, so that the sign of its static gain cannot be told. Measure lower frequencies, "
+                            " degrees, so the sign of its static gain is not known. Measure lower frequencies, "
                             "or mend integrators.",
                         ErrorKind::unsupported);
     double phase = start - 0.5 * kPi * points.integrators;

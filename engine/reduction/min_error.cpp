@@ -26,9 +26,9 @@ double criterion(ReductionMethod method, const StepDifference& difference, const
 
 // What is searched for, in units of its own: L and ln T; with an integrator L alone where T follows from it or is 0;
 // with a horizon K too.
-class Search {
+class ModelSearch {
 public:
-    Search(const LinearPlant& plant, const ReductionRequest& request, double scale)
+    ModelSearch(const LinearPlant& plant, const ReductionRequest& request, double scale)
         : difference_(plant, request.horizon),
           method_(request.method),
           scale_(scale),
@@ -54,7 +54,7 @@ private:
     std::optional<double> ramp_delay_;  // where it ties L to T
 };
 
-ReducedModel Search::model(const std::vector<double>& x) const {
+ReducedModel ModelSearch::model(const std::vector<double>& x) const {
     ReducedModel model{.integrators = integrators_, .K = K_};
     model.L = std::max(0.0, x[0]) * scale_;
     if (fits_T_) model.T1 = std::clamp(std::exp(x[1]), kMinLag, kLargestLag) * scale_;
@@ -66,7 +66,7 @@ ReducedModel Search::model(const std::vector<double>& x) const {
     return model;
 }
 
-std::vector<double> Search::unknowns(const ReducedModel& model) const {
+std::vector<double> ModelSearch::unknowns(const ReducedModel& model) const {
     std::vector<double> x{model.L / scale_};
     if (fits_T_) x.push_back(std::log(std::max(model.T1 / scale_, kMinLag)));
     if (fits_K_) x.push_back(model.K / K_);
@@ -74,7 +74,7 @@ std::vector<double> Search::unknowns(const ReducedModel& model) const {
 }
 
 // A simplex, then subspaces from where it stopped: a kink of |.| may stall a simplex.
-ReducedModel Search::least(const ReducedModel& start) const {
+ReducedModel ModelSearch::least(const ReducedModel& start) const {
     std::vector<double> x = unknowns(start);
     const double unit = cost(start);
     if (!(unit > 0)) return start;
@@ -117,7 +117,7 @@ Expected<ReducedModel> min_error(const LinearPlant& plant, const ReductionReques
     if (plant.integrators() == 1 && !request.horizon && request.order == ReducedOrder::first)
         return ramp_asymptote(plant);
     const double scale = time_scale(plant);
-    const Search search(plant, request, scale);
+    const ModelSearch search(plant, request, scale);
     if (request.horizon && !(std::abs(search.moved()) > 1e-6 * std::abs(plant.low_frequency_gain())))
         return nothing_moved(*request.horizon, plant);
 

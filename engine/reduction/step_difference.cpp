@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/cubic.h"
 #include "engine/reduction/step_reading.h"
 #include "engine/simulation/linear/step_response.h"
 
@@ -17,27 +18,17 @@ const std::vector<double> kModelTimes = [] {
     return times;
 }();
 
-struct Value {
-    double y = 0, slope = 0;
-};
-
-Value response(const ReducedModel& model, double t) {
+Signal response(const ReducedModel& model, double t) {
     if (t < 0) return {};
     const double left = model.T1 > 0 ? std::exp(-t / model.T1) : 0;
     if (model.integrators == 1) return {model.K * (t - model.T1 * (1 - left)), model.K * (1 - left)};
     return {model.K * (1 - left), model.T1 > 0 ? model.K * left / model.T1 : 0};
 }
 
-// Of the cubic between two nodes.
-double integral(const ResponseNode& a, const ResponseNode& b) {
-    const double h = b.t - a.t;
-    return h / 2 * (a.y + b.y) + h * h / 12 * (a.y_slope - b.y_slope);
-}
-
 }  // namespace
 
 // What is left of the decaying modes at the end would add up in integrals weighted with time: it is cut off.
-StepDifference::Point StepDifference::at_rest(const LinearPlant& plant, double t) {
+StepDifference::TracePoint StepDifference::at_rest(const LinearPlant& plant, double t) {
     const double K = plant.low_frequency_gain();
     if (plant.integrators() == 0) return {t, K, 0};
     const auto asymptote = ramp_delay(plant);
@@ -67,13 +58,12 @@ StepDifference::StepDifference(const LinearPlant& plant, std::optional<double> h
 }
 
 // Before point `next` of the trace a cubic, after its last one a straight line.
-StepDifference::Point StepDifference::plant_at(size_t next, double t) const {
-    const Point& a = trace_[next - 1];
+StepDifference::TracePoint StepDifference::plant_at(size_t next, double t) const {
+    const TracePoint& a = trace_[next - 1];
     if (next == trace_.size()) return {t, a.y + a.slope * (t - a.t), a.slope};
-    const Point& b = trace_[next];
-    const double h = b.t - a.t, s = (t - a.t) / h;
-    const double m = a.slope * h, n = b.slope * h, d = b.y - a.y, c2 = 3 * d - 2 * m - n, c3 = m + n - 2 * d;
-    return {t, a.y + s * (m + s * (c2 + s * c3)), (m + s * (2 * c2 + 3 * s * c3)) / h};
+    const TracePoint& b = trace_[next];
+    const Cubic y = hermite_taylor(b.t - a.t, {a.y, a.slope}, {b.y, b.slope});
+    return {t, value_at(y, t - a.t), slope_at(y, t - a.t)};
 }
 
 // Rising; the dead time twice, for the jump of the slope (of y where there is no lag).
@@ -93,10 +83,14 @@ std::vector<ResponseNode> StepDifference::nodes(const ReducedModel& model) const
     const std::vector<double> times = model_times(model);
     std::vector<ResponseNode> nodes;
     nodes.reserve(trace_.size() + times.size());
-    const auto add = [&](const Point& p, bool model_runs) {
-        const Value value = model_runs ? response(model, p.t - model.L) : Value{};
-        ResponseNode node{.t = p.t, .y = p.y - value.y, .y_slope = p.slope - value.slope};
-        if (!nodes.empty()) node.error_integral = nodes.back().error_integral - integral(nodes.back(), node);
+    const auto add = [&](const TracePoint& p, bool model_runs) {
+        const Signal of_model = model_runs ? response(model, p.t - model.L) : Signal{};
+        ResponseNode node{.t = p.t, .y = p.y - of_model.value, .y_slope = p.slope - of_model.slope};
+        if (!nodes.empty()) {
+            const ResponseNode& last = nodes.back();
+            node.error_integral =
+                last.error_integral - hermite_integral(node.t - last.t, {last.y, last.y_slope}, {node.y, node.y_slope});
+        }
         nodes.push_back(node);
     };
     size_t i = 0;

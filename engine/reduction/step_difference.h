@@ -26,15 +26,15 @@ public:
     double moved() const { return trace_.back().y; }
 
 private:
-    struct Point {
+    struct TracePoint {
         double t = 0, y = 0, slope = 0;
     };
-    static Point at_rest(const LinearPlant& plant, double t);
-    Point plant_at(size_t next, double t) const;
+    static TracePoint at_rest(const LinearPlant& plant, double t);
+    TracePoint plant_at(size_t next, double t) const;
     std::vector<double> model_times(const ReducedModel& model) const;
     std::vector<ResponseNode> nodes(const ReducedModel& model) const;
 
-    std::vector<Point> trace_;  // two points of equal t are the values before and after a jump of y or its slope
+    std::vector<TracePoint> trace_;  // two points of equal t are the values before and after a jump of y or its slope
     bool ends_at_horizon_ = false;
 };
 

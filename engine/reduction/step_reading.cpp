@@ -4,34 +4,21 @@
 #include <cmath>
 
 #include "engine/number_text.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
 
 constexpr double kEssentiallyMonotone = 0.8;
+constexpr double kCrossingTolerance = 1e-13;  // of a crossing's instant
 
 }  // namespace
 
-// Regula falsi with the Illinois rule.
 StepSample crossing(const Realisation& realisation, const StepSample& from, const StepSample& to,
                     const std::function<double(const StepSample&)>& f) {
-    double low = 0, high = to.t - from.t, f_low = f(from), f_high = f(to);
-    if (f_low == 0) return from;
-    StepSample at = to;
-    for (int round = 0; round < 60 && high - low > 1e-13 * to.t && f_high != 0; ++round) {
-        const double tau = (low * f_high - high * f_low) / (f_high - f_low);
-        at = step_response_after(realisation, from, tau);
-        const double value = f(at);
-        if (value == 0) return at;
-        if ((value > 0) == (f_high > 0)) {
-            high = tau, f_high = value;
-            f_low /= 2;
-        } else {
-            low = tau, f_low = value;
-            f_high /= 2;
-        }
-    }
-    return at;
+    const auto after = [&](double tau) { return f(step_response_after(realisation, from, tau)); };
+    const double tau = root_between(after, 0, to.t - from.t, f(from), f(to), kCrossingTolerance * to.t);
+    return step_response_after(realisation, from, tau);
 }
 
 double time_at(const LinearPlant& plant, const std::vector<StepSample>& samples, double level) {

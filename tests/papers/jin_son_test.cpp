@@ -12,7 +12,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/simulation/linear/indices.h"
-#include "engine/simulation/nonlinear/npid_response.h"
+#include "engine/simulation/linear/linear_response.h"
 #include "engine/tuning/method/method.h"
 #include "tests/test_data.h"
 

@@ -2,77 +2,87 @@
 // differentiation).
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
 
 namespace tunewright {
 
 template <int N>
 struct Dual {
+    /// One derivative is a plain number, so that a Dual<1> is passed in registers: Taylor series take half the time.
+    using Derivatives = std::conditional_t<N == 1, double, Eigen::Array<double, N, 1>>;
     double v;
-    std::array<double, N> d;
+    Derivatives d;
 };
 
 template <int N>
 Dual<N> constant_dual(double value) {
-    return {value, {}};
+    if constexpr (N == 1)
+        return {value, 0};
+    else
+        return {value, Dual<N>::Derivatives::Zero()};
 }
 
-/// value + slope (a - a.v): any function of one variable by its derivative.
+/// A variable: its derivative in this direction (0 to N - 1) is 1.
+template <int N>
+Dual<N> variable_dual(double value, std::size_t direction) {
+    Dual<N> result = constant_dual<N>(value);
+    if constexpr (N == 1)
+        result.d = 1;
+    else
+        result.d[static_cast<Eigen::Index>(direction)] = 1;
+    return result;
+}
+
+template <int N>
+double derivative(const Dual<N>& a, std::size_t direction) {
+    if constexpr (N == 1)
+        return a.d;
+    else
+        return a.d[static_cast<Eigen::Index>(direction)];
+}
+
+/// value + slope (a - a.v): any function of one variable by its derivative. A direction that a does not depend on stays
+/// 0 where the slope is infinite.
 template <int N>
 Dual<N> chain(const Dual<N>& a, double value, double slope) {
-    Dual<N> result;
-    result.v = value;
-    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] == 0 ? 0 : slope * a.d[i];
-    return result;
+    if constexpr (N == 1)
+        return {value, a.d == 0 ? 0 : slope * a.d};
+    else
+        return {value, (a.d == 0).select(0.0, slope * a.d)};
 }
 
 template <int N>
 Dual<N> operator+(const Dual<N>& a, const Dual<N>& b) {
-    Dual<N> result;
-    result.v = a.v + b.v;
-    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] + b.d[i];
-    return result;
+    return {a.v + b.v, a.d + b.d};
 }
 
 template <int N>
 Dual<N> operator-(const Dual<N>& a, const Dual<N>& b) {
-    Dual<N> result;
-    result.v = a.v - b.v;
-    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] - b.d[i];
-    return result;
+    return {a.v - b.v, a.d - b.d};
 }
 
 template <int N>
 Dual<N> operator-(const Dual<N>& a) {
-    Dual<N> result;
-    result.v = -a.v;
-    for (int i = 0; i < N; ++i) result.d[i] = -a.d[i];
-    return result;
+    return {-a.v, -a.d};
 }
 
 template <int N>
 Dual<N> operator*(const Dual<N>& a, const Dual<N>& b) {
-    Dual<N> result;
-    result.v = a.v * b.v;
-    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] * b.v + a.v * b.d[i];
-    return result;
+    return {a.v * b.v, a.d * b.v + a.v * b.d};
 }
 
 template <int N>
 Dual<N> operator*(const Dual<N>& a, double factor) {
-    Dual<N> result;
-    result.v = a.v * factor;
-    for (int i = 0; i < N; ++i) result.d[i] = a.d[i] * factor;
-    return result;
+    return {a.v * factor, a.d * factor};
 }
 
 template <int N>
 Dual<N> operator/(const Dual<N>& a, const Dual<N>& b) {
-    Dual<N> result;
-    result.v = a.v / b.v;
-    for (int i = 0; i < N; ++i) result.d[i] = (a.d[i] - result.v * b.d[i]) / b.v;
-    return result;
+    const double quotient = a.v / b.v;
+    return {quotient, (a.d - quotient * b.d) / b.v};
 }
 
 template <int N>

@@ -28,9 +28,9 @@ inline bool all_finite(double x) { return std::isfinite(x); }
 inline bool all_finite(const std::complex<double>& x) { return std::isfinite(x.real()) && std::isfinite(x.imag()); }
 template <int N>
 bool all_finite(const Dual<N>& x) {
-    for (const double d : x.d)
-        if (!std::isfinite(d)) return false;
-    return std::isfinite(x.v);
+    bool finite = std::isfinite(x.v);
+    for (std::size_t i = 0; i < N; ++i) finite = finite && std::isfinite(derivative(x, i));
+    return finite;
 }
 
 /// 1 where it holds, 0 where not, not a number where one side is none.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
+#include "engine/number_text.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/plant_rules.h"
 
@@ -17,11 +17,8 @@ Error invalid(const std::string& field, const std::string& message) {
     return {ErrorKind::invalid_argument, "plant/" + field, message};
 }
 
-std::string shown(double value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
-}
+/// A value that the user gave, with the digits that people give.
+std::string as_given(double value) { return text(value, 6); }
 
 /// K/(T s + 1) in factors: T = 0 leaves a gain.
 void add_lag(Factors& factors, double T) {
@@ -123,8 +120,8 @@ std::optional<Error> cancel_hidden_modes(Factors& factors, double scale) {
         }
         if (pole->real() >= -1e-10 * scale)
             return Error{ErrorKind::unsupported, "plant/A",
-                         "The mode at s = " + shown(pole->real()) +
-                             (pole->imag() != 0 ? " + " + shown(pole->imag()) + "j" : "") +
+                         "The mode at s = " + as_given(pole->real()) +
+                             (pole->imag() != 0 ? " + " + as_given(pole->imag()) + "j" : "") +
                              " is not stable and input or output cannot reach it, so no controller can stabilise it. "
                              "Remove it from the model if it is not real."};
         factors.poles.erase(pole);

@@ -77,6 +77,12 @@ double LinearPlant::low_frequency_gain() const {
     return value.real();
 }
 
+double LinearPlant::time_scale() const {
+    double time = L_;
+    for (const auto pole : poles_) time += 1 / std::abs(pole);
+    return time;
+}
+
 double LinearPlant::lag_sum() const {
     double sum = 0;
     for (const auto pole : poles_)

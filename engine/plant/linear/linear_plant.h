@@ -47,6 +47,8 @@ public:
     double low_frequency_gain() const;
     /// Sum of the lags minus the leads (stable ones: -1/p, -1/z) without the dead time.
     double lag_sum() const;
+    /// Dead time plus 1/|p| of every pole except those at 0; 0 where there is neither.
+    double time_scale() const;
 
 private:
     double gain_ = 0;

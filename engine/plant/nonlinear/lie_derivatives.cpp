@@ -83,7 +83,7 @@ bool lie_derivatives(const NonlinearSystem& system, int r, std::span<const doubl
     TaylorTable<Coefficient> flow(rates, r);
     for (int i = 0; i < n; ++i) flow.series(i)[0] = constant_dual<1>(x[static_cast<std::size_t>(i)]);
     Coefficient* u = flow.series(n);
-    u[0] = {0, {1}};  // f affine in u: at u = 0 the value is of f, the slope of g
+    u[0] = variable_dual<1>(0, 0);  // f affine in u: at u = 0 the value is of f, the slope of g
     for (int k = 1; k <= r; ++k) u[k] = constant_dual<1>(0);
     for (int k = 0; k < r; ++k) {
         flow.sweep(k, length);
@@ -105,7 +105,7 @@ bool lie_derivatives(const NonlinearSystem& system, int r, std::span<const doubl
         out.of_f[static_cast<std::size_t>(k)] = factorial * y[k].v;
         finite = finite && std::isfinite(out.of_f[static_cast<std::size_t>(k)]);
     }
-    out.of_g = factorial * y[r].d[0];
+    out.of_g = factorial * y[r].d;
     return finite && std::isfinite(out.of_g);
 }
 

@@ -1,17 +1,14 @@
 #include "engine/plant/nonlinear/linear_equations.h"
 
-#include <charconv>
 #include <span>
 #include <string>
+
+#include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
 
-std::string exact(double x) {
-    char buffer[40];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, x).ptr;
-    return "(" + std::string(buffer, end) + ")";
-}
+std::string coefficient(double x) { return "(" + exact_text(x) + ")"; }
 
 std::string state(int i) { return "x" + std::to_string(i + 1); }
 
@@ -19,7 +16,8 @@ std::string state(int i) { return "x" + std::to_string(i + 1); }
 std::string weighted_states(std::span<const double> row) {
     std::string result;
     for (std::size_t i = 0; i < row.size(); ++i)
-        if (row[i] != 0) result += (result.empty() ? "" : " + ") + exact(row[i]) + "*" + state(static_cast<int>(i));
+        if (row[i] != 0)
+            result += (result.empty() ? "" : " + ") + coefficient(row[i]) + "*" + state(static_cast<int>(i));
     return result;
 }
 
@@ -40,7 +38,7 @@ Expected<NonlinearSystem> as_equations(const LinearPlant& plant) {
                            .L = plant.dead_time()};
     for (std::size_t i = 0; i < n; ++i) {
         std::string rate = weighted_states(std::span(realisation.A).subspan(i * n, n));
-        if (realisation.B[i] != 0) rate += (rate.empty() ? "" : " + ") + exact(realisation.B[i]) + "*u";
+        if (realisation.B[i] != 0) rate += (rate.empty() ? "" : " + ") + coefficient(realisation.B[i]) + "*u";
         written.states.push_back({state(static_cast<int>(i)), 0});
         written.equations.push_back({state(static_cast<int>(i)), rate.empty() ? "0" : rate});
     }

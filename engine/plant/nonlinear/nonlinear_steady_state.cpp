@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "engine/number_text.h"
@@ -15,13 +14,11 @@ constexpr int kMaxIterations = 100, kMaxHalvings = 40;
 constexpr double kRounding = 1e-16;  // of the largest state: what a state at 0 may be off by
 constexpr double kSingularCutoff = 1e-11, kMaxStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 
-std::string precise(double x) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.7g", x);
-    return buffer;
-}
+/// Seven digits: a steady state is meant to be copied into a request.
+std::string precise(double x) { return text(x, 7); }
 
-struct Point {
+/// States and their rates.
+struct Iterate {
     std::vector<double> x, rates;
 };
 
@@ -34,7 +31,7 @@ public:
     }
 
     Expected<std::vector<double>> run() {
-        Point now{start_, std::vector<double>(n_)};
+        Iterate now{start_, std::vector<double>(n_)};
         if (!system_.rates(now.x, u_, now.rates)) return fault_at_start();
         double step_size = std::numeric_limits<double>::infinity();
         for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -107,11 +104,11 @@ private:
     }
 
     // Along the step as far as the rates fall; false where they do not.
-    bool advance(Point& now, const std::vector<double>& step, double step_size) const {
+    bool advance(Iterate& now, const std::vector<double>& step, double step_size) const {
         const double before = norm(now.rates);
         double length = std::min(1.0, kMaxStep / step_size);
         for (int halving = 0; halving < kMaxHalvings; ++halving, length /= 2) {
-            Point next{now.x, std::vector<double>(n_)};
+            Iterate next{now.x, std::vector<double>(n_)};
             for (std::size_t i = 0; i < n_; ++i) next.x[i] += length * step[i] * state_size_[i];
             if (next.x == now.x) return false;
             if (system_.rates(next.x, u_, next.rates) && norm(next.rates) < (1 - 1e-4 * length) * before) {
@@ -146,7 +143,7 @@ private:
                        "): " + system_.derivative_fault(start_, u_) + ".");
     }
 
-    Error none_near(const Point& stuck) const {
+    Error none_near(const Iterate& stuck) const {
         std::size_t worst = 0;
         for (std::size_t i = 1; i < n_; ++i)
             if (std::abs(stuck.rates[i] / rate_size_[i]) > std::abs(stuck.rates[worst] / rate_size_[worst])) worst = i;
@@ -156,7 +153,7 @@ private:
                        ". Change input.nominal or the states.");
     }
 
-    Error too_far(const Point& found) const {
+    Error too_far(const Iterate& found) const {
         return invalid("There is no steady state near these states for " + system_.description().input.name + " = " +
                        precise(u_) + ": the next one found is " + states(found.x) +
                        ". Give these states if it is meant, or change input.nominal.");

@@ -34,8 +34,8 @@ Variables<Dual<N>> dual_variables(std::span<const double> x, double u, std::size
     Variables<Dual<N>> result;
     result.count = x.size() + 1;
     for (std::size_t i = 0; i < result.count; ++i) {
-        result.values[i] = constant_dual<N>(i < x.size() ? x[i] : u);
-        if (i >= first && i < first + N) result.values[i].d[i - first] = 1;
+        const double value = i < x.size() ? x[i] : u;
+        result.values[i] = i >= first && i < first + N ? variable_dual<N>(value, i - first) : constant_dual<N>(value);
     }
     return result;
 }
@@ -51,7 +51,7 @@ bool derivatives(const Program& program, std::span<const double> x, double u, st
         for (std::size_t i = 0; i < outputs; ++i) {
             finite = finite && all_finite(out[i]);
             for (std::size_t j = first; j < std::min(first + N, directions); ++j)
-                rows[i * directions + j] = out[i].d[j - first];
+                rows[i * directions + j] = derivative(out[i], j - first);
         }
     }
     return finite;

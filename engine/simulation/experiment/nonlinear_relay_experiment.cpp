@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "engine/number_text.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/plant_run.h"
@@ -25,8 +26,7 @@ constexpr double kNoise = 1e-13;  // of the output's own size: crossings of the 
 Error unsupported(std::string message) { return {ErrorKind::unsupported, "plant", std::move(message)}; }
 
 double own_time(const LinearPlant& plant) {
-    double time = plant.dead_time();
-    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
+    const double time = plant.time_scale();
     return time > 0 ? time : 1;
 }
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <map>
 
+#include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/propagator.h"
-#include "engine/simulation/linear/signal.h"
+#include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
 namespace {
@@ -25,11 +26,11 @@ struct Memory {
 };
 
 double cubic(double h, double s, double a, double slope_a, double b, double slope_b) {
-    return value_at(hermite_taylor(h, a, slope_a, b, slope_b), s);
+    return value_at(hermite_taylor(h, {a, slope_a}, {b, slope_b}), s);
 }
 
 Signal cubic(double h, double s, Signal a, Signal b) {
-    const auto c = hermite_taylor(h, a.value, a.slope, b.value, b.slope);
+    const auto c = hermite_taylor(h, a, b);
     return {value_at(c, s), slope_at(c, s)};
 }
 
@@ -93,12 +94,6 @@ ImcSystem make_system(const LinearPlant& plant, const ImcController& c, double l
     return s;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& x) {
-    double sum = 0;
-    for (Index i = 0; i < a.size(); ++i) sum += a[i] * x[i];
-    return sum;
-}
-
 class ImcRun {
 public:
     ImcRun(const LinearPlant& plant, const ImcController& c, const StepInputs& in, const ResponseOptions& options)
@@ -107,7 +102,8 @@ public:
           in_(in),
           options_(options),
           L_(plant.dead_time()),
-          theta_(c.theta) {
+          theta_(c.theta),
+          stopping_(options.settled, L_ + theta_) {
         response_.y_final = in.r;
         response_.u_final = in.r / plant.low_frequency_gain() - in.d;
         // C = 1/(kp d0 s) + ...: what the integral of the error must come to.
@@ -208,7 +204,7 @@ private:
             const Signal e1 = seen(t, false);
             if (i > 0) memory_.pop_back();
             next = x;
-            advance(step, hermite_taylor(h, e0.value, e0.slope, e1.value, e1.slope), next, scratch);
+            advance(step, hermite_taylor(h, e0, e1), next, scratch);
             remember(t, next, e1);
         }
         x = next;
@@ -243,13 +239,13 @@ private:
         const double y = std::abs(node.y - response_.y_final), u = std::abs(node.u - response_.u_final);
         largest_y_ = std::max(largest_y_, y);
         largest_u_ = std::max(largest_u_, u);
-        if (y > options_.settled * largest_y_ || u > options_.settled * largest_u_) last_unsettled_ = t;
+        stopping_.note(t, y, largest_y_, u, largest_u_);
     }
 
     bool finished() const {
         const double t = response_.nodes.back().t;
         if (options_.horizon) return t >= *options_.horizon;
-        return t >= last_unsettled_ + std::max(2 * (L_ + theta_), 0.25 * last_unsettled_);
+        return stopping_.has_settled(t);
     }
 
     ImcSystem system_;
@@ -261,7 +257,8 @@ private:
     std::map<double, ExactStep> steps_;
     std::vector<Memory> memory_;
     StepResponse response_;
-    double largest_y_ = 0, largest_u_ = 0, last_unsettled_ = 0;
+    double largest_y_ = 0, largest_u_ = 0;
+    StoppingRule stopping_;
 };
 
 }  // namespace

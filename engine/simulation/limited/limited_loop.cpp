@@ -3,18 +3,14 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/numerics/linear_algebra.h"
+
 namespace tunewright {
 namespace {
 
 using Index = std::size_t;
 
 constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
-
-double dot(const std::vector<double>& a, const std::vector<double>& x) {
-    double sum = 0;
-    for (Index i = 0; i < a.size(); ++i) sum += a[i] * x[i];
-    return sum;
-}
 
 }  // namespace
 
@@ -27,13 +23,12 @@ std::optional<double> tracking_time(const ParallelPid& controller) {
 
 double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
     if (const auto time = tracking_time(controller)) return *time;
-    double lags = plant.dead_time();
-    for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
-    return 0.1 * (lags > 0 ? lags : 1 / std::abs(controller.Ki * plant.gain()));
+    const double time = plant.time_scale();
+    return 0.1 * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
 }
 
 LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                         const OutputLimits& limits)
+                         const ActuatorLimits& limits)
     : system_(make_delay_system(plant, controller)), in_(inputs), limits_(limits) {
     if (controller.Ki != 0) tracking_gain_ = 1 / (controller.Ki * tracking_time(plant, controller));
     below_ = equations(Region::below);

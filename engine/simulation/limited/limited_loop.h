@@ -6,7 +6,6 @@
 #include "engine/loop/delay_system.h"
 #include "engine/numerics/propagator.h"
 #include "engine/simulation/limited/limited_response.h"
-#include "engine/simulation/linear/signal.h"
 
 namespace tunewright {
 
@@ -24,7 +23,7 @@ struct LoopOutput {
 class LimitedLoop {
 public:
     LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                const OutputLimits& limits);
+                const ActuatorLimits& limits);
 
     int states() const { return system_.n + 1; }
     double dead_time() const { return system_.L; }
@@ -51,7 +50,7 @@ private:
 
     DelaySystem system_;
     StepInputs in_;
-    OutputLimits limits_;
+    ActuatorLimits limits_;
     double tracking_gain_ = 0;  // 1/(Ki Tt)
     Equations below_, inside_, above_;
 };

@@ -7,12 +7,14 @@
 #include <map>
 
 #include "engine/numerics/linear_algebra.h"
-#include "engine/simulation/limited/input_history.h"
 #include "engine/simulation/limited/limited_loop.h"
 #include "engine/simulation/limited/limited_rest.h"
 #include "engine/simulation/linear/error_tail.h"
 #include "engine/simulation/linear/long_step.h"
 #include "engine/simulation/linear/steady_state.h"
+#include "engine/simulation/run/echoes.h"
+#include "engine/simulation/run/input_history.h"
+#include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
 namespace {
@@ -21,9 +23,7 @@ using Index = std::size_t;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRetardedEchoes = 4;  // a jump's echoes: smoothed by the plant at each passage
-constexpr int kMaxEchoes = 2000;
-constexpr double kEscaped = 1e6;         // of the scale of y: the limits cannot hold the plant
+constexpr int kRetardedEchoes = 4;       // a jump's echoes: smoothed by the plant at each passage
 constexpr double kTimeResolution = 128;  // in units of rounding of t: shorter steps are not taken
 constexpr double kRounding = 1e-5;       // times `settled`, of the value at rest: deviations below are none
 constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
@@ -31,7 +31,7 @@ constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled
 
 /// How far the cubic through a and c misses b halfway, in value and slope.
 double miss(double h, Signal a, Signal b, Signal c) {
-    const double value = 0.5 * (a.value + c.value) + h * (a.slope - c.slope) / 8;
+    const double value = hermite_midpoint(h, a, c);
     const double slope = 1.5 * (c.value - a.value) / h - 0.25 * (a.slope + c.slope);
     return std::max(std::abs(b.value - value), h * std::abs(b.slope - slope) / 8);
 }
@@ -45,17 +45,18 @@ struct Stride {
     std::optional<LongStep> implicit;  // within the limits, beyond L
 };
 
-struct Point {
+/// The loop at one instant.
+struct LoopInstant {
     double t = 0;
     std::vector<double> x;
     LoopOutput out;
 };
 
 /// The run: chooses step lengths, finds the crossings of the limits, keeps the nodes, knows when to stop.
-class Run {
+class LimitedRun {
 public:
-    Run(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in, const OutputLimits& limits,
-        const ResponseOptions& options)
+    LimitedRun(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+               const ActuatorLimits& limits, const ResponseOptions& options)
         : loop_(plant, controller, in, limits),
           system_(make_response_system(plant, controller, in)),
           filter_(controller.filter),
@@ -65,18 +66,16 @@ public:
           rest_(find_rest(plant, controller, in, limits)),
           scale_y_(scale_of_y(plant, in, limits, rest_.y)),
           history_(response_.nodes, in.d),
-          scratch_(Index(loop_.states())) {
+          echoes_(echoes_that_count(std::abs(loop_.system().N), options.tolerance, kRetardedEchoes)),
+          scratch_(Index(loop_.states())),
+          stopping_(options.settled, loop_.dead_time()) {
         choose_h0(plant, controller);
-        const double q = std::abs(loop_.system().N);
-        if (q > 0)
-            echoes_ = std::min(kMaxEchoes, kRetardedEchoes + static_cast<int>(std::log(1e-3 * options.tolerance) /
-                                                                              std::log(std::min(q, 0.999))));
     }
 
     StepResponse run() {
         now_.x.assign(Index(loop_.states()), 0.0);
         enter(loop_.region(now_.x, {}), {});
-        add_break(loop_.dead_time(), 0);
+        add_echo(loop_.dead_time(), 0);
         while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
             if (!take_step() || escaped()) break;
             if (finished()) return ended(true);
@@ -100,17 +99,12 @@ private:
 
     double slack() const { return kTimeResolution / 4 * kEpsilon * std::max(now_.t, loop_.dead_time()); }
 
-    // Jumps and kinks of the delayed signal still to come, with the number of passages since their origin.
-    void add_break(double t, int passages) {
-        if (!loop_.delayed() || passages > echoes_) return;
-        const auto near = breaks_.lower_bound(t - slack());
-        if (near != breaks_.end() && near->first <= t + slack())
-            near->second = std::min(near->second, passages);
-        else
-            breaks_.emplace(t, passages);
+    /// A jump or kink of the delayed signal to come.
+    void add_echo(double t, int passages) {
+        if (loop_.delayed()) echoes_.add(t, passages, slack());
     }
 
-    void push(const Point& p) {
+    void push(const LoopInstant& p) {
         ResponseNode node{.t = p.t,
                           .y = p.out.y.value,
                           .y_slope = p.out.y.slope,
@@ -120,7 +114,7 @@ private:
         response_.nodes.push_back(node);
     }
 
-    void note(const Point& p) {
+    void note(const LoopInstant& p) {
         push(p);
         if (const auto& nodes = response_.nodes; options_.tail && nodes.size() > 1)
             tail_.add(nodes[nodes.size() - 2], nodes.back(), in_.r);
@@ -131,7 +125,7 @@ private:
         // Rest reached from the first instant on (u at a limit, say) leaves rounding alone as its largest deviation.
         const double size_y = std::max(largest_y_, kRounding * std::abs(rest_.y)),
                      size_u = std::max(largest_u_, kRounding * std::abs(rest_.u));
-        if (dy > options_.settled * size_y || du > options_.settled * size_u) last_unsettled_ = p.t;
+        stopping_.note(p.t, dy, size_y, du, size_u);
     }
 
     /// Continues from now in this region.
@@ -146,16 +140,12 @@ private:
     bool finished() const {
         if (options_.horizon) return now_.t + slack() >= *options_.horizon;
         if (!rest_.exists) return false;
-        const double quiet = std::max(2 * loop_.dead_time(), 0.25 * last_unsettled_);
-        if (now_.t < last_unsettled_ + quiet || now_.t <= 0) return false;
+        if (!stopping_.has_settled(now_.t)) return false;
         const auto remaining = remaining_error_integral();
         if (!remaining) return true;
-        // A slow tail that still has integral to add must at least have the sign to add it.
         const double so_far = response_.nodes.back().error_integral;
         const double error = in_.r - now_.out.y.value;
-        if (*remaining * error < 0 &&
-            std::abs(*remaining) > options_.settled * (std::abs(so_far) + std::abs(*remaining)))
-            return false;
+        if (!stopping_.tail_may_end(*remaining, error, std::abs(so_far) + std::abs(*remaining))) return false;
         return !options_.tail || tail_.little_is_left(*remaining, error, now_.t, *options_.tail);
     }
 
@@ -200,7 +190,7 @@ private:
     }
 
     /// From `from` one stride on in the present region. Returns how far the delayed signal's cubic misses it halfway.
-    double advance(const Point& from, const Stride& stride, Point& to) {
+    double advance(const LoopInstant& from, const Stride& stride, LoopInstant& to) {
         to.t = from.t + stride.h;
         to.x = from.x;
         if (!loop_.delayed()) {
@@ -218,8 +208,7 @@ private:
             to.out = loop_.output(region_, to.x, stride.implicit->finish(start_, {}, to.x));
             return missed;
         }
-        tunewright::advance(stride.whole, hermite_taylor(first, v0.value, v0.slope, v1.value, v1.slope), to.x,
-                            scratch_);
+        tunewright::advance(stride.whole, hermite_taylor(first, v0, v1), to.x, scratch_);
         // At a limit what the plant gets is constant.
         if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x, scratch_);
         to.out = loop_.output(region_, to.x, stride.longer_than_L ? Signal{w0.value, 0} : v1);
@@ -245,7 +234,7 @@ private:
     }
 
     double distance_to_next_stop() const {
-        double distance = breaks_.empty() ? kInfinity : breaks_.begin()->first - now_.t;
+        double distance = echoes_.next().value_or(kInfinity) - now_.t;
         if (options_.horizon) distance = std::min(distance, *options_.horizon - now_.t);
         return distance;
     }
@@ -274,12 +263,12 @@ private:
             if (!finite) return false;
             if (crosses(now_, middle_)) return cross(now_, middle_, stride.h);
             note(middle_);
-            if (crosses(middle_, end_)) return cross(Point(middle_), end_, stride.h);
+            if (crosses(middle_, end_)) return cross(LoopInstant(middle_), end_, stride.h);
             const bool at_stop = to_stop;
             if (!to_stop && error < kDoubling * options_.tolerance && level_ < 200) ++level_;
             std::swap(now_, end_);
             note(now_);
-            if (at_stop) pass_break();
+            if (at_stop) pass_echo();
             return true;
         }
     }
@@ -291,10 +280,9 @@ private:
         bool at_max = false;
     };
 
-    std::optional<Crossing> crosses(const Point& a, const Point& b) const {
+    std::optional<Crossing> crosses(const LoopInstant& a, const LoopInstant& b) const {
         const double h = b.t - a.t;
-        const auto c =
-            hermite_taylor(h, a.out.command.value, a.out.command.slope, b.out.command.value, b.out.command.slope);
+        const auto c = hermite_taylor(h, a.out.command, b.out.command);
         const double noise = 1e-11 * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
         const auto rise = [&](double limit, double sign) -> std::optional<double> {
             if (!std::isfinite(limit)) return std::nullopt;
@@ -309,12 +297,12 @@ private:
     }
 
     /// Steps from `from` to the crossing before `to`, found on the cubic and refined with exact steps.
-    bool cross(const Point& from, const Point& to, double h) {
+    bool cross(const LoopInstant& from, const LoopInstant& to, double h) {
         const Crossing crossing = *crosses(from, to);
         const double limit = crossing.at_max ? limits_.max : limits_.min;
         const double shortest = std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, 1e-3 * h0_));
         double s = std::clamp(crossing.s, shortest, h);
-        Point at;
+        LoopInstant at;
         for (int i = 0;; ++i) {
             advance(from, make_stride(s), at);
             const double gap = limit - at.out.command.value, correction = gap / at.out.command.slope;
@@ -327,49 +315,49 @@ private:
         note(now_);
         const Signal v = loop_.delayed() ? history_.at(now_.t - loop_.dead_time(), true, slack()) : Signal{};
         enter(loop_.region_after(region_, crossing.at_max), v);
-        add_break(now_.t + loop_.dead_time(), 1);
-        if (!breaks_.empty() && breaks_.begin()->first <= now_.t + slack()) pass_break();
+        add_echo(now_.t + loop_.dead_time(), 1);
+        pass_echo();
         return true;
     }
 
     /// At an echo the delayed signal may jump, and with it the command.
-    void pass_break() {
-        if (breaks_.empty() || breaks_.begin()->first > now_.t + slack()) return;
-        const int passages = breaks_.begin()->second;
-        breaks_.erase(breaks_.begin());
+    void pass_echo() {
+        const auto passages = echoes_.pass(now_.t + slack());
+        if (!passages) return;
         const Signal v = history_.at(now_.t - loop_.dead_time(), true, slack());
         const Region before = region_;
         enter(loop_.region(now_.x, v), v);
-        add_break(now_.t + loop_.dead_time(), region_ == before ? passages + 1 : 0);
+        add_echo(now_.t + loop_.dead_time(), region_ == before ? *passages + 1 : 0);
     }
 
     LimitedLoop loop_;
     ResponseSystem system_;  // within the limits
     Filter filter_;
     StepInputs in_;
-    OutputLimits limits_;
+    ActuatorLimits limits_;
     const ResponseOptions& options_;
     LimitedRest rest_;
     double scale_y_;
     StepResponse response_;
     InputHistory history_;
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
-    std::map<double, int> breaks_;
+    Echoes echoes_;
     LongStep::Start start_;
     std::vector<double> scratch_;
     double h0_ = 1;
-    int level_ = 0, echoes_ = kRetardedEchoes;
+    int level_ = 0;
     Region region_ = Region::inside;
-    Point now_, middle_, end_;
-    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, last_unsettled_ = 0;
+    LoopInstant now_, middle_, end_;
+    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0;
+    StoppingRule stopping_;
     ErrorTail tail_;
 };
 
 }  // namespace
 
 StepResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                              const OutputLimits& limits, const ResponseOptions& options) {
-    return Run(plant, controller, inputs, limits, options).run();
+                              const ActuatorLimits& limits, const ResponseOptions& options) {
+    return LimitedRun(plant, controller, inputs, limits, options).run();
 }
 
 }  // namespace tunewright

@@ -22,12 +22,6 @@
 
 namespace tunewright {
 
-/// Deviations from the operating point; infinite where there is none. min < max, min <= 0 <= max.
-struct OutputLimits {
-    double min = 0;
-    double max = 0;
-};
-
 /// The tracking time Tt of the anti-windup, > 0: sqrt(Ti Td) for PID, Ti for PI (the same source). For pure integral
 /// action, which has no time of its own: a tenth of the plant's dead time and lags, or of 1/|Ki K| on a static plant.
 /// Magnitudes of the gains count. Without integral action: infinity.
@@ -45,6 +39,6 @@ std::optional<double> tracking_time(const ParallelPid& controller);
 /// - `options.repeat` is not used and `schedule` stays empty; with a horizon the last node lies exactly on it.
 /// The loop must be well posed (Loop::make); it need not be stable. All values are finite.
 StepResponse simulate_limited(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
-                              const OutputLimits& limits, const ResponseOptions& options);
+                              const ActuatorLimits& limits, const ResponseOptions& options);
 
 }  // namespace tunewright

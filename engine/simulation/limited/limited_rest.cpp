@@ -6,7 +6,7 @@
 namespace tunewright {
 
 LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
-                      const OutputLimits& limits) {
+                      const ActuatorLimits& limits) {
     LimitedRest rest;
     rest.linear = steady_state(plant, controller, in);
     if (!rest.linear.exists) return rest;
@@ -24,9 +24,9 @@ LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, c
     return rest;
 }
 
-double scale_of_y(const LinearPlant& plant, const StepInputs& in, const OutputLimits& limits, double y_rest) {
-    double time = plant.dead_time(), u = std::abs(in.d);
-    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
+double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest) {
+    const double time = plant.time_scale();
+    double u = std::abs(in.d);
     for (const double limit : {limits.min, limits.max})
         if (std::isfinite(limit)) u += std::abs(limit);
     const double gain = std::abs(plant.rational({0, time > 0 ? 1 / time : 1}));

@@ -9,11 +9,14 @@ namespace {
 
 using Index = std::size_t;
 
+constexpr double kZeroTolerance = 1e-14;  // of a zero of a cubic, in parts of its step
+constexpr int kMaxIterations = 50;
+
 /// c0 + c1 s + c2 s^2 + c3 s^3 over s in [0, 1], through values and slopes at both ends.
-struct Cubic {
+struct UnitCubic {
     double c0, c1, c2, c3;
 
-    static Cubic through(double h, double a, double slope_a, double b, double slope_b) {
+    static UnitCubic through(double h, double a, double slope_a, double b, double slope_b) {
         const double m = slope_a * h, n = slope_b * h, d = b - a;
         return {a, m, 3 * d - 2 * m - n, m + n - 2 * d};
     }
@@ -37,10 +40,10 @@ struct Cubic {
         return count;
     }
 
-    /// The zero between s = a and s = b of opposite signs.
+    /// The zero between s = a and s = b of opposite signs: Newton's method kept between them.
     double zero(double a, double b) const {
         double fa = at(a), s = a - fa * (b - a) / (at(b) - fa);
-        for (int i = 0; i < 50; ++i) {
+        for (int i = 0; i < kMaxIterations; ++i) {
             const double f = at(s);
             if ((f < 0) == (fa < 0)) {
                 a = s;
@@ -50,20 +53,20 @@ struct Cubic {
             }
             double next = s - f / slope(s);
             if (!(next > a && next < b)) next = 0.5 * (a + b);
-            if (std::abs(next - s) < 1e-14) return next;
+            if (std::abs(next - s) < kZeroTolerance) return next;
             s = next;
         }
         return s;
     }
 };
 
-Cubic cubic_of_y(const ResponseNode& a, const ResponseNode& b) {
-    return Cubic::through(b.t - a.t, a.y, a.y_slope, b.y, b.y_slope);
+UnitCubic cubic_of_y(const ResponseNode& a, const ResponseNode& b) {
+    return UnitCubic::through(b.t - a.t, a.y, a.y_slope, b.y, b.y_slope);
 }
 
 /// Calls piece(s_from, s_to) for the parts of [0, 1] on which the cubic keeps its sign.
 template <class Piece>
-void signed_pieces(const Cubic& e, Piece&& piece) {
+void signed_pieces(const UnitCubic& e, Piece&& piece) {
     std::array<double, 4> mark{0};
     std::array<double, 2> turns{};
     int n = 1;
@@ -109,7 +112,7 @@ double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double
             last = a.error_integral;
         }
         if (h <= 0 || !may_change_sign(a, b, target, h)) continue;
-        const Cubic e = Cubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+        const UnitCubic e = UnitCubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
         signed_pieces(e, [&](double, double to) {
             if (to >= 1) return;
             // From the nearer end, so that the interpolation's error stays smallest.
@@ -135,7 +138,7 @@ ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double ta
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
         if (h <= 0) continue;
-        const Cubic e = Cubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+        const UnitCubic e = UnitCubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
         for (Index k = 0; k < 4; ++k) {
             const double value = e.at(x[k]);
             result.ISE += h * w[k] * value * value;
@@ -163,7 +166,7 @@ double total_variation(const std::vector<ResponseNode>& nodes) {
         const double h = b.t - a.t;
         double from = a.u;
         if (h > 0) {
-            const Cubic u = Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
+            const UnitCubic u = UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
             std::array<double, 2> turns{};
             const int n = u.turning_points(turns);
             for (int k = 0; k < n; ++k) {
@@ -192,7 +195,7 @@ Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
     for (Index i = 0; i < nodes.size(); ++i) {
         note(nodes[i].t, nodes[i].y);
         if (i == 0 || nodes[i].t <= nodes[i - 1].t) continue;
-        const Cubic y = cubic_of_y(nodes[i - 1], nodes[i]);
+        const UnitCubic y = cubic_of_y(nodes[i - 1], nodes[i]);
         std::array<double, 2> turns{};
         const int n = y.turning_points(turns);
         for (int k = 0; k < n; ++k)
@@ -208,7 +211,7 @@ std::optional<double> first_reached(const std::vector<ResponseNode>& nodes, doub
         const double h = b.t - a.t;
         if (sign * (a.y - level) >= 0) return a.t;
         if (h <= 0) continue;
-        Cubic y = cubic_of_y(a, b);
+        UnitCubic y = cubic_of_y(a, b);
         y.c0 -= level;
         double reached = -1;
         signed_pieces(y, [&](double, double to) {
@@ -231,7 +234,7 @@ std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, doubl
         if (stays_within(a, b, target, band, h)) continue;
         double last = -1;
         for (const double edge : {target + band, target - band}) {
-            Cubic y = cubic_of_y(a, b);
+            UnitCubic y = cubic_of_y(a, b);
             y.c0 -= edge;
             signed_pieces(y, [&](double, double to) {
                 if (to < 1) last = std::max(last, to);
@@ -257,7 +260,7 @@ std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& 
         }
         const ResponseNode& b = nodes[at + 1];
         const double h = b.t - a.t, s = (t - a.t) / h;
-        values.emplace_back(cubic_of_y(a, b).at(s), Cubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s));
+        values.emplace_back(cubic_of_y(a, b).at(s), UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s));
     }
     return values;
 }

@@ -1,9 +1,19 @@
-// The response of a linear loop to constant set point and load from t = 0, dead time exact.
+// The response of a loop on a linear plant to constant set point and load from t = 0, dead time exact; the controller
+// is a PID or the nonlinear PID.
+//
+//   x' = F x + G v + H r,   w = u + d = M x + N v + R r + d,   y = Y x + Z v,   v(t) = w(t - L)   (loop/delay_system.h)
 //
 // Method of steps: within a step the delayed signal is a cubic through stored values and slopes (order 4), everything
 // else is exact. Steps are h0 2^k: short after every jump and its echoes at L, 2L, ..., longer where midpoint values
 // show that a cubic through the outer points would do; beyond the echoes also longer than L, then with the new values
-// found implicitly. Without dead time the steps are exact whatever their length.
+// found implicitly (long_step.h). Without dead time the steps are exact whatever their length. Source of the method of
+// steps: Bellman and Cooke, Differential-Difference Equations (1963), chapter 3.
+//
+// The nonlinear PID adds phi(e) - e to its integral's input (controller/error_scaling.h). Within a step that is one
+// more cubic: known for steps up to the dead time (y does not depend on it there), found by repetition for longer ones
+// and without dead time.
+//
+// Units: t in the plant's time; y, r in units of y; u, d in units of u; all deviations from the operating point.
 #pragma once
 
 #include <optional>
@@ -16,9 +26,9 @@ namespace tunewright {
 
 /// One instant. Two nodes of equal t are the values before and after a jump.
 struct ResponseNode {
-    double t = 0;
-    double y = 0, y_slope = 0;
-    double u = 0, u_slope = 0;
+    double t = 0;               ///< >= 0, ascending from node to node
+    double y = 0, y_slope = 0;  ///< the plant's output and its derivative in t
+    double u = 0, u_slope = 0;  ///< the controller's output, without the load
     double error_integral = 0;  ///< integral of r - y from 0 to t
 };
 
@@ -29,9 +39,9 @@ struct StepInputs {
 
 /// The step lengths of a run, to repeat it with slightly different parameters on the same instants.
 struct StepSchedule {
-    double h0 = 0;
-    std::vector<signed char> level;
-    int to_horizon = 0;  ///< after these, as many equal steps up to the horizon
+    double h0 = 0;                   ///< > 0
+    std::vector<signed char> level;  ///< of each step: its length is h0 2^level, 0 <= level <= 60
+    int to_horizon = 0;              ///< after these, as many equal steps up to the horizon
 };
 
 /// The same instants and those halfway between them.
@@ -43,19 +53,28 @@ struct ResponseOptions {
     std::optional<double> tail;     ///< and not before less than this fraction of the integral of t |e| is left
     std::optional<double> horizon;  ///< stops exactly here instead
     int max_steps = 60000;          ///< counts only where the run chooses its steps itself
-    const StepSchedule* repeat = nullptr;
+    const StepSchedule* repeat = nullptr;  ///< the steps to take; not owned
 };
 
 struct StepResponse {
-    std::vector<ResponseNode> nodes;
+    std::vector<ResponseNode> nodes;             ///< at least one, the first at t = 0
     double y_final = 0, u_final = 0;             ///< steady state
     std::optional<double> error_integral_final;  ///< integral of r - y to infinity, exact; with integral action only
     bool settles = true;                         ///< the stopping rule was met before max_steps
     StepSchedule schedule;
 };
 
-/// The loop must be stable and well posed (Loop::make, count_unstable_poles).
+/// The loop must be stable and well posed (Loop::make, count_unstable_poles). All values are finite.
 StepResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
                              const ResponseOptions& options);
+
+/// The same with the nonlinear PID: the gains of its linear part (b = 1, c = 0, no filter of the measurement) and
+/// delta_r > 0 in units of y. The step size matters: the response is not proportional to it. Differences:
+/// - `error_integral_final` is the integral so far plus what the integral's state has yet to change: exact up to the
+///   third power of the error at the last node.
+/// - `settles` is false also where the response grows without bound; it ends there.
+/// The linear part's loop must be well posed; it need not be stable. Source: Jin and Son (2019), Eqs. 3 and 5.
+StepResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
+                           const StepInputs& inputs, const ResponseOptions& options);
 
 }  // namespace tunewright

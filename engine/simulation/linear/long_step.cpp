@@ -1,27 +1,15 @@
 #include "engine/simulation/linear/long_step.h"
 
+#include <Eigen/LU>
 #include <utility>
+
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 
 using Index = std::size_t;
 
 namespace {
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    double sum = 0;
-    for (Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-    return sum;
-}
-
-/// row A
-std::vector<double> product(const std::vector<double>& row, const std::vector<double>& A) {
-    const Index n = row.size();
-    std::vector<double> result(n, 0.0);
-    for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) result[j] += row[i] * A[i * n + j];
-    return result;
-}
 
 /// Of length (2^(level - level_of_L) - 1) L.
 ExactStep beyond_L(Propagator& propagator, int level, int level_of_L) {
@@ -47,21 +35,21 @@ void LongStep::work_out_rows() {
     std::vector<double> row = system_->s.M;
     row.resize(Index(system_->n), 0.0);  // the error's integral is no part of the output
     for (Index j = 0; j < 4; ++j) rest_moments_[j] = dot(row, rest_.Gamma[j]);
-    row = product(row, rest_.Phi);
+    row = row_times(row, rest_.Phi);
     rest_G_ = dot(row, system_->G);
     for (Index j = 0; j < 4; ++j) over_L_moments_[j] = dot(row, over_L_.Gamma[j]);
-    row = product(row, over_L_.Phi);
+    row = row_times(row, over_L_.Phi);
     whole_G_ = dot(row, system_->G);
     whole_b_ = dot(row, system_->b);
-    to_slope_ = product(row, system_->F);
+    to_slope_ = row_times(row, system_->F);
     slope_G_ = dot(to_slope_, system_->G);
     slope_b_ = dot(to_slope_, system_->b);
-    to_curvature_ = product(to_slope_, system_->F);
+    to_curvature_ = row_times(to_slope_, system_->F);
 }
 
 void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch,
                      Start& start) const {
-    const Cubic over_L = hermite_taylor(over_L_.h, v0.value, v0.slope, w0.value, w0.slope);
+    const Cubic over_L = hermite_taylor(over_L_.h, v0, w0);
     const Cubic known = cubic(w0.value, {});
     start.v_end = delayed_end(known);
     start.w_end = through_cubic(known);
@@ -127,16 +115,10 @@ LongStep::Effect LongStep::effect(const Jet& end) const {
 }
 
 void LongStep::invert() {
-    std::array<double, 9> m{};
-    for (Index row = 0; row < 3; ++row)
-        for (Index k = 0; k < 3; ++k) m[3 * row + k] = (row == k ? 1.0 : 0.0) - effects_[k].out[row];
-    const auto cofactor = [&](Index i, Index j) {
-        const Index a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-        return m[3 * a + c] * m[3 * b + d] - m[3 * a + d] * m[3 * b + c];
-    };
-    const double determinant = m[0] * cofactor(0, 0) + m[1] * cofactor(0, 1) + m[2] * cofactor(0, 2);
-    for (Index i = 0; i < 3; ++i)
-        for (Index j = 0; j < 3; ++j) solution_[3 * i + j] = cofactor(j, i) / determinant;
+    Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
+    for (Eigen::Index row = 0; row < 3; ++row)
+        for (Eigen::Index k = 0; k < 3; ++k) m(row, k) -= effects_[Index(k)].out[Index(row)];
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution_.data()) = m.inverse();
 }
 
 }  // namespace tunewright

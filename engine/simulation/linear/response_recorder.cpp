@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/cubic.h"
+
 namespace tunewright {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr int kMaxPieces = 16;
 /// How far the cubic through both ends of a piece misses its middle.
 double miss(const StepPolynomial& p, double from, double to) {
     const double h = (to - from) * p.h;
-    const double cubic = 0.5 * (p.at(from) + p.at(to)) + h * (p.slope(from) - p.slope(to)) / 8;
+    const double cubic = hermite_midpoint(h, {p.at(from), p.slope(from)}, {p.at(to), p.slope(to)});
     return std::abs(p.at(0.5 * (from + to)) - cubic);
 }
 

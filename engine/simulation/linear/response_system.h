@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "engine/loop/delay_system.h"
+#include "engine/numerics/cubic.h"
 #include "engine/simulation/linear/linear_response.h"
-#include "engine/simulation/linear/signal.h"
 
 namespace tunewright {
 

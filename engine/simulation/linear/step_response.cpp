@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "engine/numerics/linear_algebra.h"
 
@@ -27,28 +26,21 @@ std::vector<double> propagator(const Realisation& realisation, double tau) {
 }
 
 std::vector<double> apply(const std::vector<double>& propagator, const std::vector<double>& x) {
-    const size_t n = x.size();
-    std::vector<double> next(n);
-    for (size_t row = 0; row < n; ++row) {
-        const auto begin = propagator.begin() + static_cast<std::ptrdiff_t>(row * (n + 1));
-        next[row] = std::inner_product(x.begin(), x.end(), begin, begin[static_cast<std::ptrdiff_t>(n)]);
-    }
+    std::vector<double> augmented = x;
+    augmented.push_back(1);
+    std::vector<double> next(x.size());
+    multiply(propagator, augmented, next);
     return next;
 }
 
 std::vector<double> times_A(const Realisation& realisation, const std::vector<double>& x) {
-    const size_t n = x.size();
-    std::vector<double> product(n);
-    for (size_t row = 0; row < n; ++row)
-        product[row] =
-            std::inner_product(x.begin(), x.end(), realisation.A.begin() + static_cast<std::ptrdiff_t>(row * n), 0.0);
+    std::vector<double> product(x.size());
+    multiply(realisation.A, x, product);
     return product;
 }
 
 StepSample sample(const Realisation& realisation, double t, std::vector<double> x) {
-    const auto output = [&](const std::vector<double>& state) {
-        return std::inner_product(state.begin(), state.end(), realisation.C.begin(), 0.0);
-    };
+    const auto output = [&](const std::vector<double>& state) { return dot(state, realisation.C); };
     std::vector<double> rate = times_A(realisation, x);
     for (size_t i = 0; i < rate.size(); ++i) rate[i] += realisation.B[i];
     const double curvature = output(times_A(realisation, rate));

@@ -6,13 +6,14 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/ode_integrator.h"
+#include "engine/numerics/sign_change.h"
+#include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 200000;
 constexpr double kSide = 1e-10;      // of the input's scale: how far beyond a limit the law is before that counts
-constexpr double kEscaped = 1e6;     // of the input's scale
 constexpr double kStrongest = 1e12;  // of the input's effect at the start
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
@@ -114,7 +115,7 @@ private:
         return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kEscaped * scale_u_;
     }
 
-    // L_g L_f^(r-1) h has grown so much that the u which y needs cannot be told from its rounding.
+    // L_g L_f^(r-1) h has grown so much that the u that y needs is lost in its rounding.
     bool too_strong() {
         law_(integrator_.x());
         return std::abs(law_.input_effect()) > kStrongest * first_effect_;

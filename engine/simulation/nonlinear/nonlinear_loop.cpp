@@ -5,6 +5,7 @@
 
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/simulation/run/echoes.h"
 
 namespace tunewright {
 namespace {
@@ -12,14 +13,13 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kEchoes = 6;  // of a jump: smoothed by the plant at each passage, to the method's order
-constexpr int kMaxEchoes = 2000;
 constexpr int kMaxSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
 }  // namespace
 
-OutputLimits input_limits(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator) {
-    OutputLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
+ActuatorLimits input_limits(const NonlinearSystem& system, const std::optional<ActuatorLimits>& actuator) {
+    ActuatorLimits limits{system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal()};
     if (actuator) {
         limits.min = std::max(limits.min, actuator->min);
         limits.max = std::min(limits.max, actuator->max);
@@ -27,7 +27,8 @@ OutputLimits input_limits(const NonlinearSystem& system, const std::optional<Out
     return limits;
 }
 
-double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits) {
+double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller,
+                             const ActuatorLimits& limits) {
     if (controller.Ki == 0 || (std::isinf(limits.min) && std::isinf(limits.max))) return 0;
     auto time = tracking_time(controller);
     if (!time)
@@ -50,14 +51,12 @@ double size_of_effect(const NonlinearSystem& system, double d) {
 
 int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance) {
     if (controller.Kd == 0 || controller.filter.type != FilterType::none) return kEchoes;
-    double q = 0;
-    for (Index i = 0; i < Index(system.order()); ++i) q += system.linearised().C[i] * system.linearised().B[i];
-    q = std::min(std::abs(controller.Kd * q), 0.999);
-    return q > 0 ? std::min(kMaxEchoes, kEchoes + int(std::log(1e-3 * tolerance) / std::log(q))) : kEchoes;
+    const double q = dot(system.linearised().C, system.linearised().B);
+    return echoes_that_count(std::abs(controller.Kd * q), tolerance, kEchoes);
 }
 
 NonlinearLoop::NonlinearLoop(const NonlinearSystem& system, const PidLaw& law, const StepInputs& inputs,
-                             const OutputLimits& limits)
+                             const ActuatorLimits& limits)
     : system_(system), law_(law), in_(inputs), limits_(limits), n_(Index(system.order())) {
     slope_.resize(n_);
     C_.resize(n_);
@@ -71,8 +70,7 @@ double NonlinearLoop::y_of(std::span<const double> z) const {
 
 bool NonlinearLoop::y_slope(std::span<const double> x, double w, double& slope) const {
     if (!system_.rates(x, system_.u_nominal() + w, slope_)) return false;
-    slope = 0;
-    for (Index i = 0; i < n_; ++i) slope += C_[i] * slope_[i];
+    slope = dot(C_, slope_);
     return true;
 }
 

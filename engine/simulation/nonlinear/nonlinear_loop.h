@@ -13,10 +13,11 @@
 namespace tunewright {
 
 /// The plant's limits of u and the actuator's, as deviations; infinite where there is none.
-OutputLimits input_limits(const NonlinearSystem& system, const std::optional<OutputLimits>& actuator);
+ActuatorLimits input_limits(const NonlinearSystem& system, const std::optional<ActuatorLimits>& actuator);
 
 /// 1/Tt of the anti-windup (limited_response.h) for the plant's linearisation; 0 where nothing can wind up.
-double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller, const OutputLimits& limits);
+double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller,
+                             const ActuatorLimits& limits);
 
 /// The size of y to which a load d drives the linearisation over the plant's own time.
 double size_of_effect(const NonlinearSystem& system, double d);
@@ -29,7 +30,7 @@ int passages_that_count(const NonlinearSystem& system, const ParallelPid& contro
 class NonlinearLoop {
 public:
     NonlinearLoop(const NonlinearSystem& system, const PidLaw& law, const StepInputs& inputs,
-                  const OutputLimits& limits);
+                  const ActuatorLimits& limits);
 
     struct Output {
         double y = 0, command = 0, u = 0;  ///< u after the limits
@@ -40,7 +41,7 @@ public:
     bool delayed() const { return system_.dead_time() > 0; }
     const NonlinearSystem& system() const { return system_; }
     const PidLaw& law() const { return law_; }
-    const OutputLimits& limits() const { return limits_; }
+    const ActuatorLimits& limits() const { return limits_; }
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
     /// `w_then`: the plant's input with a dead time; without, it is not looked at.
@@ -67,7 +68,7 @@ private:
     const NonlinearSystem& system_;
     PidLaw law_;
     StepInputs in_;
-    OutputLimits limits_;
+    ActuatorLimits limits_;
     std::size_t n_;
     mutable std::vector<double> slope_, C_, A_, B_;  // scratch
 };

@@ -6,11 +6,13 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/ode_integrator.h"
-#include "engine/simulation/limited/break_points.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/response_recorder.h"
 #include "engine/simulation/nonlinear/fault_ahead.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/nonlinear_rest.h"
+#include "engine/simulation/run/echoes.h"
+#include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
 namespace {
@@ -19,7 +21,6 @@ using Index = std::size_t;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kEscaped = 1e6;  // of the scale of y
 constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
 constexpr double kLongStep = 4;   // in dead times: shorter steps are not worth repeating
 constexpr int kMaxPasses = 12;
@@ -31,10 +32,10 @@ constexpr int kRestInterval = 32;   // steps between two looks for where the loo
 constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
 
 /// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
-class Run {
+class NonlinearRun {
 public:
-    Run(const NonlinearSystem& system, const ParallelPid& controller, const StepInputs& in,
-        const NonlinearOptions& options)
+    NonlinearRun(const NonlinearSystem& system, const ParallelPid& controller, const StepInputs& in,
+                 const NonlinearOptions& options)
         : options_(options),
           in_(in),
           loop_(system,
@@ -45,7 +46,8 @@ public:
           integrator_(equations(), options.tolerance),
           recorder_(response_, options, in.r),
           z_(Index(loop_.order())),
-          breaks_(passages_that_count(system, controller, options.tolerance)) {}
+          echoes_(passages_that_count(system, controller, options.tolerance)),
+          stopping_(options.settled, L_) {}
 
     NonlinearResponse run() {
         if (begin()) {
@@ -95,7 +97,7 @@ private:
         largest_command_ = std::abs(out.command);
         update_sizes();
         if (!integrator_.start(0, z_)) return fail(OdeStep::left_domain);
-        add_break(0);
+        add_echo(0);
         if (!options_.horizon) look_for_rest();
         return true;
     }
@@ -103,7 +105,7 @@ private:
     double next_stop() const {
         const double t = integrator_.t();
         double stop = options_.horizon.value_or(kInfinity);
-        if (const auto next = breaks_.next(); next && *next < stop + slack()) stop = std::min(stop, *next);
+        if (const auto next = echoes_.next(); next && *next < stop + slack()) stop = std::min(stop, *next);
         if (loop_.delayed() && !long_step() && t + L_ < stop - slack()) stop = t + L_;
         return stop;
     }
@@ -131,8 +133,8 @@ private:
         }
         crossings_in_a_row_ = 0;
         keep_step();
-        const auto passages = breaks_.pass(integrator_.t() + slack());
-        return passages ? pass_break(*passages) : true;
+        const auto passages = echoes_.pass(integrator_.t() + slack());
+        return passages ? pass_echo(*passages) : true;
     }
 
     /// Repeats a step longer than the dead time until the input that it supposed is the one that it gives; cuts it to
@@ -197,7 +199,7 @@ private:
         }
         if (!rest_) return;
         const double dy = std::abs(y - rest_->y), du = std::abs(u - rest_->u);
-        if (dy > options_.settled * largest_y_ || du > options_.settled * largest_u_) last_unsettled_ = t;
+        stopping_.note(t, dy, largest_y_, du, largest_u_);
     }
 
     /// The law's states have the sizes of u and y.
@@ -210,7 +212,7 @@ private:
     // ---- borders ------------------------------------------------------------------------------------------------
 
     std::optional<double> find_crossing() const {
-        const OutputLimits& limits = loop_.limits();
+        const ActuatorLimits& limits = loop_.limits();
         const double noise = kNoise * largest_command_;
         const auto rise = [&](double limit, double sign) -> std::optional<double> {
             if (!std::isfinite(limit)) return std::nullopt;
@@ -231,24 +233,24 @@ private:
         else
             region_ = command_.at(1) > 0.5 * (loop_.limits().min + loop_.limits().max) ? Region::above : Region::below;
         if (!restart()) return false;
-        add_break(1);
-        const auto passages = breaks_.pass(integrator_.t() + slack());
-        return passages ? pass_break(*passages) : true;
+        add_echo(1);
+        const auto passages = echoes_.pass(integrator_.t() + slack());
+        return passages ? pass_echo(*passages) : true;
     }
 
     /// What the plant sees jumps, and with a pure derivative the command too.
-    bool pass_break(int passages) {
+    bool pass_echo(int passages) {
         step_end_ = kInfinity;
         const Region before = region_;
         if (loop_.law().pure_derivative()) region_ = loop_.region(integrator_.x(), w_then(integrator_.t()));
         response_.limited = response_.limited || region_ != Region::inside;
-        add_break(region_ == before ? passages + 1 : 0);
+        add_echo(region_ == before ? passages + 1 : 0);
         return restart();
     }
 
     /// What jumps now comes back.
-    void add_break(int passages) {
-        if (loop_.delayed()) breaks_.add(integrator_.t() + L_, passages, slack());
+    void add_echo(int passages) {
+        if (loop_.delayed()) echoes_.add(integrator_.t() + L_, passages, slack());
     }
 
     bool restart() {
@@ -270,7 +272,7 @@ private:
         if (!rest) return;
         const bool same = rest_ && std::abs(rest->y - rest_->y) <= options_.settled * largest_y_ &&
                           std::abs(rest->u - rest_->u) <= options_.settled * largest_u_;
-        if (!same) last_unsettled_ = integrator_.t();
+        if (!same) stopping_.start_again(integrator_.t());
         rest_ = std::move(rest);
     }
 
@@ -306,14 +308,11 @@ private:
 
     bool settled() const {
         if (!rest_) return false;
-        const double t = integrator_.t(), quiet = std::max(2 * L_, 0.25 * last_unsettled_);
-        if (t < last_unsettled_ + quiet || t <= 0) return false;
+        if (!stopping_.has_settled(integrator_.t())) return false;
         const auto remaining = remaining_error_integral();
         if (!remaining) return true;
-        // A slow tail that still has integral to add must at least have the sign to add it.
-        const double so_far = recorder_.error_integral();
-        return *remaining * (in_.r - y_.at(1)) >= 0 ||
-               std::abs(*remaining) <= options_.settled * (std::abs(so_far) + std::abs(*remaining));
+        return stopping_.tail_may_end(*remaining, in_.r - y_.at(1),
+                                      std::abs(recorder_.error_integral()) + std::abs(*remaining));
     }
 
     /// Once the loop stays within its limits: what the integral has yet to change until rest.
@@ -375,7 +374,7 @@ private:
     NonlinearResponse response_;
     ResponseRecorder recorder_;
     std::vector<double> z_;
-    BreakPoints breaks_;
+    Echoes echoes_;
     double no_long_steps_before_ = 0;
     int crossings_in_a_row_ = 0;
     double still_since_ = 0, still_y_ = 0, still_u_ = 0;
@@ -383,14 +382,15 @@ private:
     StepPolynomial y_, u_, command_;
     std::optional<NonlinearRest> rest_;
     bool settled_ = false;
-    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, scale_y_ = 0, last_unsettled_ = 0;
+    double largest_y_ = 0, largest_u_ = 0, largest_command_ = 0, scale_y_ = 0;
+    StoppingRule stopping_;
 };
 
 }  // namespace
 
 NonlinearResponse simulate_nonlinear(const NonlinearSystem& system, const ParallelPid& controller,
                                      const StepInputs& inputs, const NonlinearOptions& options) {
-    return Run(system, controller, inputs, options).run();
+    return NonlinearRun(system, controller, inputs, options).run();
 }
 
 }  // namespace tunewright

@@ -24,12 +24,12 @@ struct NonlinearOptions {
         1e-6;  ///< without a horizon: stops when y and u stay within this fraction of their largest deviation
     std::optional<double> horizon;
     int max_steps = 60000;
-    std::vector<double> initial;           ///< absolute states at t = 0; empty: the steady state
-    std::optional<OutputLimits> actuator;  ///< deviations, on top of the plant's own limits of u
-    std::optional<double> delta_r;         ///< the integral of the nonlinear PID (Npid)
-    int samples = 0;                       ///< with a horizon: fills `even` with that many values (0 or >= 2)
-    bool nodes = true;                     ///< false: `loop.nodes` stays empty, for searches
-    std::stop_token stop;                  ///< ends the run between two steps
+    std::vector<double> initial;             ///< absolute states at t = 0; empty: the steady state
+    std::optional<ActuatorLimits> actuator;  ///< deviations, on top of the plant's own limits of u
+    std::optional<double> delta_r;           ///< the integral of the nonlinear PID (Npid)
+    int samples = 0;                         ///< with a horizon: fills `even` with that many values (0 or >= 2)
+    bool nodes = true;                       ///< false: `loop.nodes` stays empty, for searches
+    std::stop_token stop;                    ///< ends the run between two steps
 };
 
 struct NonlinearResponse {

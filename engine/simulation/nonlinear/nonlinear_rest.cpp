@@ -86,7 +86,7 @@ std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInpu
         rest.y = loop.system().output(rest.x) - loop.system().y_steady();
         return rest;
     };
-    const OutputLimits& limits = loop.limits();
+    const ActuatorLimits& limits = loop.limits();
     double limit = u >= limits.max ? limits.max : limits.min;
     if (Rest(loop, inputs, std::nullopt).solve_from(v, sizes)) {
         const double slack = 1e-9 * std::abs(v.back());

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
@@ -15,18 +15,7 @@ using Index = std::size_t;
 constexpr double kStepsPerRadian = 10;
 constexpr double kDecay = 25;  // e^-25 = 1e-11
 constexpr int kLevels = 60;
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-// a A for a row a.
-std::vector<double> row_times(const std::vector<double>& a, const std::vector<double>& A, int n) {
-    std::vector<double> out(Index(n), 0.0);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) out[Index(j)] += a[Index(i)] * A[Index(i * n + j)];
-    return out;
-}
+constexpr double kExtremumTolerance = 1e-15;  // of the step
 
 }  // namespace
 
@@ -53,14 +42,9 @@ double Quintic::slope(double tau) const {
 }
 
 std::optional<double> Quintic::extremum() const {
-    double low = 0, high = h_;
-    const double first = slope(low), last = slope(high);
+    const double first = slope(0), last = slope(h_);
     if (!(first * last < 0)) return std::nullopt;
-    for (int i = 0; i < 60 && high - low > 1e-16 * h_; ++i) {
-        const double middle = (low + high) / 2;
-        (slope(middle) * first > 0 ? low : high) = middle;
-    }
-    return (low + high) / 2;
+    return root_between([this](double tau) { return slope(tau); }, 0, h_, first, last, kExtremumTolerance * h_);
 }
 
 RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
@@ -72,8 +56,8 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
       D_(direction * plant.realisation().D),
       levels_(Index(kLevels)) {
     for (double& c : C_) c *= direction;
-    CA_ = row_times(C_, A_, n_);
-    CAA_ = row_times(CA_, A_, n_);
+    CA_ = row_times(C_, A_);
+    CAA_ = row_times(CA_, A_);
     CB_ = dot(C_, B_);
     CAB_ = dot(CA_, B_);
     double fastest = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/sign_change.h"
+
 namespace tunewright {
 namespace {
 
@@ -18,9 +20,7 @@ constexpr double kPatience = 1e12;  // times the shortest step, for ramps
 
 double held_start(const LinearPlant& plant, const RelayLevels& levels) {
     if (plant.dead_time() > 0 || levels.hysteresis > 0) return 0;
-    double lags = 0;
-    for (const auto pole : plant.poles()) lags += 1 / std::abs(pole);
-    return lags / 2;
+    return plant.time_scale() / 2;
 }
 
 RelayRun::RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, double held)
@@ -99,12 +99,8 @@ std::optional<double> RelayRun::crossing(const Quintic& y, double first) const {
     } else if (first >= 0) {
         return 0;
     }
-    const double bracket_low = low, bracket_high = high;
-    for (int i = 0; i < 80 && high - low > 1e-16 * h; ++i) {
-        const double middle = (low + high) / 2;
-        (excess(y.at(middle)) > 0 ? high : low) = middle;
-    }
-    return polish((low + high) / 2, bracket_low, bracket_high);
+    const auto beyond = [&](double tau) { return excess(y.at(tau)); };
+    return polish(first_positive(beyond, low, high, beyond(low), beyond(high)), low, high);
 }
 
 // Newton steps on the exact motion.

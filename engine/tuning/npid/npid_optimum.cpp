@@ -11,7 +11,7 @@
 #include "engine/number_text.h"
 #include "engine/numerics/global_minimum.h"
 #include "engine/simulation/linear/indices.h"
-#include "engine/simulation/nonlinear/npid_response.h"
+#include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
 namespace {

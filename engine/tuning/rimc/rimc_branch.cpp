@@ -8,7 +8,8 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/log_root.h"
+#include "engine/numerics/log_maximum.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 
@@ -106,8 +107,9 @@ void RimcBranch::find_least_Ms() {
     } else {
         const double right = std::min(best * ratio, highest), left = std::max(best / ratio, lowest);
         const auto quality = [&](double x) { return nearest_approach(*pid(std::min(x, highest))); };
-        const Peak peak = maximise(quality, left, std::sqrt(left * right), right);
-        if (peak.value > farthest) best = std::min(peak.omega, highest);
+        const double middle = std::sqrt(left * right);
+        const auto peak = log_maximum(quality, left, {middle, quality(middle)}, right);
+        if (peak.value > farthest) best = std::min(peak.x, highest);
     }
     scaled_branch_ = Range{best, best};
     least_Ms_ = Ms_of(*loop(best));

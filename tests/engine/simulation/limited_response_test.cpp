@@ -27,7 +27,7 @@ struct Case {
     Plant plant;
     ParallelPid gains;
     StepInputs in;
-    OutputLimits limits;
+    ActuatorLimits limits;
     double horizon, dt;
 };
 
@@ -216,7 +216,7 @@ TEST(LimitedResponse, AntiWindupCutsTheOvershootOfWindup) {
     const auto plant = made(Ipdt{.K = 1, .L = 0.2});
     const ParallelPid gains{.Kp = 1.5, .Ki = 0.6};
     const StepInputs in{5, 0};
-    const OutputLimits limits{-0.5, 0.5};
+    const ActuatorLimits limits{-0.5, 0.5};
     const auto response = simulate_limited(plant, gains, in, limits, {});
     const double overshoot = extremes_of_y(response.nodes).max - 5;
     const double windup = PlainSimulation(plant, gains, in, limits, kInfinity).run(60, 2e-3).overshoot;
@@ -267,7 +267,7 @@ TEST(LimitedResponse, EscapesEndFinitelyAndSaySo) {
         Plant plant;
         ParallelPid gains;
         StepInputs in;
-        OutputLimits limits;
+        ActuatorLimits limits;
     } escapes[] = {
         {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // pushed out for ever
         {Fopdt{.K = -1, .T = -1, .L = 0}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},

@@ -73,7 +73,7 @@ NonlinearResponse response_to(const Case& c, double L) {
     options.horizon = c.horizon;
     options.samples = kSamples;
     options.initial = c.initial;
-    options.actuator = OutputLimits{c.law.min, c.law.max};
+    options.actuator = ActuatorLimits{c.law.min, c.law.max};
     if (std::isfinite(c.law.delta_r)) options.delta_r = c.law.delta_r;
     return simulate_nonlinear(made_system(plant), c.law.gains(), {c.r, c.d}, options);
 }
@@ -228,7 +228,7 @@ TEST(NonlinearOracle, UnitsOfTimeAndOutputDoNotMatter) {
     NonlinearOptions options;
     options.horizon = 4;
     options.samples = kSamples;
-    options.actuator = OutputLimits{-100, 100};
+    options.actuator = ActuatorLimits{-100, 100};
     const auto a = simulate_nonlinear(made_system(delayed),
                                       {.Kp = -1229, .Ki = -900, .Kd = -160, .filter = {FilterType::derivative, 0.1}},
                                       {0.1, 5}, options);

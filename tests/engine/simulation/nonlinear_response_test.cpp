@@ -103,7 +103,7 @@ TEST(NonlinearResponse, OfALinearPlantWithLimitsIsTheLimitedOne) {
             max = std::max(max, node.u);
             min = std::min(min, node.u);
         }
-        const OutputLimits limits{min - 0.1, std::max(0.7 * max, 1.1 * free.u_final)};
+        const ActuatorLimits limits{min - 0.1, std::max(0.7 * max, 1.1 * free.u_final)};
         if (limits.max >= max) continue;
         const auto linear = simulate_limited(plant, c.controller, c.inputs, limits, exact);
         NonlinearOptions options;
@@ -129,7 +129,7 @@ TEST(NonlinearResponse, TakesStepsFarBeyondATinyDeadTime) {
             options.horizon = 20;
             options.samples = 401;
             options.max_steps = 3000;
-            options.actuator = OutputLimits{-limit, limit};
+            options.actuator = ActuatorLimits{-limit, limit};
             const auto response = simulate_nonlinear(written_out(plant), controller, {1, 0}, options);
             ASSERT_EQ(response.ended, "");
             const auto linear = simulate_limited(*LinearPlant::make(plant), controller, {1, 0}, {-limit, limit}, exact);
@@ -175,7 +175,7 @@ TEST(NonlinearResponse, WithoutIntegralActionRestsWhereTheLawDoes) {
 
 TEST(NonlinearResponse, RestsAtALimitThatTheSetPointIsBeyond) {
     NonlinearOptions options;
-    options.actuator = OutputLimits{-20, 20};
+    options.actuator = ActuatorLimits{-20, 20};
     const auto response = simulate_nonlinear(made_system(cstr("T")), {.Kp = 5, .Ki = 20}, {10, 0}, options);
     ASSERT_TRUE(response.loop.settles);
     EXPECT_TRUE(response.limited);
@@ -214,7 +214,7 @@ TEST(NonlinearResponse, EndsEarlyWithAReason) {
 
     // 1 + Kd C B < 0: at a limit the derivative's loop has several solutions.
     NonlinearOptions limited;
-    limited.actuator = OutputLimits{-300, 300};
+    limited.actuator = ActuatorLimits{-300, 300};
     const auto crowded =
         simulate_nonlinear(made_system(cstr("T")), {.Kp = -4.4, .Ki = -2, .Kd = -1.8}, {5, 0}, limited);
     EXPECT_NE(crowded.ended.find("Give the derivative a filter"), std::string::npos) << crowded.ended;

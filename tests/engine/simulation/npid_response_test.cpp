@@ -1,4 +1,4 @@
-#include "engine/simulation/nonlinear/npid_response.h"
+#include "engine/simulation/linear/linear_response.h"
 
 #include <gtest/gtest.h>
 

@@ -19,7 +19,7 @@ struct Figures {
 /// linear between steps. Filters: none (without derivative), derivative, measurement_second_order.
 class PlainSimulation {
 public:
-    PlainSimulation(const LinearPlant& plant, const ParallelPid& c, StepInputs in, OutputLimits limits, double Tt)
+    PlainSimulation(const LinearPlant& plant, const ParallelPid& c, StepInputs in, ActuatorLimits limits, double Tt)
         : p_(plant.realisation()), c_(c), in_(in), limits_(limits), Tt_(Tt), L_(plant.dead_time()) {}
 
     Figures run(double horizon, double dt) {
@@ -97,7 +97,7 @@ private:
     const Realisation& p_;
     ParallelPid c_;
     StepInputs in_;
-    OutputLimits limits_;
+    ActuatorLimits limits_;
     double Tt_, L_;
 };
 

@@ -34,7 +34,7 @@ TEST(Derivatives, DualNumbersAgreeWithTheComplexStep) {
     for (const char* text : kTexts)
         for (const double x : {0.3, 1.7, 2.9}) {
             const double u = 1.9;
-            const auto dual = value_of<Dual<2>>(text, Dual<2>{x, {1, 0}}, Dual<2>{u, {0, 1}});
+            const auto dual = value_of<Dual<2>>(text, variable_dual<2>(x, 0), variable_dual<2>(u, 1));
             const auto by_x = value_of<Complex>(text, {x, h}, u), by_u = value_of<Complex>(text, x, {u, h});
             const double scale = 1e-13 * (std::abs(dual.v) + std::abs(dual.d[0]) + std::abs(dual.d[1]));
             EXPECT_NEAR(dual.v, value_of<double>(text, x, u), scale) << text;
@@ -99,13 +99,13 @@ TEST(Derivatives, OneDualDirectionOnTopOfTaylorDifferentiatesEveryCoefficient) {
     const double u = 0.8, h = 1e-6;
     for (int k = 0; k <= 3; ++k) {
         table.series(0)[k] = constant_dual<1>(k == 0 ? 0.5 : k == 1 ? 1 : 0);
-        table.series(1)[k] = k == 0 ? Dual<1>{u, {1}} : constant_dual<1>(0);
+        table.series(1)[k] = k == 0 ? variable_dual<1>(u, 0) : constant_dual<1>(0);
         table.sweep(k, program.length(1));
     }
     const auto low = coefficients("exp(u*x)*x", {0.5, 1}, {u - h}, 3);
     const auto high = coefficients("exp(u*x)*x", {0.5, 1}, {u + h}, 3);
     for (int k = 0; k <= 3; ++k)
-        EXPECT_NEAR(table.series(program.output_register(0))[k].d[0],
+        EXPECT_NEAR(table.series(program.output_register(0))[k].d,
                     (high[static_cast<std::size_t>(k)] - low[static_cast<std::size_t>(k)]) / (2 * h), 1e-9);
 }
 
@@ -134,7 +134,7 @@ TEST(Compilation, WhatFailsIsNamedWithItsPlace) {
     EXPECT_EQ(fault("1e200*x*(1e200*u)", 1, 1), "text, character 8: 1e+200 * 1e+200 is beyond the range of numbers");
     EXPECT_EQ(fault("x > 0 ? log(x) : sqrt(x)", -1, 1), "text, character 18: sqrt of -1 does not exist");
     EXPECT_EQ(fault("x > 0 ? log(x) : 7", -1, 1), "");
-    const Dual<1> variables[] = {{0, {1}}, {1, {0}}};
+    const Dual<1> variables[] = {variable_dual<1>(0, 0), constant_dual<1>(1)};
     EXPECT_EQ(std::get<Program>(compiled("u + sqrt(x)")).fault<Dual<1>>(variables, 1),
               "text, character 5: sqrt of 0 has no finite derivative");
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/numerics/sign_change.h"
+
 namespace tunewright {
 namespace {
 
@@ -105,14 +107,6 @@ TEST(OdeIntegrator, StandsAtTheLastStepsBeginningWhereAShorterOneFails) {
     EXPECT_EQ(run.shorten(0.5 * run.t()), OdeStep::left_domain);
     EXPECT_EQ(run.t(), 0);
     EXPECT_EQ(run.x()[0], 1);
-}
-
-TEST(FirstCrossing, SeesAnExcursionThatIsOverAtTheEnd) {
-    const auto g = [](double s) { return 0.1 - (s - 0.4) * (s - 0.4); };
-    const auto s = first_crossing(g, 0, 1);
-    ASSERT_TRUE(s.has_value());
-    EXPECT_NEAR(*s, 0.4 - std::sqrt(0.1), 1e-12);
-    EXPECT_FALSE(first_crossing([](double) { return -1.0; }, 0, 1).has_value());
 }
 
 }  // namespace

@@ -1,0 +1,71 @@
+#include "engine/numerics/sign_change.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace tunewright {
+namespace {
+
+constexpr double kRounding = 2 * std::numeric_limits<double>::epsilon();  // of a root: neighbouring numbers, nearly
+constexpr double kLargest = 1e100;  // of a value: differences and quotients of two such are still finite
+constexpr std::uintmax_t kMaxEvaluations = 200;
+
+double finite(double value) { return value < -kLargest ? -kLargest : value < kLargest ? value : kLargest; }
+
+/// Ends of an interval that holds a change of sign and is shorter than `is_short` asks for; equal where f is 0.
+template <class Function, class IsShort>
+std::pair<double, double> enclose(const Function& f, double a, double b, double f_a, double f_b,
+                                  const IsShort& is_short) {
+    if (f_a == 0) return {a, a};
+    if (f_b == 0) return {b, b};
+    if (a > b) {
+        std::swap(a, b);
+        std::swap(f_a, f_b);
+    }
+    if (!(a < b) || (f_a < 0) == (f_b < 0)) return {b, b};  // no sign changes: nothing to look for
+    auto evaluations = kMaxEvaluations;
+    return boost::math::tools::toms748_solve([&](double x) { return finite(f(x)); }, a, b, finite(f_a), finite(f_b),
+                                             is_short, evaluations);
+}
+
+}  // namespace
+
+double root_between(const std::function<double(double)>& f, double a, double b, double f_a, double f_b,
+                    double tolerance) {
+    const auto [low, high] =
+        enclose(f, a, b, f_a, f_b, [tolerance](double left, double right) { return right - left <= tolerance; });
+    return 0.5 * (low + high);
+}
+
+double log_root(const std::function<double(double)>& f, double a, double b, double f_a, double f_b, double tolerance) {
+    return std::exp(
+        root_between([&f](double x) { return f(std::exp(x)); }, std::log(a), std::log(b), f_a, f_b, tolerance));
+}
+
+double first_positive(const std::function<double(double)>& f, double low, double high, double f_low, double f_high) {
+    // 0 counts as just below it, so that the search ends between two numbers and not on a zero.
+    const auto below_at_zero = [](double value) { return value == 0 ? -std::numeric_limits<double>::min() : value; };
+    const auto is_short = [](double left, double right) {
+        return right - left <= kRounding * std::max(std::abs(left), std::abs(right));
+    };
+    return enclose([&](double x) { return below_at_zero(f(x)); }, low, high, below_at_zero(std::min(f_low, 0.0)),
+                   f_high, is_short)
+        .second;
+}
+
+std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks) {
+    double low = a;
+    for (int i = 1; i <= looks + 1; ++i) {
+        const double high = i > looks ? b : a + (b - a) * i / (looks + 1);
+        const double g_high = g(high);
+        if (g_high > 0) return first_positive(g, low, high, g(low), g_high);
+        low = high;
+    }
+    return std::nullopt;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,28 @@
+// Where a function of one variable changes its sign between two points. The one place that knows Boost.Math's
+// bracketing root finder, algorithm 748 (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327-344): four to
+// six evaluations a smooth root, and never more than a bisection would take by a small factor.
+//
+// A value that is not finite counts as a very large one of its sign (NaN as positive), so the interval is halved there.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+namespace tunewright {
+
+/// A point between `a` and `b` (in any order) within `tolerance` > 0 of a change of sign, or at which f is 0. `f_a` and
+/// `f_b` are f there: of opposite signs, or one of them 0.
+double root_between(const std::function<double(double)>& f, double a, double b, double f_a, double f_b,
+                    double tolerance);
+
+/// The same for positive `a` and `b` in ln x: `tolerance` is relative.
+double log_root(const std::function<double(double)>& f, double a, double b, double f_a, double f_b, double tolerance);
+
+/// The smallest number found in (low, high] at which f > 0, to rounding: `f_low` <= 0 < `f_high`.
+double first_positive(const std::function<double(double)>& f, double low, double high, double f_low, double f_high);
+
+/// The first s in (a, b] at which g, which is not above 0 at a, rises above it; located to rounding. g is looked at in
+/// `looks` points between a and b as well, to find an excursion that is over at b.
+std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks = 4);
+
+}  // namespace tunewright

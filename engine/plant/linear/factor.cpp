@@ -148,8 +148,8 @@ std::optional<std::string> sort_pairs(const std::vector<Complex>& given, std::ve
             return std::abs(std::conj(other) - value) <= 1e-9 * std::abs(value);
         });
         if (partner == negative.end())
-            return "Complex values come in conjugate pairs; [" + as_given(value.real()) + ", " + as_given(value.imag()) +
-                   "] has no partner.";
+            return "Complex values come in conjugate pairs; [" + as_given(value.real()) + ", " +
+                   as_given(value.imag()) + "] has no partner.";
         negative.erase(partner);
         add_pair(sorted, value);
     }

@@ -200,7 +200,7 @@ double jackknife(const InstrumentEquations& here, Index gain) {
 /// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
 /// worth.
 double gain_variance(const InstrumentEquations& here, Index gain) {
-    const double m = static_cast<double>(here.J.cols());
+    const auto m = static_cast<double>(here.J.cols());
     if (gain >= here.J.cols()) return 0;
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const VectorXd row = here.Z * (here.Z.transpose() * here.J).fullPivLu().inverse().row(gain).transpose();
@@ -211,7 +211,7 @@ double gain_variance(const InstrumentEquations& here, Index gain) {
 /// Rows: principal axes of the covariance, one standard deviation long.
 std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, const std::vector<Index>& free,
                                                Index all, double inflation) {
-    const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
+    const auto n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
     const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();

@@ -137,7 +137,7 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
 }
 
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
-    const double n = static_cast<double>(fit.residual.size());
+    const auto n = static_cast<double>(fit.residual.size());
     constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
     return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
 }

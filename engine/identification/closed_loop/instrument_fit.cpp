@@ -233,7 +233,7 @@ std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, 
 }  // namespace
 
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
-                                               std::stop_token stop) {
+                                               const std::stop_token& stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
     constexpr double kSmall = 1e-6;        // step in standard lengths of the columns
     constexpr double kUsualMismatch = 8;   // chance gives so much

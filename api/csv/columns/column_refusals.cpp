@@ -10,6 +10,7 @@ namespace {
 
 std::vector<std::string> quoted_all(const std::vector<std::string>& texts) {
     std::vector<std::string> out;
+    out.reserve(texts.size());
     for (const std::string& text : texts) out.push_back(quoted(text));
     return out;
 }

@@ -256,7 +256,7 @@ private:
             if (q.stamps == 0 || q.numbers > 0 || (dates ? q.clocks : q.dates) != q.stamps) continue;
             found_.at[kTimeRole] = dates ? now : other;
             found_.clock = dates ? other : now;
-            found_.notes.push_back("Date and time of day are joined from two columns.");
+            found_.notes.emplace_back("Date and time of day are joined from two columns.");
             return;
         }
     }

@@ -107,7 +107,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
 }
 
 std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const SetPointPart& part,
-                               std::stop_token stop) {
+                               const std::stop_token& stop) {
     if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
     Refined out{std::move(search), {}, {}, {}};

@@ -329,7 +329,7 @@ std::optional<Feedback> find_feedback(const CleanRecord& r) {
     if (same.a < kNoNews) return std::nullopt;
     const bool at_once = same.ratio() <= past.ratio();
     const double ratio = std::min(same.ratio(), past.ratio());
-    const double n = static_cast<double>(p.by_u.residual.size());
+    const auto n = static_cast<double>(p.by_u.residual.size());
     const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
     if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
     const bool exact = ratio < kExact;

@@ -200,7 +200,7 @@ double jackknife(const InstrumentEquations& here, Index gain) {
 /// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
 /// worth.
 double gain_variance(const InstrumentEquations& here, Index gain) {
-    const double m = static_cast<double>(here.J.cols());
+    const auto m = static_cast<double>(here.J.cols());
     if (gain >= here.J.cols()) return 0;
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const VectorXd row = here.Z * (here.Z.transpose() * here.J).fullPivLu().inverse().row(gain).transpose();
@@ -211,7 +211,7 @@ double gain_variance(const InstrumentEquations& here, Index gain) {
 /// Rows: principal axes of the covariance, one standard deviation long.
 std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, const std::vector<Index>& free,
                                                Index all, double inflation) {
-    const double n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
+    const auto n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
     const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();
@@ -233,7 +233,7 @@ std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, 
 }  // namespace
 
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
-                                               std::stop_token stop) {
+                                               const std::stop_token& stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
     constexpr double kSmall = 1e-6;        // step in standard lengths of the columns
     constexpr double kUsualMismatch = 8;   // chance gives so much

@@ -25,6 +25,6 @@ struct InstrumentFit {
 /// Iterates from `start`'s form, shape and coefficients; `part` is of the record's samples. Empty where the equations
 /// are singular or the result is not finite, and where `stop` asks for an end before there is a model.
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
-                                               std::stop_token stop);
+                                               const std::stop_token& stop);
 
 }  // namespace tunewright

@@ -22,7 +22,7 @@ constexpr Effort kOneStep{4, 1e-2};
 constexpr Effort kFinal{60, 1e-11};
 
 Fit best_from(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& starts, const Effort& effort,
-              std::stop_token stop) {
+              const std::stop_token& stop) {
     Fit best;
     best.form = form;
     bool first = true;
@@ -123,7 +123,7 @@ std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_r
 
 }  // namespace
 
-FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
+FitContext fit_context(CleanRecord record, bool relay, const std::stop_token& stop) {
     FitContext context;
     context.grid = quantisation_step(record.y);
     context.noise = std::max(noise_std(record.y), context.grid / std::sqrt(12.0));
@@ -137,7 +137,7 @@ FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop) {
 }
 
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
-    const double n = static_cast<double>(fit.residual.size());
+    const auto n = static_cast<double>(fit.residual.size());
     constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
     return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
 }

@@ -29,7 +29,7 @@ struct FitContext {
 
 inline constexpr int kMediumSamples = 600;
 
-FitContext fit_context(CleanRecord record, bool relay, std::stop_token stop);
+FitContext fit_context(CleanRecord record, bool relay, const std::stop_token& stop);
 
 /// What else than u moved y, and is looked for in every structure.
 struct Disturbances {

@@ -26,7 +26,7 @@ std::vector<int> gap_moves(const CleanRecord& record) {
 }
 
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
-                                  std::stop_token stop) {
+                                  const std::stop_token& stop) {
     constexpr int kRounds = 3, kFarthest = 8;  // rows back
     const double usual = usual_spacing(record);
     CleanRecord placed = record;

@@ -20,6 +20,6 @@ std::vector<int> gap_moves(const CleanRecord& record);
 /// Cost: one projection of the fit (output_error.h) for each row tried. When `stop` asks for it, the changes placed so
 /// far keep their rows.
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
-                                  std::stop_token stop);
+                                  const std::stop_token& stop);
 
 }  // namespace tunewright

@@ -88,7 +88,7 @@ bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
     }
     if (best == nullptr) return false;
     constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;  // noise variances; samples of correlation time
-    const double n = static_cast<double>(best->residual.size());
+    const auto n = static_cast<double>(best->residual.size());
     return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
            correlation_time(best->residual) > kNotWhite;
 }

@@ -326,7 +326,7 @@ Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape)
 }
 
 std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
-                                    std::stop_token stop) {
+                                    const std::stop_token& stop) {
     OutputError problem(data, form);
     std::vector<double> sums(shapes.size(), std::numeric_limits<double>::max());
     for (std::size_t i = 0; i < shapes.size() && !stop.stop_requested(); ++i) sums[i] = problem.rough_sum(shapes[i]);
@@ -334,7 +334,7 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
 }
 
 Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
-              std::stop_token stop) {
+              const std::stop_token& stop) {
     constexpr double kSmallestStep = 1e-9;    // digits beyond those that any noise leaves
     constexpr double kLargestDamping = 1e10;  // steps are then rounding
     OutputError problem(data, form);

@@ -80,7 +80,7 @@ Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape)
 
 /// The sum of squares alone, of many shapes, to about 1e-10 of y's own: for ranking starts. By normal equations.
 std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
-                                    std::stop_token stop);
+                                    const std::stop_token& stop);
 
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
 /// projected Jacobian), from `start`. Sensitivities to L and the load's time are exact, those to the logarithms are
@@ -92,7 +92,7 @@ struct Effort {
     double tolerance = 1e-11;
 };
 Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
-              std::stop_token stop);
+              const std::stop_token& stop);
 
 /// Fills `fit.J`.
 void jacobian(const FitData& data, Fit& fit);

@@ -41,7 +41,7 @@ std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest)
 
 /// Burg's estimate of the order with the least Akaike criterion.
 Autoregression autoregression(std::span<const double> e, std::size_t highest) {
-    const double n = static_cast<double>(e.size());
+    const auto n = static_cast<double>(e.size());
     const std::vector<Autoregression> orders = burg(e, highest);
     const auto criterion = [&](const Autoregression& model) {
         return 2 * n * std::log(std::max(model.innovation, 1e-150)) + 2 * static_cast<double>(model.a.size());
@@ -131,7 +131,7 @@ ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, d
     slow_ = autoregression(values(means), 1);
     correct(slow_.a, static_cast<double>(means.rows()), parameters);
     if (block_ > 1) fast_ = autoregression(values(inside_blocks(e, means, block_)), 3);
-    const double block = static_cast<double>(block_), count = static_cast<double>(n);
+    const auto block = static_cast<double>(block_), count = static_cast<double>(n);
     // Each parameter takes a degree of freedom from the whole; slow regressors take it from the means.
     slow_.innovation *=
         std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
@@ -144,7 +144,7 @@ ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, d
 
 Eigen::MatrixXd ResidualNoise::weighed(const Eigen::MatrixXd& X) const {
     const Eigen::MatrixXd means = block_means(X, block_);
-    const double block = static_cast<double>(block_);
+    const auto block = static_cast<double>(block_);
     Eigen::MatrixXd product = block * block * slow_.weighed(means);
     if (block_ == 1) return product;
     if (!fast_.a.empty()) return product + fast_.weighed(inside_blocks(X, means, block_));

@@ -108,7 +108,7 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
 
 }  // namespace
 
-std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop) {
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, const std::stop_token& stop) {
     // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found. The
     // widest always do.
     if (form.load && shape_size(form.structure) > 2) return {};

@@ -14,7 +14,7 @@ namespace tunewright {
 ///
 /// Empty for the widest structures (third, ipdt_second), and for a load beside a second order: these start from fits
 /// of simpler structures alone. A scan that is stopped keeps what it has seen.
-std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, std::stop_token stop);
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, const std::stop_token& stop);
 
 /// Shapes of `structure` that equal or nearly equal the fitted simpler one, the nearest first: a nested model is never
 /// fitted worse than the one that it contains. Empty where `structure` does not contain the simpler one:

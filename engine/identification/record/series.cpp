@@ -92,7 +92,7 @@ double correlation_time(std::span<const double> series) {
     double between = 0;
     for (const double mean : means) between += mean * mean;
     if (!(squares > 0)) return 1;
-    const double size = static_cast<double>(batch);
+    const auto size = static_cast<double>(batch);
     return std::max(1.0, size * size * between / squares * summed_correlation_time(means));
 }
 

@@ -14,7 +14,7 @@
 #include "engine/identification/record/series.h"
 #include "engine/identification/relay_test/relay_fourier.h"
 #include "engine/identification/two_point.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
@@ -26,7 +26,7 @@ std::optional<Error> refuse_late_step(const CleanRecord& r) {
     if (after > kTooFew) return std::nullopt;
     return Error{
         ErrorKind::not_identifiable, "record",
-        "u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
+        "u first changes at t = " + text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
             std::to_string(after) +
             " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
 }
@@ -47,14 +47,13 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
     if (asked != nullptr) {
         return {ErrorKind::not_identifiable, "identify/model",
                 std::string("No ") + asked + " model explains y beyond noise and drift (the best reaches a fit of " +
-                    number_text(std::max(0.0, percent), 3) +
-                    " %). Use model auto, or look whether y responds to u at all."};
+                    text(std::max(0.0, percent), 3) + " %). Use model auto, or look whether y responds to u at all."};
     }
     return {ErrorKind::not_identifiable, "record",
             "y does not respond to u beyond what its own noise and drift explain (the best model reaches a fit of " +
-                number_text(std::max(0.0, percent), 3) +
-                " %). u first changes at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
-                " and the record ends at t = " + number_text(r.scale.t_origin + r.scale.t_scale * r.t.back()) +
+                text(std::max(0.0, percent), 3) +
+                " %). u first changes at t = " + text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
+                " and the record ends at t = " + text(r.scale.t_origin + r.scale.t_scale * r.t.back()) +
                 ". Make a larger step, record until y has settled, and check that u and y belong to the same loop."};
 }
 
@@ -102,15 +101,15 @@ void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayM
                   std::vector<Warning>& warnings) {
     if (cycle.rest.assumed) {
         warnings.push_back({"rest-assumed", "The record starts under the relay: u is taken to rest at " +
-                                                number_text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) +
+                                                text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) +
                                                 " and y at its first values, " +
-                                                number_text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
+                                                text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
                                                 ". Give u0 and y0 if they are known."});
     }
     if (cycle.biased() && !chosen.by_static_gain && !is_integrating(chosen.shape.structure)) {
         warnings.push_back({"static-gain-contradiction",
                             "The mean of y over the mean of u is " +
-                                number_text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
+                                text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
                                 ", which the phase at the oscillation contradicts: a load, a drift or a wrong rest "
                                 "level is in the record. Eq. 13 was used in place of Eq. 14; method output_error fits "
                                 "such disturbances."});
@@ -120,18 +119,18 @@ void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayM
                            2 * cycle.period_scatter / cycle.period * cycle.y_half;
     constexpr double kPlainly = 0.03, kErrors = 4;  // of half a swing, and of what scatter explains
     if (chosen.fit_rms > kPlainly * cycle.y_half + kErrors * scatter) {
-        warnings.push_back({"structure-mismatch",
-                            "The model repeats the steady oscillation only within " +
-                                number_text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
-                                number_text(cycle.y_half * r.scale.y_scale, 3) +
-                                "): the plant is not of this structure. Trust the measured frequency point; " +
-                                (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
-                                                       : "the gain is not the plant's static gain.")});
+        warnings.push_back(
+            {"structure-mismatch", "The model repeats the steady oscillation only within " +
+                                       text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
+                                       text(cycle.y_half * r.scale.y_scale, 3) +
+                                       "): the plant is not of this structure. Trust the measured frequency point; " +
+                                       (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
+                                                              : "the gain is not the plant's static gain.")});
     }
     if (std::abs(cycle.drift) > 0) {
         warnings.push_back(
             {"drift", "The mean of y creeps from period to period by " +
-                          number_text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
+                          text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
                           ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
                           "output_error fits it."});
     }
@@ -141,11 +140,11 @@ Error no_relay_model(const CleanRecord& r, const RecordedCycle& cycle, ModelChoi
     std::string why = "No ";
     why += asked == ModelChoice::ipdt || asked == ModelChoice::ipdt_lag ? "integrating" : "first-order";
     why += " model with a dead time meets the oscillation (A_u = " +
-           number_text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) +
-           ", phi_u = " + number_text(std::arg(cycle.harmonics.front().G)) + ")";
+           text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) +
+           ", phi_u = " + text(std::arg(cycle.harmonics.front().G)) + ")";
     if (cycle.biased()) {
         why += "; the mean of y over the mean of u is " +
-               number_text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
+               text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
                ", which a load or a wrong rest level would explain";
     }
     return {ErrorKind::not_identifiable, "identify/method", why + ". Use method output_error."};
@@ -208,7 +207,7 @@ std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const Rec
 }
 
 void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std::vector<Warning>& warnings) {
-    std::string detail = "The structure does not fit this plant: it leaves " + number_text(100 * left, 3) +
+    std::string detail = "The structure does not fit this plant: it leaves " + text(100 * left, 3) +
                          " % of y's variation beyond noise. The model is held to the response measured at the "
                          "oscillation";
     detail += gain_held ? " and to the static gain." : ".";
@@ -240,7 +239,7 @@ void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, 
     if (omega && lag * *omega >= kFar) {
         warnings.push_back({"gain-from-oscillation",
                             "The relay's oscillation shows the plant where its lags times omega are " +
-                                number_text(lag * *omega, 2) +
+                                text(lag * *omega, 2) +
                                 ": the static gain K is extrapolated by the model's structure. The design rests on "
                                 "what is measured near the oscillation; a step test shows the gain."});
     } else if (another) {
@@ -358,7 +357,7 @@ Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, co
     model->data_quality.u_limits = fitted.u_limits;
     if (fitted.u_limits && !record.u_limits)
         model->data_quality.notes.push_back(
-            "u runs beyond " + number_text((*fitted.u_limits)[0]) + " to " + number_text((*fitted.u_limits)[1]) +
+            "u runs beyond " + text((*fitted.u_limits)[0]) + " to " + text((*fitted.u_limits)[1]) +
             " and y follows it only as far as that: it was logged before its limiter. Give u_limits if these are not "
             "the ends.");
     return model;

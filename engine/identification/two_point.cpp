@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/identification/record/record_kind.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -46,7 +46,7 @@ Expected<TwoPointModel> two_point(const CleanRecord& r) {
     const double y0 = r.y_rest ? *r.y_rest : first > 0 ? mean(y.first(first)) : y.front();
     if (std::abs(end - earlier) > kSettled * std::abs(end - y0)) {
         return refused("y has not settled: over the last tenth of the record it still moves by " +
-                       number_text(100 * std::abs(end - earlier) / std::max(1e-300, std::abs(end - y0)), 2) +
+                       text(100 * std::abs(end - earlier) / std::max(1e-300, std::abs(end - y0)), 2) +
                        " % of the response.");
     }
     const std::size_t window = std::max<std::size_t>(1, after / 200);

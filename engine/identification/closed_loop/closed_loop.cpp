@@ -11,7 +11,7 @@
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/record/record_kind.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
@@ -61,10 +61,10 @@ std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, doub
 std::string evidence_of(const std::optional<Feedback>& feedback, const SetPointPart* part, const RecordScale& scale) {
     if (feedback) {
         return "y, " + std::string(feedback->at_once ? "of the same and earlier rows" : "of earlier rows") +
-               ", predicts the moves of u within " + number_text(feedback->by_y * scale.u_scale, 3) +
-               " where u's own past leaves " + number_text(feedback->by_u * scale.u_scale, 3) + ".";
+               ", predicts the moves of u within " + text(feedback->by_y * scale.u_scale, 3) +
+               " where u's own past leaves " + text(feedback->by_u * scale.u_scale, 3) + ".";
     }
-    return "u follows the set point: its moves explain " + number_text(100 * part->share, 3) + " % of u's variance.";
+    return "u follows the set point: its moves explain " + text(100 * part->share, 3) + " % of u's variance.";
 }
 
 Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::string& why) {
@@ -74,7 +74,7 @@ Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::s
             "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
                 why +
                 ": the plant cannot be distinguished from the controller. Put the controller in manual and step u by " +
-                number_text(u_range, 2) + " or so, or step the set point by " + number_text(2 * r.scale.y_scale, 2) +
+                text(u_range, 2) + " or so, or step the set point by " + text(2 * r.scale.y_scale, 2) +
                 " or so (twice what y moves here) and record it as column r."};
 }
 
@@ -227,7 +227,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     if (loop.part->strength < kWeak)
         return nothing_outside(
             full, loop,
-            "and moves of the set point explain too little of u (" + number_text(100 * loop.part->share, 2) + " %)");
+            "and moves of the set point explain too little of u (" + text(100 * loop.part->share, 2) + " %)");
     const CleanRecord record = every_few(full, kMaxFitted);
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
     auto direct = refined(search_models(record, model, false, control), record, *loop.part, control.stop);
@@ -253,7 +253,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     if (!(error < kUnknownGain)) {
         return nothing_outside(full, loop,
                                "and the moves from outside the loop leave the gain unknown (its standard error is " +
-                                   number_text(100 * error, 2) + " % of it)");
+                                   text(100 * error, 2) + " % of it)");
     }
     return searched_model(std::move(best->search), full);
 }
@@ -273,9 +273,9 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once;
     if (!in_doubt) return;
     LoopRecord loop;
-    loop.found.evidence = "u moves restlessly, and filters of y explain " + number_text(100 * law->share, 3) +
+    loop.found.evidence = "u moves restlessly, and filters of y explain " + text(100 * law->share, 3) +
                           " % of its variance, where the model explains " +
-                          number_text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
+                          text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
     model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(),
                           {"closed-loop",

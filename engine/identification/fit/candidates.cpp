@@ -7,7 +7,7 @@
 
 #include "engine/identification/fit/starting_values.h"
 #include "engine/identification/record/series.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
@@ -249,15 +249,15 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
     const std::string name = name_of(fits[at(chosen)].form.structure);
     if (rival < 0) return name + ": the only structure that this record determines.";
     const std::string other = name_of(fits[at(rival)].form.structure);
-    const std::string figures = "fit " + number_text(percents[at(chosen)]) + " % against " +
-                                number_text(percents[at(rival)]) + " % of " + other;
+    const std::string figures =
+        "fit " + text(percents[at(chosen)]) + " % against " + text(percents[at(rival)]) + " % of " + other;
     const double lead = criteria[at(rival)] - criteria[at(chosen)];
     if (lead < 0) {
         return name + ": the simpler structure; what " + other + " gains is within what noise explains (" + figures +
-               "; information criterion within " + number_text(-lead, 3) + ").";
+               "; information criterion within " + text(-lead, 3) + ").";
     }
     return name + ": the best balance of fit and number of parameters (" + figures +
-           "; information criterion lower by " + number_text(lead, 3) + " with " + number_text(independent_samples, 3) +
+           "; information criterion lower by " + text(lead, 3) + " with " + text(independent_samples, 3) +
            " independent samples).";
 }
 

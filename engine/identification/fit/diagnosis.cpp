@@ -6,7 +6,7 @@
 #include <span>
 
 #include "engine/identification/record/series.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -42,7 +42,7 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
     if (!self_regulating(fit) || remaining <= kSettledWithin || r.changes() > 2) return;
     warnings.push_back(
         {"unsettled-record",
-         "The record ends while y still moves: by the model " + number_text(100 * remaining / (1 + remaining), 3) +
+         "The record ends while y still moves: by the model " + text(100 * remaining / (1 + remaining), 3) +
              " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
 }
 
@@ -54,8 +54,8 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
     constexpr double kFarOff = 8;                         // root mean squares
     if (rms > kVisible && rms > kMoreThanNoise * noise && correlation_time(fit.residual) > kPattern) {
         warnings.push_back(
-            {"structured-residuals", "The model misses y by " + number_text(rms * unit, 3) +
-                                         " (r.m.s.), more than noise or rounding (" + number_text(noise * unit, 3) +
+            {"structured-residuals", "The model misses y by " + text(rms * unit, 3) +
+                                         " (r.m.s.), more than noise or rounding (" + text(noise * unit, 3) +
                                          ") explain, and the misses are not random. A disturbance, a drift, a "
                                          "nonlinearity or a richer structure is in the record: compare y and "
                                          "model in the plot, try another model or repeat the test."});
@@ -63,8 +63,8 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
     double worst = 0;
     for (double e : fit.residual) worst = std::max(worst, std::abs(e));
     if (worst > kFarOff * rms) {
-        warnings.push_back({"outliers", "At least one sample lies " + number_text(worst * unit, 3) +
-                                            " from the model where " + number_text(rms * unit, 3) +
+        warnings.push_back({"outliers", "At least one sample lies " + text(worst * unit, 3) + " from the model where " +
+                                            text(rms * unit, 3) +
                                             " is typical; remove false readings from the record."});
     }
 }
@@ -81,8 +81,7 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
         if (error <= kUncertain * yardstick) continue;
         const bool unknown_gain = name == "K" && error > kUnknown * yardstick;
         warnings.push_back({"uncertain-parameters",
-                            name + " = " + number_text(values.at(name)) + " has a standard error of " +
-                                number_text(error, 2) +
+                            name + " = " + text(values.at(name)) + " has a standard error of " + text(error, 2) +
                                 ": the record hardly determines it. A larger or longer test, or a simpler model, gives "
                                 "a usable figure.",
                             unknown_gain ? WarningLevel::bad : WarningLevel::warning});
@@ -101,8 +100,7 @@ void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
     if (moved < kMoved || std::abs(slope) < kErrors * line.slope_std) return;
     warnings.push_back(
         {"not-at-rest",
-         "y already moves by " + number_text(moved * r.scale.y_scale, 3) + " before u changes, " +
-             number_text(100 * moved, 2) +
+         "y already moves by " + text(moved * r.scale.y_scale, 3) + " before u changes, " + text(100 * moved, 2) +
              " % of its range: the test did not start at rest, or y drifts. Start the test from a steady state."});
 }
 
@@ -117,8 +115,8 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
     }
     if (quality.quantisation * kFewSteps > r.scale.y_scale) {
         warnings.push_back(
-            {"coarse-quantisation", "y covers only " + number_text(r.scale.y_scale / quality.quantisation, 3) +
-                                        " steps of its grid (" + number_text(quality.quantisation, 3) +
+            {"coarse-quantisation", "y covers only " + text(r.scale.y_scale / quality.quantisation, 3) +
+                                        " steps of its grid (" + text(quality.quantisation, 3) +
                                         "). A larger step of u or a finer sensor range gives a better model."});
     }
     if (fit.form.structure == Structure::fopdt && fit.shape.T() >= kLongLag) {
@@ -129,10 +127,9 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
     if (fit.form.structure == Structure::ipdt) return;
     const double slowest = (is_integrating(fit.form.structure) ? fit.shape.T() : fit.shape.a1()) * r.scale.t_scale;
     if (!is_integrating(fit.form.structure) && slowest < quality.sample_time) {
-        warnings.push_back({"undersampled-response", "The time constant (" + number_text(slowest, 3) +
-                                                         ") is below the spacing of the samples (" +
-                                                         number_text(quality.sample_time, 3) +
-                                                         "), which cannot show it. Record faster."});
+        warnings.push_back({"undersampled-response",
+                            "The time constant (" + text(slowest, 3) + ") is below the spacing of the samples (" +
+                                text(quality.sample_time, 3) + "), which cannot show it. Record faster."});
     }
 }
 

@@ -8,7 +8,7 @@
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
@@ -46,8 +46,8 @@ void add_record_warnings(const CleanRecord& record, IdentifiedModel& model) {
 void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
     if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
     const double level = level_of_rest(fit) * record.scale.u_scale + record.scale.u_rest;
-    quality.notes.push_back("The record does not start at rest: y rests at u = " + number_text(level) +
-                            ", as estimated from the record (the first u is " + number_text(record.scale.u_rest) +
+    quality.notes.push_back("The record does not start at rest: y rests at u = " + text(level) +
+                            ", as estimated from the record (the first u is " + text(record.scale.u_rest) +
                             "). Give u0 if it is known.");
 }
 
@@ -58,8 +58,7 @@ constexpr double kSlow = 0.5;
 void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kSlow) return;
     warnings.push_back(
-        {"slow-part", "A part of the response has a lag of " +
-                          number_text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
+        {"slow-part", "A part of the response has a lag of " + text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
                           ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
                           "open. Record longer, or ask for model fopdt or sopdt."});
 }
@@ -82,7 +81,7 @@ void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& w
             continue;
         const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
-                            "A response with a time constant of " + number_text(slow.shape.slowest_lag() * scale, 3) +
+                            "A response with a time constant of " + text(slow.shape.slowest_lag() * scale, 3) +
                                 " explains this record as well as an integrator does: it ends too early to tell, and "
                                 "the static gain is open. Record longer, or choose the model by what is known of the "
                                 "process."});
@@ -93,17 +92,16 @@ void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& w
 void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.slope && !is_integrating(fit.form.structure)) {
         const double slope = fit.linear[fit.form.slope_index()] * r.scale.y_scale / r.scale.t_scale;
-        warnings.push_back({"drift", "y drifts by " + number_text(slope, 3) +
-                                         " per unit of time beside its response to u (" +
-                                         number_text(slope * r.scale.t_scale, 3) +
+        warnings.push_back({"drift", "y drifts by " + text(slope, 3) + " per unit of time beside its response to u (" +
+                                         text(slope * r.scale.t_scale, 3) +
                                          " over the record). The model was fitted together with this drift."});
     }
     if (fit.form.load) {
         const double size = fit.linear[fit.form.load_index()] / fit.linear[0] * r.scale.u_scale;
         warnings.push_back(
             {"load-disturbance",
-             "A lasting load as large as " + number_text(size, 3) + " of u reached the plant at about t = " +
-                 number_text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
+             "A lasting load as large as " + text(size, 3) + " of u reached the plant at about t = " +
+                 text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
                  ", by the fit. The model was fitted together with this load; repeat the test without it if you can."});
     }
 }
@@ -214,7 +212,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         note_start(record, fit, model.data_quality);
     }
     if (search.part < 1) {
-        model.data_quality.notes.push_back("The model rests on the first " + number_text(100 * search.part, 2) +
+        model.data_quality.notes.push_back("The model rests on the first " + text(100 * search.part, 2) +
                                            " % of the record: over all of it an unstable plant's free run loses its "
                                            "digits.");
     }
@@ -288,8 +286,8 @@ void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& sh
     }
     model.data_quality.notes.push_back(
         "The relay's oscillation repeats " + std::to_string(cycle.periods) + " times (" +
-        std::to_string(cycle.recorded_periods) + " whole periods are recorded), its period " + number_text(answer.Pu) +
-        (cycle.periods > 1 ? " +- " + number_text(cycle.period_scatter * r.scale.t_scale, 2) : "") + ".");
+        std::to_string(cycle.recorded_periods) + " whole periods are recorded), its period " + text(answer.Pu) +
+        (cycle.periods > 1 ? " +- " + text(cycle.period_scatter * r.scale.t_scale, 2) : "") + ".");
 }
 
 void add_excited_band(const CleanRecord& record, IdentifiedModel& model) {

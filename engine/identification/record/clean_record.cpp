@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/identification/record/record_rows.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -53,14 +53,14 @@ std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const C
     if (rows.change_time.empty()) {
         return not_identifiable(
             "record/u",
-            "u never moves (it is " + number_text(rows.u_rest) + " in all " + std::to_string(n) +
+            "u never moves (it is " + text(rows.u_rest) + " in all " + std::to_string(n) +
                 " samples), so nothing can be learned about its effect. Record a test in which u changes, or give "
                 "u0 if u was changed just before the first sample.");
     }
     if (*y_low == *y_high) {
         return not_identifiable(
             "record/y",
-            "y never moves (it is " + number_text(*y_low) + " in all " + std::to_string(n) +
+            "y never moves (it is " + text(*y_low) + " in all " + std::to_string(n) +
                 " samples). Make a larger step, record for longer, or check that this is the right sensor.");
     }
     return std::nullopt;

@@ -8,7 +8,7 @@
 #include "engine/identification/record/record_kind.h"
 #include "engine/identification/record/saturation.h"
 #include "engine/identification/record/series.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -42,8 +42,8 @@ void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     if (gaps.count == 0) return;
     quality.gaps = gaps;
     quality.notes.push_back(std::to_string(gaps.count) + (gaps.count == 1 ? " gap" : " gaps") +
-                            " without a usable sample, the longest of " + number_text(gaps.longest) +
-                            " from t = " + number_text(gaps.at) + "; nothing is interpolated, and u is held over it.");
+                            " without a usable sample, the longest of " + text(gaps.longest) +
+                            " from t = " + text(gaps.at) + "; nothing is interpolated, and u is held over it.");
 }
 
 void describe_times(const Cleaning& done, DataQuality& quality) {
@@ -86,8 +86,7 @@ std::string places_of_spikes(const Cleaning& done) {
     constexpr std::size_t kInSentence = 5;
     std::string places;
     for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
-        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) +
-                  " (t = " + number_text(done.spike_times[k], 10) + ")";
+        places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) + " (t = " + text(done.spike_times[k], 10) + ")";
     return places + (done.spikes.size() > kInSentence ? ", ..." : "");
 }
 
@@ -96,8 +95,8 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
     if (done.missing_y > 0) {
         quality.missing = MissingPart{done.missing_y, done.hole_to - done.hole_from, done.hole_from};
         quality.notes.push_back("y is missing in " + std::to_string(done.missing_y) +
-                                " row(s), the longest time without it is " + number_text(quality.missing->longest) +
-                                " from t = " + number_text(done.hole_from) +
+                                " row(s), the longest time without it is " + text(quality.missing->longest) +
+                                " from t = " + text(done.hole_from) +
                                 "; u of these rows was used, and y was not interpolated.");
     }
     if (done.spikes.empty()) return;
@@ -137,11 +136,11 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
     pretest.at_rest = std::abs(slope) * duration < kMoved || std::abs(slope) < kErrors * error;
     quality.pretest = pretest;
-    quality.notes.push_back(std::to_string(n) + " samples before the first change of u give the operating point: u = " +
-                            number_text(quality.u0) + ", y = " + number_text(quality.y0) +
-                            (pretest.at_rest ? "."
-                                             : "; y is not at rest there but moves by " + number_text(pretest.drift) +
-                                                   " per unit of time."));
+    quality.notes.push_back(
+        std::to_string(n) + " samples before the first change of u give the operating point: u = " + text(quality.u0) +
+        ", y = " + text(quality.y0) +
+        (pretest.at_rest ? "."
+                         : "; y is not at rest there but moves by " + text(pretest.drift) + " per unit of time."));
 }
 
 void describe_input(const CleanRecord& r, DataQuality& quality) {
@@ -168,13 +167,12 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
     quality.quantisation = grid * r.scale.y_scale;
     constexpr double kBesideNoise = 0.5, kVisible = 1e-3;  // of the noise; of y's range
     if (grid > kBesideNoise * noise && grid > kVisible) {
-        quality.notes.push_back("y lies on a grid of " + number_text(quality.quantisation) + " (its range is " +
-                                number_text(r.scale.y_scale) + ").");
+        quality.notes.push_back("y lies on a grid of " + text(quality.quantisation) + " (its range is " +
+                                text(r.scale.y_scale) + ").");
     }
     quality.saturation = flat_tops(r, noise, grid);
     for (const Saturation& flat : quality.saturation) {
-        quality.notes.push_back("y stands at " + number_text(flat.level) + " in " +
-                                number_text(100 * flat.fraction, 2) +
+        quality.notes.push_back("y stands at " + text(flat.level) + " in " + text(100 * flat.fraction, 2) +
                                 " % of the samples, cut off flat; they were used as they are.");
     }
 }
@@ -207,25 +205,23 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
     const Cleaning& done = r.cleaning;
     for (const Saturation& flat : quality.saturation) {
         warnings.push_back({"saturated-output",
-                            "y is cut off at " + number_text(flat.level) + " in " +
-                                number_text(100 * flat.fraction, 2) +
+                            "y is cut off at " + text(flat.level) + " in " + text(100 * flat.fraction, 2) +
                                 " % of the samples: a sensor or a valve stood at its end, which no linear model can "
                                 "follow. Repeat the test with a smaller step, or cut the record before that."});
     }
     constexpr double kLongGap = 0.03, kManyMissing = 0.05;  // of the record's length; of its rows
     if (quality.gaps && quality.gaps->longest > kLongGap * r.scale.t_scale) {
-        warnings.push_back({"gaps", "Nothing was recorded for " + number_text(quality.gaps->longest) +
-                                        " from t = " + number_text(quality.gaps->at) + ", " +
-                                        number_text(100 * quality.gaps->longest / r.scale.t_scale, 2) +
+        warnings.push_back({"gaps", "Nothing was recorded for " + text(quality.gaps->longest) +
+                                        " from t = " + text(quality.gaps->at) + ", " +
+                                        text(100 * quality.gaps->longest / r.scale.t_scale, 2) +
                                         " % of the record: a change of u inside it would be unknown."});
     }
     if (quality.missing && (quality.missing->count > kManyMissing * (r.samples() + quality.missing->count) ||
                             quality.missing->longest > kLongGap * r.scale.t_scale)) {
         warnings.push_back({"missing-samples", "y is missing in " + std::to_string(quality.missing->count) + " of " +
                                                    std::to_string(r.samples() + quality.missing->count) +
-                                                   " rows, for up to " + number_text(quality.missing->longest) +
-                                                   " from t = " + number_text(quality.missing->at) +
-                                                   "; the model rests on the others."});
+                                                   " rows, for up to " + text(quality.missing->longest) + " from t = " +
+                                                   text(quality.missing->at) + "; the model rests on the others."});
     }
     if (quality.outliers) {
         warnings.push_back({"removed-outliers", std::to_string(quality.outliers->count) +

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/identification/record/record_kind.h"
-#include "engine/identification/wording.h"
+#include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -298,7 +298,7 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     if (periods.size() < 2) {
         return Error{
             ErrorKind::not_identifiable, "record",
-            "The record holds " + number_text(0.5 * static_cast<double>(switches - 1), 2) +
+            "The record holds " + text(0.5 * static_cast<double>(switches - 1), 2) +
                 " cycles of the relay's oscillation (" + std::to_string(switches) +
                 " switches); the limit-cycle formulas need two whole ones, and four or more are better. Record "
                 "longer, or use method output_error."};

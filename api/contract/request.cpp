@@ -219,7 +219,7 @@ const Description<JobRequest>& job_contract() {
             .check(resolve_record<JobRequest>)
             .example({{"name", "TIC-101"},
                       {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
-                      {"tune", Json::array({Json{{"method", "robust"}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
+                      {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
         return d;
     }();
     return description;

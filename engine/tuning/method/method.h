@@ -116,6 +116,9 @@ private:
 /// Every method, in the order in which they are listed. The one place that names them all.
 const std::vector<TuningMethod>& method_registry();
 
+/// The method of a request that names none: the first of the registry.
+const std::string& default_method();
+
 /// Null if there is none of this id.
 const TuningMethod* find_method(const std::string& id);
 

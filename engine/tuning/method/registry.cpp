@@ -67,6 +67,8 @@ const std::vector<TuningMethod>& method_registry() {
     return methods;
 }
 
+const std::string& default_method() { return method_registry().front().id; }
+
 const TuningMethod* find_method(const std::string& id) {
     const auto& methods = method_registry();
     const auto at = std::ranges::find(methods, id, &TuningMethod::id);

@@ -1,7 +1,8 @@
 // Figures of given controllers on a plant, at once; and what a method does over its whole range.
 import { call } from "./client.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
+import type { Tradeoff } from "./reports.ts";
+import type { Controller, Entry, Plant } from "./types.ts";
 
 /** What the service adds to a controller is not part of its settings. */
 const settingsOf = ({ action: _action, why_null: _why, ...settings }: Controller): Controller => settings;

@@ -1,5 +1,6 @@
 // What the PID follows and how: y and u under the nonlinear controller, the emulating PID and chosen classical settings.
-import type { Emulation, EmulationScenario, Plant } from "../api/types.ts";
+import type { Emulation, EmulationScenario } from "../api/reports.ts";
+import type { Plant } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Look, Mark, Trace } from "../plot/frame.ts";
 import { scenarioWords } from "../words/emulation.ts";

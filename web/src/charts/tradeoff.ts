@@ -1,5 +1,5 @@
 // Servo against regulation: what a controller pays for robustness, beside what the tuning rule of Arrieta et al. does on this plant.
-import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/types.ts";
+import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/reports.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";

@@ -14,7 +14,6 @@ import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
 import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { emulationCard } from "./cards/emulation_card.ts";
 import { showEntryPlots } from "./entry_plots.ts";
 import { figuresTable } from "./figures_table.ts";
 import { jobActions } from "./job_actions.ts";
@@ -24,11 +23,10 @@ import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
-import { rimcCard } from "./cards/rimc_card.ts";
+import { reportCards } from "./cards/report_cards.ts";
 import { settingsCard } from "./cards/settings_card.ts";
 import type { View } from "./start.ts";
 import { titleCard } from "./cards/title_card.ts";
-import { tradeoffCard } from "./cards/tradeoff_card.ts";
 import { showFailure, showVerdict } from "./cards/verdict_card.ts";
 
 /** From so many entries on the column of the figures is broader, and from so many they stand across the page. */
@@ -60,9 +58,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
-  const rimc = rimcCard(announce, retune);
-  const emulation = emulationCard(announce);
-  const tradeoff = tradeoffCard(announce);
+  const reports = reportCards(announce, retune);
+  const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
@@ -70,12 +67,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const main = h(
     "div",
     { class: "main-column" },
-    rimc.element,
-    emulation.element,
+    ...reportsAt("above"),
     legend.element,
     linearNote,
     plots.element,
-    tradeoff.element,
+    ...reportsAt("below"),
   );
   const body = h("div", { class: "design-body" });
   const headRight = h("div", { class: "head-right" }, trouble, verdict, progress.element);
@@ -142,9 +138,9 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     settings.show(entries[selected]!, names[selected]!, units);
     showFigures(result, listed, drawn, names, units);
     // Rules and robustness of a nonlinear plant rest on its linear model.
-    const plant = result.model?.plant ?? result.linear_model ?? job.request?.plant;
-    rimc.show(entries[selected]!, plant, units);
-    emulation.show(entries[selected]!, job.request?.plant, units);
+    const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
+    const reported = { name: names[selected]!, entry: entries[selected]!, model: linear, request: job.request, units };
+    for (const card of reports) card.show(reported);
     if (model.childElementCount === 0) {
       const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
       model.replaceChildren(...(about ? [about] : []));
@@ -157,7 +153,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     );
     showComputed(computed, result, entries[selected]!, names, units);
     legend.show(entries, listed, names, drawn, selected);
-    tradeoff.show([{ name: names[selected]!, entry: entries[selected]! }], plant, units.time);
     showPlots(job, result, drawn, selected);
   }
 
@@ -192,10 +187,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     heading: title.heading,
     dispose() {
       leave();
-      rimc.dispose();
-      emulation.dispose();
+      for (const card of reports) card.dispose();
       plots.dispose();
-      tradeoff.dispose();
     },
   };
 }

@@ -2,7 +2,8 @@
 import { ApiError } from "../api/client.ts";
 import { stepOf } from "../api/evaluate.ts";
 import { latest } from "../api/latest.ts";
-import type { Controller, Emulation, EmulationScenario, Entry, Plant, Tuned } from "../api/types.ts";
+import type { Emulation, EmulationScenario, Tuned } from "../api/reports.ts";
+import type { Controller, Entry, Plant } from "../api/types.ts";
 import type { OwnRun } from "../charts/emulation.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";

@@ -1,5 +1,6 @@
 // Two-level tuning in words: the settings of both levels, what the optimum costs and how sharp it is.
-import type { Emulation, EmulationScenario, Entry, LevelOne, Tuned } from "../api/types.ts";
+import type { Emulation, EmulationScenario, LevelOne, Tuned } from "../api/reports.ts";
+import type { Entry } from "../api/types.ts";
 import { rootWords } from "./linear_model.ts";
 import { formatNumber, formatParameter, formatSetting, quotient } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";

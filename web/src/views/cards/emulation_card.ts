@@ -1,5 +1,6 @@
 // Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and how well it does.
-import type { EmulationScenario, Entry, Plant, Tuned } from "../../api/types.ts";
+import type { EmulationScenario, Tuned } from "../../api/reports.ts";
+import type { Entry, Plant } from "../../api/types.ts";
 import { costOf, emulationFrame, LEVEL_ONE_LOOKS } from "../../charts/emulation.ts";
 import type { OwnRun } from "../../charts/emulation.ts";
 import { h, uniqueId } from "../../dom.ts";

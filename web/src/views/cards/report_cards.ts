@@ -1,0 +1,46 @@
+// The cards of what methods tell beside their controllers: one line for each. A card hides itself where the entry has no
+// such report.
+import type { Entry, Plant, TuningRequest } from "../../api/types.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+import { emulationCard } from "./emulation_card.ts";
+import { rimcCard } from "./rimc_card.ts";
+import { tradeoffCard } from "./tradeoff_card.ts";
+
+/** An entry and what its reports are about. */
+export interface ReportedEntry {
+  name: string;
+  entry: Entry;
+  /** The linear plant that rules and robustness rest on. */
+  model: Plant | undefined;
+  request: TuningRequest | undefined;
+  units: UnitNames;
+}
+
+export interface ReportCard {
+  element: HTMLElement;
+  /** Above the plots, or below them. */
+  place: "above" | "below";
+  show(shown: ReportedEntry): void;
+  dispose(): void;
+}
+
+type Announce = (sentence: string) => void;
+type Retune = (lambda: number) => Promise<void>;
+
+const CARDS: ((announce: Announce, retune: Retune) => ReportCard)[] = [
+  (announce, retune) => {
+    const card = rimcCard(announce, retune);
+    return { ...card, place: "above", show: ({ entry, model, units }) => card.show(entry, model, units) };
+  },
+  (announce) => {
+    const card = emulationCard(announce);
+    return { ...card, place: "above", show: ({ entry, request, units }) => card.show(entry, request?.plant, units) };
+  },
+  (announce) => {
+    const card = tradeoffCard(announce);
+    return { ...card, place: "below", show: ({ name, entry, model, units }) => card.show([{ name, entry }], model, units.time) };
+  },
+];
+
+export const reportCards = (announce: Announce, retune: Retune): ReportCard[] =>
+  CARDS.map((create) => create(announce, retune));

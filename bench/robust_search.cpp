@@ -32,13 +32,13 @@ double now_ms() {
 }
 
 /// Both parts of a weighted objective are measured against the same optima for every search.
-void set_reference_optima(const DesignTask& task, robust::Problem& problem) {
+void set_reference_optima(const DesignTask& task, robust::DesignProblem& problem) {
     for (const char* part : {"load_iae", "setpoint_iae"}) {
         DesignTask alone = task;
         alone.objective = part;
         const auto tuned = designed(alone, "fast");
         if (!tuned) continue;
-        const robust::Problem its = problem_of(alone, *problem.plant, tuned->controller);
+        const robust::DesignProblem its = problem_of(alone, *problem.plant, tuned->controller);
         (alone.objective == "load_iae" ? problem.load_optimum : problem.setpoint_optimum) =
             std::exp(robust::log_cost(its, point_of(tuned->controller), 1e-6));
     }
@@ -54,7 +54,7 @@ std::optional<Comparison> compare(const DesignTask& task, std::uint64_t seed) {
     const auto simplex = designed(task, "nelder_mead"), grid = designed(task, "grid");
     const auto& any = fast ? fast : simplex ? simplex : grid;
     if (!any) return std::nullopt;
-    robust::Problem problem = problem_of(task, linear, any->controller);
+    robust::DesignProblem problem = problem_of(task, linear, any->controller);
     if (task.objective == "weighted") set_reference_optima(task, problem);
     std::optional<double> best;
     const auto take = [&](const char* name, std::optional<double> cost) {

@@ -32,9 +32,9 @@ std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms
 }
 
 // One run of tune(): what its steps share.
-class Run {
+class TuningRun {
 public:
-    Run(const TuningRequest& request, const RunControl& control) : request_(request), control_(control) {}
+    TuningRun(const TuningRequest& request, const RunControl& control) : request_(request), control_(control) {}
 
     Expected<TuningResult> result();
 
@@ -72,12 +72,12 @@ private:
     TuningResult result_;
 };
 
-void Run::report(double fraction, const std::string& stage, const std::string& message) const {
+void TuningRun::report(double fraction, const std::string& stage, const std::string& message) const {
     if (control_.progress) control_.progress({fraction, stage, message, best_});
 }
 
 // A part of the work sees 0 to 1 as its own; the better of its best design and ours is reported.
-RunControl Run::share(double from, double to) const {
+RunControl TuningRun::share(double from, double to) const {
     RunControl part{control_.stop, nullptr, control_.now_ms};
     if (!control_.progress) return part;
     part.progress = [this, from, to](const Progress& inner) {
@@ -89,7 +89,7 @@ RunControl Run::share(double from, double to) const {
     return part;
 }
 
-std::optional<Error> Run::take_record() {
+std::optional<Error> TuningRun::take_record() {
     report(0, "identify", "Fitting models to the record.");
     auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
     if (!model) return model.error();
@@ -105,7 +105,7 @@ std::optional<Error> Run::take_record() {
     return std::nullopt;
 }
 
-std::optional<Error> Run::find_plant() {
+std::optional<Error> TuningRun::find_plant() {
     if (request_.subject.has_value() == request_.record.has_value())
         return Error{ErrorKind::invalid_argument, "",
                      request_.subject ? "Both plant and record are given; give one of them."
@@ -119,7 +119,7 @@ std::optional<Error> Run::find_plant() {
 
 // Methods name an option or a field of the plant; the request has the one under the method's place, and the other only
 // if it gave a plant.
-Error Run::placed(Error error, const std::string& where) const {
+Error TuningRun::placed(Error error, const std::string& where) const {
     if (in_plant(error)) {
         if (request_.record) error.where = "record";
     } else if (!error.where.empty()) {
@@ -129,7 +129,7 @@ Error Run::placed(Error error, const std::string& where) const {
 }
 
 // Several rules may give the very same controller: it is evaluated once.
-Expected<Evaluation> Run::evaluated(const Controller& controller) {
+Expected<Evaluation> TuningRun::evaluated(const Controller& controller) {
     const Pid* pid = std::get_if<Pid>(&controller);
     if (pid != nullptr)
         for (const auto& [known, evaluation] : evaluated_)
@@ -139,7 +139,7 @@ Expected<Evaluation> Run::evaluated(const Controller& controller) {
     return evaluation;
 }
 
-void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) {
+void TuningRun::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) {
     auto evaluation = evaluated(controller);
     if (!evaluation) {
         entry.error = evaluation.error();
@@ -151,7 +151,7 @@ void Run::evaluate_into(TuningEntry& entry, const Controller& controller, std::v
 }
 
 // The method's own, completed, and what was asked for of every controller.
-void Run::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
+void TuningRun::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
     if (!entry.evaluation) return;
     if (!tradeoffs_) tradeoffs_.emplace(subject_->nominal(), request_.evaluate);
     if (own) {
@@ -163,7 +163,7 @@ void Run::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
             std::make_shared<TradeoffReport>(tradeoffs_->of(entry.evaluation->controller, entry.reduced_model)));
 }
 
-void Run::state_problem() {
+void TuningRun::state_problem() {
     const LinearPlant* linear = subject_->linear();
     if (linear == nullptr) return;
     problem_ = TuningProblem{*subject_->nominal(), *linear, dead_time_std_, held_};
@@ -172,7 +172,7 @@ void Run::state_problem() {
         problem_->relay_point = result_.model->limit_cycle->describing_function;
 }
 
-Expected<TunedController> Run::tuned_with(const PlannedRow& planned, const RunControl& control) const {
+Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
@@ -183,7 +183,7 @@ Expected<TunedController> Run::tuned_with(const PlannedRow& planned, const RunCo
                      " needs a model of the plant; points of a frequency response serve the method robust."};
 }
 
-TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
+TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) {
     TuningEntry entry;
     entry.method = planned.method->id;
     entry.title = planned.title;
@@ -211,7 +211,7 @@ TuningEntry Run::entry(const PlannedRow& planned, double from, double to) {
 }
 
 // The method's entry, and before it one that holds on the record's region, where that is needed and can be had.
-std::vector<TuningEntry> Run::entries(const PlannedRow& planned, double from, double to) {
+std::vector<TuningEntry> TuningRun::entries(const PlannedRow& planned, double from, double to) {
     std::vector<TuningEntry> entries;
     entries.push_back(entry(planned, from, to));
     const bool may = result_.model && request_.identified_region == IdentifiedRegion::where_needed &&
@@ -231,7 +231,7 @@ std::vector<TuningEntry> Run::entries(const PlannedRow& planned, double from, do
     return entries;
 }
 
-TuningEntry Run::baseline() {
+TuningEntry TuningRun::baseline() {
     TuningEntry entry;
     entry.method = "baseline";
     entry.title = "Baseline";
@@ -246,7 +246,7 @@ TuningEntry Run::baseline() {
     return entry;
 }
 
-void Run::keep_best(const TuningEntry& entry) {
+void TuningRun::keep_best(const TuningEntry& entry) {
     if (!entry.evaluation) return;
     const auto& [robustness, load] = std::tie(entry.evaluation->robustness, entry.evaluation->performance.load);
     if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
@@ -272,7 +272,7 @@ Error all_failed(const std::vector<TuningEntry>& entries) {
 }
 
 // Where a rule has no derivative its PID row is its PI row once more.
-bool Run::repeats(const TuningEntry& entry) const {
+bool TuningRun::repeats(const TuningEntry& entry) const {
     const Pid* pid = entry.evaluation ? std::get_if<Pid>(&entry.evaluation->controller) : nullptr;
     return pid != nullptr && std::ranges::any_of(result_.controllers, [&](const TuningEntry& other) {
                if (other.method != entry.method || !other.evaluation) return false;
@@ -282,7 +282,7 @@ bool Run::repeats(const TuningEntry& entry) const {
 }
 
 // False: stopped before the last row.
-bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double to) {
+bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, double to) {
     const double share_of_one = (to - from) / static_cast<double>(planned.size());
     for (const PlannedRow& next : planned) {
         if (stopped()) return false;
@@ -299,7 +299,7 @@ bool Run::tune_rows(const std::vector<PlannedRow>& planned, double from, double 
 }
 
 // The column "how far from the optimum at the same Ms".
-void Run::compare_with_optima(double from) {
+void TuningRun::compare_with_optima(double from) {
     RobustOptima optima(*problem_, on_linearisation(*subject_, request_.evaluate));
     const double share_of_one = (1 - from) / static_cast<double>(result_.controllers.size());
     for (TuningEntry& entry : result_.controllers) {
@@ -313,12 +313,12 @@ void Run::compare_with_optima(double from) {
     }
 }
 
-bool Run::wants_optima() const {
+bool TuningRun::wants_optima() const {
     const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
     return problem_ && request_.evaluate.optimum_at_Ms.value_or(league);
 }
 
-Expected<TuningResult> Run::result() {
+Expected<TuningResult> TuningRun::result() {
     auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
     if (const auto error = find_plant()) return *error;
@@ -351,7 +351,7 @@ Expected<TuningResult> Run::result() {
 }  // namespace
 
 Expected<TuningResult> tune(const TuningRequest& request, const RunControl& control) {
-    return Run(request, control).result();
+    return TuningRun(request, control).result();
 }
 
 }  // namespace tunewright

@@ -56,11 +56,11 @@ constexpr Optimum kLoad[] = {
     {25.0, 0.382263, 0.502510, 0.069864}, {50.0, 0.369954, 0.487014, 0.037762},
 };
 
-using Point = std::vector<double>;  // ln Kp, ln Ti, ln Td on the model with K = 1, L + T = 1
+using LogSettings = std::vector<double>;  // ln Kp, ln Ti, ln Td on the model with K = 1, L + T = 1
 
 double share(double tau) { return tau / (1 + tau); }
 
-Point start_at(std::span<const Optimum> table, double tau, bool load) {
+LogSettings start_at(std::span<const Optimum> table, double tau, bool load) {
     const auto right = std::ranges::find_if(table.begin() + 1, std::prev(table.end()),
                                             [tau](const Optimum& optimum) { return tau <= optimum.tau; });
     const Optimum &a = *std::prev(right), &b = *right;
@@ -71,7 +71,7 @@ Point start_at(std::span<const Optimum> table, double tau, bool load) {
             std::log(std::lerp(a.derivative_time, b.derivative_time, at) * L)};
 }
 
-Pid controller_at(const Point& x) {
+Pid controller_at(const LogSettings& x) {
     Pid pid;
     pid.Kp = std::exp(x[0]);
     pid.Ti = std::exp(x[1]);
@@ -80,7 +80,7 @@ Pid controller_at(const Point& x) {
     return pid;
 }
 
-double log_iae(const LinearPlant& plant, const Point& x, bool load) {
+double log_iae(const LinearPlant& plant, const LogSettings& x, bool load) {
     const ParallelPid gains = to_parallel(controller_at(x));
     const auto loop = Loop::make(plant, gains);
     if (!loop || !count_unstable_poles(*loop).stable()) return kNoController;
@@ -93,12 +93,12 @@ double log_iae(const LinearPlant& plant, const Point& x, bool load) {
     return std::log(integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final));
 }
 
-Pid best_from(const Point& start, const LinearPlant& plant, bool load) {
+Pid best_from(const LogSettings& start, const LinearPlant& plant, bool load) {
     LocalOptions options;
     options.step = {kFirstStep, kFirstStep, kFirstStep};
     options.tolerance = kAccuracy;
     options.most_evaluations = kMaxEvaluations;
-    const auto cost = [&](const Point& x, bool&) { return log_iae(plant, x, load); };
+    const auto cost = [&](const LogSettings& x, bool&) { return log_iae(plant, x, load); };
     return controller_at(find_local_minimum(LocalSearch::nelder_mead, cost, start, options).x);
 }
 

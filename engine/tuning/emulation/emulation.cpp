@@ -23,19 +23,19 @@ Error nothing_reaches(const std::string& reason) {
                 " Give other bounds, smaller steps or a shorter horizon."};
 }
 
-Expected<Design> approximate(const Remark6& remark6, const Bounds& bounds, double wu) {
+Expected<EmulatedDesign> approximate(const Remark6& remark6, const Bounds& bounds, double wu) {
     const auto point = remark6.best(bounds);
     if (!point)
         return Error{ErrorKind::no_feasible_controller, "bounds",
                      "Within the bounds the optimal gain is 0: the nonlinear controller's action has no share of the "
                      "error, its integral or derivative. Give bounds of Kp with the sign of the plant's gain."};
     const double J = remark6.J(*point);
-    return Design{*point, bounds, J, J / wu, std::nullopt, false};
+    return EmulatedDesign{*point, bounds, J, J / wu, std::nullopt, false};
 }
 
-Expected<Design> full(const Criterion& criterion, const Remark6& remark6, const Bounds& bounds,
-                      const std::vector<LevelOneRow>& rows, const RunControl& control) {
-    std::vector<Point> starts;
+Expected<EmulatedDesign> full(const Criterion& criterion, const Remark6& remark6, const Bounds& bounds,
+                              const std::vector<LevelOneRow>& rows, const RunControl& control) {
+    std::vector<SettingsPoint> starts;
     if (auto point = remark6.best(bounds)) starts.push_back(std::move(*point));
     for (const LevelOneRow& row : rows)
         if (const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr)
@@ -44,11 +44,11 @@ Expected<Design> full(const Criterion& criterion, const Remark6& remark6, const 
     if (!optimum) return cancelled();
     const Cost& cost = optimum->cost;
     if (!cost.ended.empty()) return optimum->stopped ? cancelled() : nothing_reaches(cost.ended);
-    return Design{optimum->point, bounds, cost.J, cost.J_u, cost.J_y, optimum->stopped};
+    return EmulatedDesign{optimum->point, bounds, cost.J, cost.J_u, cost.J_y, optimum->stopped};
 }
 
 // A default step that the nonlinear controller cannot make was too large a guess.
-Expected<std::vector<Trajectory>> trajectories_of(Problem& problem, const RunControl& control) {
+Expected<std::vector<Trajectory>> trajectories_of(EmulationProblem& problem, const RunControl& control) {
     auto trajectories = nonlinear_trajectories(problem, control);
     for (int i = 0; i < kSmallerSteps && problem.default_scenario; ++i) {
         if (trajectories || trajectories.error().kind != ErrorKind::unsupported) break;
@@ -65,7 +65,7 @@ Expected<std::vector<Trajectory>> trajectories_of(Problem& problem, const RunCon
 Expected<TunedController> tune(const TuningProblem& plant, const EmulationOptions& options, const RunControl& control) {
     auto stated = state_problem(plant, options);
     if (!stated) return stated.error();
-    Problem& problem = *stated;
+    EmulationProblem& problem = *stated;
     const auto trajectories = trajectories_of(problem, control);
     if (!trajectories) return trajectories.error();
     auto rows = level_one(problem, control);

@@ -23,7 +23,7 @@ constexpr double kHysteresis = 0.1;     // of what the relay moves y by in the l
 
 class FirstLevel {
 public:
-    FirstLevel(const Problem& problem, const RunControl& control)
+    FirstLevel(const EmulationProblem& problem, const RunControl& control)
         : problem_(problem), control_{control.stop, nullptr, nullptr} {}
 
     std::vector<LevelOneRow> rows() {
@@ -170,7 +170,7 @@ private:
                                                   kSlowIntegral * beta[1], r > 1 ? beta[1] : 0, problem_.Tf});
     }
 
-    const Problem& problem_;
+    const EmulationProblem& problem_;
     RunControl control_;
     std::vector<LevelOneRow> rows_;
 };
@@ -198,14 +198,14 @@ Error nothing_to_start_from(const std::vector<LevelOneRow>& rows) {
 
 }  // namespace
 
-Expected<std::vector<LevelOneRow>> level_one(const Problem& problem, const RunControl& control) {
+Expected<std::vector<LevelOneRow>> level_one(const EmulationProblem& problem, const RunControl& control) {
     auto rows = FirstLevel(problem, control).rows();
     if (control.stop.stop_requested())
         return Error{ErrorKind::cancelled, "", "The job was cancelled before a design was found."};
     return rows;
 }
 
-Expected<Bounds> search_bounds(const Problem& problem, const std::vector<LevelOneRow>& rows) {
+Expected<Bounds> search_bounds(const EmulationProblem& problem, const std::vector<LevelOneRow>& rows) {
     std::map<std::string, NumberRange> ranges = problem.bounds;
     double sign = 0;  // that of the first row: an unstable plant's gain does not tell
     std::vector<Pid> settings;

@@ -74,7 +74,7 @@ double modest_input(const NonlinearSystem& system, double gain) {
     return (system.y_steady() != 0 ? kShareOfInput * std::abs(system.y_steady()) : 1) / gain;
 }
 
-Expected<std::vector<Scenario>> chosen_scenarios(Problem& problem, double modest, double gain,
+Expected<std::vector<Scenario>> chosen_scenarios(EmulationProblem& problem, double modest, double gain,
                                                  const std::vector<ScenarioOptions>& given) {
     std::vector<Scenario> scenarios;
     for (std::size_t i = 0; i < given.size(); ++i) {
@@ -90,7 +90,8 @@ Expected<std::vector<Scenario>> chosen_scenarios(Problem& problem, double modest
     return std::vector<Scenario>{step};
 }
 
-Expected<LevelOneOptions> chosen_level_one(const Problem& problem, double modest, const BoundsFromOptions& options) {
+Expected<LevelOneOptions> chosen_level_one(const EmulationProblem& problem, double modest,
+                                           const BoundsFromOptions& options) {
     LevelOneOptions level;
     level.methods = options.methods;
     for (std::size_t i = 0; i < level.methods.size(); ++i) {
@@ -117,7 +118,7 @@ Expected<LevelOneOptions> chosen_level_one(const Problem& problem, double modest
     return level;
 }
 
-void choose_bounds(Problem& problem, const EmulationOptions& options) {
+void choose_bounds(EmulationProblem& problem, const EmulationOptions& options) {
     const BoundOptions& given = options.bounds;
     for (const auto& [name, range] : {std::pair("Kp", given.Kp), {"Ti", given.Ti}, {"Td", given.Td}})
         if (range) problem.bounds[name] = *range;
@@ -134,7 +135,7 @@ void choose_bounds(Problem& problem, const EmulationOptions& options) {
                                     : kFilterShare * target_time(problem.target);
 }
 
-std::optional<Error> choose_horizon(Problem& problem, const EmulationOptions& options) {
+std::optional<Error> choose_horizon(EmulationProblem& problem, const EmulationOptions& options) {
     const double slowest = slowest_time(problem.target), L = problem.system->dead_time();
     problem.horizon = options.horizon.value_or(kTargetTimes * slowest + L);
     const double longest = kMaxTargetTimes * slowest + L;
@@ -144,7 +145,7 @@ std::optional<Error> choose_horizon(Problem& problem, const EmulationOptions& op
                                 text(longest) + " at most.");
 }
 
-std::optional<Error> choose_weights(Problem& problem, double gain, const WeightOptions& options) {
+std::optional<Error> choose_weights(EmulationProblem& problem, double gain, const WeightOptions& options) {
     problem.wu = options.wu;
     problem.wy = problem.remark6 ? 0 : options.wy.value_or((problem.wu > 0 ? problem.wu : 1) / (gain * gain));
     if (problem.remark6 && !(problem.wu > 0))
@@ -155,7 +156,7 @@ std::optional<Error> choose_weights(Problem& problem, double gain, const WeightO
 }
 
 // As many as resolve the derivative filter and the target: Simpson's rule then leaves some 1e-6 of J.
-int chosen_intervals(const Problem& problem) {
+int chosen_intervals(const EmulationProblem& problem) {
     double fastest = problem.target.beta.back() / problem.target.beta[problem.target.beta.size() - 2];
     if (problem.with_derivative)
         fastest = std::min(fastest, problem.free_Tf() ? problem.bounds.at("Tf").low : problem.Tf);
@@ -172,8 +173,8 @@ double gain_size(const LinearPlant& plant, double time) {
     return std::isfinite(gain) && gain > 0 ? gain : 1;
 }
 
-Expected<Problem> state_problem(const TuningProblem& plant, const EmulationOptions& options) {
-    Problem problem;
+Expected<EmulationProblem> state_problem(const TuningProblem& plant, const EmulationOptions& options) {
+    EmulationProblem problem;
     problem.linear = &plant.linear;
     problem.system = {std::shared_ptr<const void>(), plant.nonlinear};  // lives as long as `plant`
     if (!problem.system) {

@@ -32,7 +32,7 @@ struct LevelOneOptions {
     std::optional<double> relay_hysteresis = {};
 };
 
-struct Problem {
+struct EmulationProblem {
     std::shared_ptr<const NonlinearSystem> system;
     const LinearPlant* linear = nullptr;  ///< its linearisation
     int relative_degree = 1;
@@ -56,7 +56,7 @@ struct Problem {
 
 /// From the options; what they leave out comes from the linearisation (docs/methods.md). Errors: invalid_argument with
 /// the option as `where`; those of the relative degree with `where` = "plant/...".
-Expected<Problem> state_problem(const TuningProblem& plant, const EmulationOptions& options);
+Expected<EmulationProblem> state_problem(const TuningProblem& plant, const EmulationOptions& options);
 
 /// Magnitude of the linearisation's static gain; of an integrating plant the gain at frequency 1/time.
 double gain_size(const LinearPlant& plant, double time);

@@ -18,7 +18,7 @@ constexpr double kGolden = 0.6180339887498949;
 
 using Gains = std::array<double, 3>;
 
-Gains gains_at(const Point& point) {
+Gains gains_at(const SettingsPoint& point) {
     return {point[0], point[0] / point[1], point.size() > 2 ? point[0] * point[2] : 0};
 }
 
@@ -40,7 +40,7 @@ std::vector<robust::LinearConstraint> half_planes(double sign, const Bounds& bou
 
 }  // namespace
 
-Remark6::Remark6(const Problem& problem, const std::vector<Trajectory>& trajectories)
+Remark6::Remark6(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories)
     : problem_(problem), trajectories_(trajectories) {
     const std::vector<double> simpson = simpson_weights(problem);
     for (std::size_t s = 0; s < trajectories.size(); ++s) {
@@ -88,7 +88,7 @@ double Remark6::J_of(const Gains& gains, const Signals& signals, std::vector<boo
     return J;
 }
 
-double Remark6::J(const Point& point) const {
+double Remark6::J(const SettingsPoint& point) const {
     return J_of(gains_at(point), problem_.free_Tf() ? signals(point[3]) : fixed_, nullptr);
 }
 
@@ -123,7 +123,7 @@ std::optional<Remark6::Found> Remark6::best_of_sign(double sign, double Tf, cons
         if (!(sign * gains[0] > 0) || !(sign * gains[1] > 0)) return best;
         const double J = J_of(gains, signals, &next);
         if (!best || J < best->J) {
-            Point point = {gains[0], gains[0] / gains[1]};
+            SettingsPoint point = {gains[0], gains[0] / gains[1]};
             if (n == 3) point.push_back(gains[2] / gains[0]);
             if (problem_.free_Tf()) point.push_back(Tf);
             best = Found{clipped(point, bounds), J};
@@ -146,7 +146,7 @@ std::optional<Remark6::Found> Remark6::best_with(double Tf, const Bounds& bounds
     return best;
 }
 
-std::optional<Point> Remark6::best(const Bounds& bounds) const {
+std::optional<SettingsPoint> Remark6::best(const Bounds& bounds) const {
     std::optional<Found> best;
     const auto at = [&](double log_Tf) {
         const auto found = best_with(std::exp(log_Tf), bounds);

@@ -12,20 +12,20 @@ namespace tunewright::emulation {
 
 class Remark6 {
 public:
-    Remark6(const Problem& problem, const std::vector<Trajectory>& trajectories);
+    Remark6(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories);
 
     /// wu times the mean of int (u_nl - u)^2 dt. Where u_nl rests on a limit of the input, what u asks for beyond it
     /// does not count: the limit would take it away.
-    double J(const Point& point) const;
+    double J(const SettingsPoint& point) const;
 
     /// The best point within the bounds; a free Tf by a one-dimensional search around. Empty: no Kp other than 0.
-    std::optional<Point> best(const Bounds& bounds) const;
+    std::optional<SettingsPoint> best(const Bounds& bounds) const;
 
 private:
     /// At every sample of every scenario: what multiplies Kp, Kp/Ti and Kp Td in u.
     using Signals = std::array<std::vector<double>, 3>;
     struct Found {
-        Point point;
+        SettingsPoint point;
         double J = 0;
     };
 
@@ -34,7 +34,7 @@ private:
     std::optional<Found> best_with(double Tf, const Bounds& bounds) const;
     std::optional<Found> best_of_sign(double sign, double Tf, const Signals& signals, const Bounds& bounds) const;
 
-    const Problem& problem_;
+    const EmulationProblem& problem_;
     const std::vector<Trajectory>& trajectories_;
     std::vector<double> weights_;        // of a sample in J, all scenarios one after the other
     std::vector<double> u_nl_;           // likewise

@@ -17,7 +17,9 @@ constexpr double kMinSize = 1e-3;        // of an unknown near 0, relative to it
 constexpr int kReportedIntervals = 400;  // intervals of what is told
 
 // Every so many samples are told.
-std::size_t stride(const Problem& problem) { return static_cast<std::size_t>(problem.intervals / kReportedIntervals); }
+std::size_t stride(const EmulationProblem& problem) {
+    return static_cast<std::size_t>(problem.intervals / kReportedIntervals);
+}
 
 std::vector<double> told(const std::vector<double>& samples, double rest, std::size_t stride) {
     std::vector<double> values;
@@ -25,7 +27,7 @@ std::vector<double> told(const std::vector<double>& samples, double rest, std::s
     return values;
 }
 
-std::vector<double> told_times(std::size_t samples, const Problem& problem) {
+std::vector<double> told_times(std::size_t samples, const EmulationProblem& problem) {
     std::vector<double> times;
     for (std::size_t i = 0; i < samples; i += stride(problem))
         times.push_back(problem.horizon * static_cast<double>(i) / problem.intervals);
@@ -56,7 +58,7 @@ void judge_fit(EmulationFit& fit) {
 }
 
 void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pid& pid) {
-    const Problem& problem = criterion.problem();
+    const EmulationProblem& problem = criterion.problem();
     const std::vector<double> weights = simpson_weights(problem);
     const std::size_t every = stride(problem);
     for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {
@@ -87,7 +89,7 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pi
 void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6, const std::stop_token& stop) {
     const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
     if (pid == nullptr || stop.stop_requested()) return;
-    const Problem& problem = criterion.problem();
+    const EmulationProblem& problem = criterion.problem();
     const Judgement judgement = judge(criterion, remark6, point_of(problem, *pid));
     row.J = judgement.J;
     row.ended = judgement.ended;
@@ -99,7 +101,7 @@ void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remar
     row.u = told(run.u, problem.scenarios.front().system->u_nominal(), every);
 }
 
-void add_bounds(EmulationReport& report, const Problem& problem, const Design& design) {
+void add_bounds(EmulationReport& report, const EmulationProblem& problem, const EmulatedDesign& design) {
     const auto names = unknowns(problem);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const double low = design.bounds.low[i], high = design.bounds.high[i], value = design.point[i];
@@ -110,13 +112,13 @@ void add_bounds(EmulationReport& report, const Problem& problem, const Design& d
     }
 }
 
-void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6, const Design& design,
-                  const std::stop_token& stop) {
-    const Problem& problem = criterion.problem();
-    Point sizes = design.point;
+void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6,
+                  const EmulatedDesign& design, const std::stop_token& stop) {
+    const EmulationProblem& problem = criterion.problem();
+    SettingsPoint sizes = design.point;
     for (std::size_t i = 0; i < sizes.size(); ++i)
         sizes[i] = std::max(std::abs(sizes[i]), kMinSize * (design.bounds.high[i] - design.bounds.low[i]));
-    const auto J = [&](const Point& point) {
+    const auto J = [&](const SettingsPoint& point) {
         if (stop.stop_requested()) return 0.0;
         return problem.remark6 ? remark6.J(point)
                                : criterion.penalised(criterion.cost(controller_at(problem, point), kFineTolerance));
@@ -141,16 +143,16 @@ Warning at_bound(const ActiveBound& bound) {
 
 }  // namespace
 
-Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point& point) {
+Judgement judge(const Criterion& criterion, const Remark6& remark6, const SettingsPoint& point) {
     if (criterion.problem().remark6) return {remark6.J(point), {}};
     const Cost cost = criterion.cost(controller_at(criterion.problem(), point), kFineTolerance);
     if (!cost.ended.empty() || !std::isfinite(cost.J)) return {std::nullopt, cost.ended};
     return {cost.J, {}};
 }
 
-EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
+EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const EmulatedDesign& design,
                           std::vector<LevelOneRow> level_one, const std::stop_token& stop) {
-    const Problem& problem = criterion.problem();
+    const EmulationProblem& problem = criterion.problem();
     EmulationReport report;
     report.formulation = problem.remark6 ? "remark6" : "full";
     report.J = design.J;

@@ -8,8 +8,8 @@
 namespace tunewright::emulation {
 
 /// The answer of the second level.
-struct Design {
-    Point point;
+struct EmulatedDesign {
+    SettingsPoint point;
     Bounds bounds;
     double J = 0, J_u = 0;
     std::optional<double> J_y;
@@ -21,10 +21,10 @@ struct Judgement {
     std::optional<double> J;
     std::string ended;
 };
-Judgement judge(const Criterion& criterion, const Remark6& remark6, const Point& point);
+Judgement judge(const Criterion& criterion, const Remark6& remark6, const SettingsPoint& point);
 
 /// Stopped, it leaves out what is not there yet of flatness and of the first level's runs.
-EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const Design& design,
+EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const EmulatedDesign& design,
                           std::vector<LevelOneRow> level_one, const std::stop_token& stop);
 
 /// Bounds that hold the optimum, unstable zero dynamics, limits in the nonlinear controller's way, a run that ended,

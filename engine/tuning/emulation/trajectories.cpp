@@ -19,7 +19,7 @@ Error cannot_run(std::size_t scenario, const std::string& reason) {
 
 }  // namespace
 
-std::vector<double> simpson_weights(const Problem& problem) {
+std::vector<double> simpson_weights(const EmulationProblem& problem) {
     const double third = problem.horizon / problem.intervals / 3;
     const auto intervals = static_cast<std::size_t>(problem.intervals);
     std::vector<double> weights(intervals + 1, 2 * third);
@@ -28,7 +28,7 @@ std::vector<double> simpson_weights(const Problem& problem) {
     return weights;
 }
 
-Expected<std::vector<Trajectory>> nonlinear_trajectories(const Problem& problem, const RunControl& control) {
+Expected<std::vector<Trajectory>> nonlinear_trajectories(const EmulationProblem& problem, const RunControl& control) {
     const std::vector<double> weights = simpson_weights(problem);
     std::vector<Trajectory> trajectories;
     for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {

@@ -13,9 +13,9 @@ struct Trajectory {
 };
 
 /// One a scenario. Errors: unsupported where the nonlinear controller itself cannot run to the horizon; cancelled.
-Expected<std::vector<Trajectory>> nonlinear_trajectories(const Problem& problem, const RunControl& control);
+Expected<std::vector<Trajectory>> nonlinear_trajectories(const EmulationProblem& problem, const RunControl& control);
 
 /// int of the samples from 0 to the horizon by Simpson's rule: the sum of samples times these weights.
-std::vector<double> simpson_weights(const Problem& problem);
+std::vector<double> simpson_weights(const EmulationProblem& problem);
 
 }  // namespace tunewright::emulation

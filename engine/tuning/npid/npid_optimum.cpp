@@ -29,9 +29,9 @@ constexpr int kReportEvery = 50;
 constexpr double kNearBound = 1e-3;  // in ln
 constexpr int kMaxSteps = 4000;      // of a response; what has not settled then is no candidate
 
-class Search {
+class NpidSearch {
 public:
-    Search(const NpidProblem& problem, const UltimatePoint& ultimate, const RunControl& control)
+    NpidSearch(const NpidProblem& problem, const UltimatePoint& ultimate, const RunControl& control)
         : problem_(problem), control_(control), sign_(ultimate.Ku < 0 ? -1 : 1) {
         const double Ku = std::abs(ultimate.Ku), Pu = ultimate.Pu;
         double lags = 0;
@@ -188,7 +188,7 @@ Expected<NpidOptimum> find_npid_optimum(const NpidProblem& problem, const RunCon
         return Error{ErrorKind::unsupported, "plant",
                      "The plant has no ultimate gain, in whose units the optimum is searched: no proportional gain "
                      "brings it to the edge of stability. Use robust."};
-    return Search(problem, *ultimate, control).run();
+    return NpidSearch(problem, *ultimate, control).run();
 }
 
 }  // namespace tunewright

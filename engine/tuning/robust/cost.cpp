@@ -11,12 +11,13 @@ constexpr double kSettled = 1e-4;     // the tail beyond it is closed by the exa
 constexpr double kDifference = 1e-5;  // of a logarithm: noise 1e-13/1e-5, curvature error 1e-5
 constexpr int kMaxSteps = 12000;      // a design that needs more is no candidate
 
-struct Run {
+struct CostRun {
     double IAE = std::numeric_limits<double>::infinity();
     StepSchedule schedule;
 };
 
-Run run(const Problem& problem, const Point& x, bool setpoint, double tolerance, const StepSchedule* repeat) {
+CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance,
+            const StepSchedule* repeat) {
     ResponseOptions options;
     options.tolerance = tolerance;
     options.settled = kSettled;
@@ -24,7 +25,7 @@ Run run(const Problem& problem, const Point& x, bool setpoint, double tolerance,
     options.repeat = repeat;
     const StepInputs inputs{setpoint ? 1.0 : 0.0, setpoint ? 0.0 : 1.0};
     StepResponse response = simulate_linear(*problem.plant, to_parallel(controller_at(problem, x)), inputs, options);
-    Run result;
+    CostRun result;
     if (!response.settles || !response.error_integral_final) return result;
     result.IAE = integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);
     result.schedule = std::move(response.schedule);
@@ -32,31 +33,31 @@ Run run(const Problem& problem, const Point& x, bool setpoint, double tolerance,
 }
 
 /// ln of one IAE with its gradient.
-CostWithGradient log_iae(const Problem& problem, const Point& x, bool setpoint, double tolerance) {
-    const Run base = run(problem, x, setpoint, tolerance, nullptr);
+CostWithGradient log_iae(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance) {
+    const CostRun base = run(problem, x, setpoint, tolerance, nullptr);
     CostWithGradient result{std::log(base.IAE), {}};
     if (!std::isfinite(result.value)) return result;
     for (int i = 0; i < problem.dimension(); ++i) {
-        Point moved = x;
+        DesignPoint moved = x;
         moved[static_cast<std::size_t>(i)] += kDifference;
-        const Run other = run(problem, moved, setpoint, tolerance, &base.schedule);
+        const CostRun other = run(problem, moved, setpoint, tolerance, &base.schedule);
         result.gradient[static_cast<std::size_t>(i)] = (std::log(other.IAE) - result.value) / kDifference;
     }
     return result;
 }
 
-double mixed(const Problem& problem, double load, double setpoint) {
+double mixed(const DesignProblem& problem, double load, double setpoint) {
     return problem.rho * load / problem.load_optimum + (1 - problem.rho) * setpoint / problem.setpoint_optimum;
 }
 
 }  // namespace
 
-std::optional<double> step_iae(const Problem& problem, const Point& x, bool setpoint, double tolerance) {
+std::optional<double> step_iae(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance) {
     const double IAE = run(problem, x, setpoint, tolerance, nullptr).IAE;
     return std::isfinite(IAE) ? std::optional<double>(IAE) : std::nullopt;
 }
 
-double log_cost(const Problem& problem, const Point& x, double tolerance) {
+double log_cost(const DesignProblem& problem, const DesignPoint& x, double tolerance) {
     switch (problem.objective) {
         case Objective::load_ie: return x[1] - x[0];
         case Objective::load_iae: return std::log(run(problem, x, false, tolerance, nullptr).IAE);
@@ -68,7 +69,7 @@ double log_cost(const Problem& problem, const Point& x, double tolerance) {
     return std::numeric_limits<double>::infinity();
 }
 
-double log_cost_bound(const Problem& problem, const Point& x) {
+double log_cost_bound(const DesignProblem& problem, const DesignPoint& x) {
     const double load = x[1] - x[0];
     if (problem.objective == Objective::load_ie || problem.objective == Objective::load_iae) return load;
     const double Tf = filter_time(problem, std::exp(x[2]));
@@ -79,7 +80,7 @@ double log_cost_bound(const Problem& problem, const Point& x) {
     return std::log(mixed(problem, std::exp(load), setpoint));
 }
 
-CostWithGradient log_cost_with_gradient(const Problem& problem, const Point& x, double tolerance) {
+CostWithGradient log_cost_with_gradient(const DesignProblem& problem, const DesignPoint& x, double tolerance) {
     switch (problem.objective) {
         case Objective::load_ie: return {x[1] - x[0], {-1, 1, 0}};
         case Objective::load_iae: return log_iae(problem, x, false, tolerance);

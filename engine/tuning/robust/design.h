@@ -32,7 +32,7 @@ struct Limits {
 };
 
 /// Logarithms of |Kp|, Ti, Td. PI uses the first two.
-using Point = std::array<double, 3>;
+using DesignPoint = std::array<double, 3>;
 
 /// Within which the searches by gradient keep the controller's times, in 1/reference frequency: beyond, the design is
 /// an integral alone, a PI, or lives below every frequency of interest, and a filter tied to Td leaves the frequency
@@ -41,12 +41,12 @@ constexpr double kMinTi = 1e-6, kMinTd = 2e-4, kMaxTd = 300;
 
 /// What a search answers.
 struct Found {
-    Point x{};
+    DesignPoint x{};
     double log_cost = 0;
     bool stopped = false;  ///< the report asked to stop: x is the best so far
 };
 
-struct Problem {
+struct DesignProblem {
     const LinearPlant* plant = nullptr;       ///< nominal: the cost is its own
     std::span<const LinearPlant> others;      ///< stability and the limits must hold on these too
     const MeasuredPlant* measured = nullptr;  ///< in their place: measured points, with objective load_ie
@@ -64,12 +64,12 @@ struct Problem {
     const LinearPlant& plant_at(std::size_t i) const { return i == 0 ? *plant : others[i - 1]; }
 };
 
-inline double filter_time(const Problem& problem, double Td) {
+inline double filter_time(const DesignProblem& problem, double Td) {
     if (problem.filter.Tf) return *problem.filter.Tf;
     return problem.filter.Tf_over_Td ? *problem.filter.Tf_over_Td * Td : 0;
 }
 
-inline Pid controller_at(const Problem& problem, const Point& x) {
+inline Pid controller_at(const DesignProblem& problem, const DesignPoint& x) {
     Pid pid;
     pid.Kp = problem.sign * std::exp(x[0]);
     pid.Ti = std::exp(x[1]);

@@ -40,20 +40,21 @@ Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, do
     return members;
 }
 
-double excess_on(const LinearPlant& plant, const Problem& problem, const Point& x, const GridFineness& fineness) {
+double excess_on(const LinearPlant& plant, const DesignProblem& problem, const DesignPoint& x,
+                 const GridFineness& fineness) {
     const auto loop = Loop::make(plant, to_parallel(controller_at(problem, x)));
     if (!loop || !count_unstable_poles(*loop).stable()) return std::numeric_limits<double>::infinity();
     return excess_of(find_peaks(*loop, make_loop_grid(*loop, fineness.step, fineness.density)), problem.limits);
 }
 
-double excess_on_points(const Problem& problem, const Point& x) {
+double excess_on_points(const DesignProblem& problem, const DesignPoint& x) {
     const auto loop = MeasuredLoop::make(*problem.measured, to_parallel(controller_at(problem, x)));
     if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable())
         return std::numeric_limits<double>::infinity();
     return excess_of(loop->peaks(), problem.limits);
 }
 
-std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
+std::vector<LinearPlant> worst_inside(const PlantFamily& family, const DesignProblem& problem, const DesignPoint& x,
                                       const std::stop_token& stop) {
     const PlantCost cost = [&](const LinearPlant& plant) { return excess_on(plant, problem, x, {}); };
     std::vector<LinearPlant> found;

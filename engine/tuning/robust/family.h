@@ -21,14 +21,15 @@ struct GridFineness {
 };
 
 /// The largest relative excess of the loop at x over a limit on one plant; infinite if it is unstable.
-double excess_on(const LinearPlant& plant, const Problem& problem, const Point& x, const GridFineness& fineness);
+double excess_on(const LinearPlant& plant, const DesignProblem& problem, const DesignPoint& x,
+                 const GridFineness& fineness);
 
 /// The same on the measured points of the problem.
-double excess_on_points(const Problem& problem, const Point& x);
+double excess_on_points(const DesignProblem& problem, const DesignPoint& x);
 
 /// For each region of the family the plant inside on which the design at x exceeds a limit most, where that is by more
 /// than 5e-5: from 128 points and the ends the worst is followed (find_worst_case). Empty: the limits hold.
-std::vector<LinearPlant> worst_inside(const PlantFamily& family, const Problem& problem, const Point& x,
+std::vector<LinearPlant> worst_inside(const PlantFamily& family, const DesignProblem& problem, const DesignPoint& x,
                                       const std::stop_token& stop);
 
 }  // namespace tunewright::robust

@@ -32,7 +32,7 @@ constexpr ScanBox kIntegralBox = {
 constexpr ScanBox kLongTiBox = {
     .Ti_points = 4, .Td_points = 5, .Ti_low = 40, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 2};
 
-bool has_setpoint(const Problem& problem) {
+bool has_setpoint(const DesignProblem& problem) {
     return problem.objective == Objective::setpoint_iae || problem.objective == Objective::weighted;
 }
 
@@ -42,28 +42,28 @@ bool is_resonant(const LinearPlant& plant) {
     });
 }
 
-bool has_resonant_plant(const Problem& problem) {
+bool has_resonant_plant(const DesignProblem& problem) {
     if (problem.measured) return false;
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (is_resonant(problem.plant_at(i))) return true;
     return false;
 }
 
-bool has_kinks(const Problem& problem) {
+bool has_kinks(const DesignProblem& problem) {
     return has_setpoint(problem) || (problem.objective == Objective::load_iae && has_resonant_plant(problem));
 }
 
 /// Runs of the quadratic programming from one start after the other; the cheapest design counts.
 class Runs {
 public:
-    Runs(const Sweep& sweep, const Problem& problem, const Report& report)
+    Runs(const Sweep& sweep, const DesignProblem& problem, const Report& report)
         : sweep_(sweep), problem_(problem), report_(report) {}
 
     /// A start without a settled response may be given: nothing then comes of it.
     void from(const std::optional<Candidate>& start) {
         if (!start || stopped()) return;
         bool stop = false;
-        const Report watch = [&](const Point& x, double cost) {
+        const Report watch = [&](const DesignPoint& x, double cost) {
             stop =
                 report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
             return !stop && !known(x);
@@ -89,10 +89,10 @@ public:
 
 private:
     void simplex() {
-        const Point start = best_->x;
+        const DesignPoint start = best_->x;
         // The unknowns are steps from the start: a logarithm's own size depends on the unit of time.
         const auto cost = [&](const std::vector<double>& step, bool& stop) {
-            Point x = start;
+            DesignPoint x = start;
             for (std::size_t i = 0; i < step.size(); ++i) x[i] += step[i];
             const auto feasible = feasible_near(sweep_, x);
             if (!feasible) return kNoDesign;
@@ -114,8 +114,8 @@ private:
         best_->stopped = stop;
     }
 
-    bool known(const Point& x) const {
-        return std::ranges::any_of(ends_, [&](const Point& end) {
+    bool known(const DesignPoint& x) const {
+        return std::ranges::any_of(ends_, [&](const DesignPoint& end) {
             for (std::size_t i = 0; i < 3; ++i)
                 if (std::abs(x[i] - end[i]) > kSameDesign) return false;
             return true;
@@ -123,17 +123,17 @@ private:
     }
 
     const Sweep& sweep_;
-    const Problem& problem_;
+    const DesignProblem& problem_;
     const Report& report_;
-    std::vector<Point> ends_;
+    std::vector<DesignPoint> ends_;
     std::optional<Found> best_;
 };
 
 /// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
 /// against the least one and against a long one.
-void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem, std::vector<ScanPoint> points) {
+void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& problem, std::vector<ScanPoint> points) {
     const double shortest = std::log(kMinTd / sweep.reference()), ordinary = std::log(kShortTd / sweep.reference());
-    const Point end = runs.best()->x;
+    const DesignPoint end = runs.best()->x;
     if (end[2] > ordinary) return;
     runs.from(Candidate{.x = {end[0], end[1], shortest}});
     std::erase_if(points, [&](const ScanPoint& point) { return point.x[2] <= ordinary; });
@@ -141,7 +141,7 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const Problem& problem
 }
 
 /// Where a long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
-void look_at_long_Ti(Runs& runs, const Sweep& sweep, const Problem& problem) {
+void look_at_long_Ti(Runs& runs, const Sweep& sweep, const DesignProblem& problem) {
     const auto points = scan(sweep, kLongTiBox);
     const double before = runs.best()->log_cost;
     const auto best = cheapest(problem, points, before + kHopeless);
@@ -151,7 +151,8 @@ void look_at_long_Ti(Runs& runs, const Sweep& sweep, const Problem& problem) {
         if (start.log_cost < before + kHopeless) runs.from(start);
 }
 
-void look_for_valleys(Runs& runs, const Sweep& sweep, const Problem& problem, const std::vector<ScanPoint>& points) {
+void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& problem,
+                      const std::vector<ScanPoint>& points) {
     // Under a limit on |C S| gain is traded against filtering, with several valleys along Td.
     if (problem.limits.Mks)
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
@@ -164,7 +165,7 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const Problem& problem, co
 
 }  // namespace
 
-std::optional<Found> fast_search(const Sweep& sweep, const Problem& problem, const Report& report) {
+std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
     std::vector<ScanPoint> points = scan(sweep);
     if (points.empty()) points = scan(sweep, {.Ti_points = 27, .Td_points = 21});
     if (points.empty()) return std::nullopt;

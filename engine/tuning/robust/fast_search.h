@@ -9,6 +9,6 @@
 namespace tunewright::robust {
 
 /// Empty: no feasible controller was seen.
-std::optional<Found> fast_search(const Sweep& sweep, const Problem& problem, const Report& report);
+std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
 
 }  // namespace tunewright::robust

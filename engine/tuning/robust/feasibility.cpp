@@ -25,7 +25,7 @@ double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains
 
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
-double larger_peak(const Problem& problem, const Point& x) {
+double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
     const ParallelPid gains = to_parallel(controller_at(problem, x));
     if (problem.measured) return larger_measured_peak(*problem.measured, gains);
     double largest = 0;
@@ -39,7 +39,7 @@ double larger_peak(const Problem& problem, const Point& x) {
 }
 
 /// A feasible point under ever wider limits.
-std::optional<Point> stabilising_point(Problem problem, double reference) {
+std::optional<DesignPoint> stabilising_point(DesignProblem problem, double reference) {
     for (double excess = 0.5; excess < 40; excess *= 1.6) {
         problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
         const Sweep sweep(problem, reference);
@@ -51,7 +51,7 @@ std::optional<Point> stabilising_point(Problem problem, double reference) {
 
 }  // namespace
 
-std::optional<LeastPeak> least_common_peak(const Problem& problem) {
+std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
     const double reference = reference_frequency(problem);
     const auto start = stabilising_point(problem, reference);
     if (!start) return std::nullopt;
@@ -59,15 +59,15 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem) {
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
     const double longest = std::log(kFarTi / reference), shortest = std::log(kFarTd / reference);
-    Point centre = *start;
+    DesignPoint centre = *start;
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {
-        Point x = centre;
+        DesignPoint x = centre;
         for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
         return x;
     };
     const auto cost = [&](const std::vector<double>& step, bool&) {
-        const Point x = stepped(step);
+        const DesignPoint x = stepped(step);
         const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
         return larger_peak(problem, x) + 0.1 * beyond;
     };
@@ -83,14 +83,14 @@ std::optional<LeastPeak> least_common_peak(const Problem& problem) {
     return LeastPeak{std::exp(least), centre};
 }
 
-std::optional<Point> feasible_near(const Sweep& sweep, const Point& x) {
+std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& x) {
     auto moved = restore(sweep, x);
     return moved && is_stable(sweep.problem(), *moved) ? moved : std::nullopt;
 }
 
-bool has_no_finite_optimum(const Problem& problem) {
+bool has_no_finite_optimum(const DesignProblem& problem) {
     for (std::size_t i = 0; i < problem.others.size(); ++i) {
-        Problem alone = problem;
+        DesignProblem alone = problem;
         alone.plant = &problem.others[i];
         alone.others = {};
         if (!has_no_finite_optimum(alone)) return false;
@@ -106,7 +106,7 @@ bool has_no_finite_optimum(const Problem& problem) {
     if (excess <= 1 || !tied) return true;
     // Far above every corner the plant is K/s^2: feasible there means feasible at every higher speed.
     const auto asymptote = LinearPlant::make(Zpk{.K = problem.sign, .zeros = {}, .poles = {0.0, 0.0}, .L = 0});
-    Problem limit = problem;
+    DesignProblem limit = problem;
     limit.plant = &*asymptote;
     limit.others = {};
     limit.sign = 1;

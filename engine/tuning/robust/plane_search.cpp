@@ -14,7 +14,7 @@ constexpr int kGridPoints = 25;
 constexpr double kGridReach = 3.0;  // ln: a factor of 20 to either side
 
 /// Newton in ln(Kp) alone, from the grid's tangency to the refined peak's.
-void tighten(const Sweep& sweep, Point& x, bool upper_end) {
+void tighten(const Sweep& sweep, DesignPoint& x, bool upper_end) {
     for (int k = 0; k < 4; ++k) {
         const auto peaks = sweep.peaks(x, -0.05);
         if (peaks.empty()) return;
@@ -31,9 +31,9 @@ void tighten(const Sweep& sweep, Point& x, bool upper_end) {
     }
 }
 
-struct Search {
+struct PlaneSearch {
     const Sweep* sweep;
-    const Problem* problem;
+    const DesignProblem* problem;
     const Report* report;
     std::optional<Found> best;
 
@@ -51,11 +51,12 @@ struct Search {
 
 }  // namespace
 
-std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, double Ti, double Td, double tolerance) {
+std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                               double tolerance) {
     std::optional<Found> best;
     const auto gains = feasible_gains(sweep, Ti, Td);
     for (std::size_t i = 0; i < gains.size(); ++i) {
-        Point x = {std::log(gains[i]), std::log(Ti), problem.pid ? std::log(Td) : 0};
+        DesignPoint x = {std::log(gains[i]), std::log(Ti), problem.pid ? std::log(Td) : 0};
         tighten(sweep, x, i % 2 == 0);  // the ends of a gap follow each other, the upper one first
         if (best && log_cost_bound(problem, x) >= best->log_cost) continue;
         const auto peaks = sweep.peaks(x, -0.05);
@@ -66,9 +67,9 @@ std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, doubl
     return best;
 }
 
-std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& problem, double Ti, double Td,
+std::optional<Found> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
                                         const Report& report) {
-    Search search{&sweep, &problem, &report, std::nullopt};
+    PlaneSearch search{&sweep, &problem, &report, std::nullopt};
     // The unknowns are steps from the first corner: a logarithm's own size depends on the unit of time.
     const auto cost = [&](const std::vector<double>& step, bool& stop) {
         const double value = search.cost(std::log(Ti) + step[0], problem.pid ? std::log(Td) + step[1] : 0);
@@ -81,9 +82,9 @@ std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& probl
     return search.best;
 }
 
-std::optional<Found> grid_search(const Sweep& sweep, const Problem& problem, double Ti, double Td, CostSurface* surface,
-                                 const Report& report) {
-    Search search{&sweep, &problem, &report, std::nullopt};
+std::optional<Found> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                 CostSurface* surface, const Report& report) {
+    PlaneSearch search{&sweep, &problem, &report, std::nullopt};
     double centre_Ti = std::log(Ti), centre_Td = std::log(std::max(Td, 1e-300)), reach = kGridReach;
     const int Td_points = problem.pid ? kGridPoints : 1;
     for (int round = 0; round < 4; ++round, reach /= 6) {

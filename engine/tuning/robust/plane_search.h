@@ -9,16 +9,17 @@
 namespace tunewright::robust {
 
 /// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
-std::optional<Found> best_gain(const Sweep& sweep, const Problem& problem, double Ti, double Td, double tolerance);
+std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                               double tolerance);
 
 /// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hagglund 2008,
 /// section 4.2).
-std::optional<Found> nelder_mead_search(const Sweep& sweep, const Problem& problem, double Ti, double Td,
+std::optional<Found> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
                                         const Report& report);
 
 /// Gridding around (Ti, Td), refined three times around the best cell. `surface`, if given, receives the cost over the
 /// first grid.
-std::optional<Found> grid_search(const Sweep& sweep, const Problem& problem, double Ti, double Td, CostSurface* surface,
-                                 const Report& report);
+std::optional<Found> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                 CostSurface* surface, const Report& report);
 
 }  // namespace tunewright::robust

@@ -73,8 +73,8 @@ double first_sign(const LinearPlant& plant) {
 bool pid_wanted(const RobustOptions& options) { return options.controller == ControllerKind::PID; }
 
 /// All but the plant and the sign of Kp.
-Problem make_problem(const RobustOptions& options, const FilterRule& filter) {
-    Problem problem;
+DesignProblem make_problem(const RobustOptions& options, const FilterRule& filter) {
+    DesignProblem problem;
     problem.pid = pid_wanted(options);
     problem.filter = filter;
     problem.limits.Ms = options.Ms;
@@ -94,7 +94,7 @@ PlaneStart amigo_start(const TuningProblem& tuning, ControllerKind controller) {
 }
 
 /// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
-std::optional<Error> check_Mks(const Problem& problem) {
+std::optional<Error> check_Mks(const DesignProblem& problem) {
     double least = 0;
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (problem.plant_at(i).integrators() == 0)
@@ -106,7 +106,7 @@ std::optional<Error> check_Mks(const Problem& problem) {
                      " already at rest. Give a limit well above that."};
 }
 
-Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& problem, const Point& x) {
+Warning exceeded_inside(const std::vector<LinearPlant>& found, const DesignProblem& problem, const DesignPoint& x) {
     double worst = 0;
     for (const auto& plant : found) worst = std::max(worst, excess_on(plant, problem, x, {}));
     return {"limit-exceeded-inside",
@@ -115,7 +115,7 @@ Warning exceeded_inside(const std::vector<LinearPlant>& found, const Problem& pr
                 text(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
 }
 
-void add_warnings(TunedController& result, const Problem& problem, const Point& x) {
+void add_warnings(TunedController& result, const DesignProblem& problem, const DesignPoint& x) {
     const double reference = reference_frequency(problem), Ti = std::exp(x[1]);
     if (Ti * reference < 1e-3 || (problem.pid && std::exp(x[2]) * reference > 1e3))
         result.warnings.push_back(
@@ -124,20 +124,20 @@ void add_warnings(TunedController& result, const Problem& problem, const Point& 
 }
 
 /// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
-Expected<Problem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options) {
+Expected<DesignProblem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options) {
     if (tuning.linear.integrators() < 0)
         return Error{ErrorKind::unstable_plant, "",
                      "The plant has a zero at s = 0: integral action cancels it and the loop cannot be stable. Use a "
                      "controller without integral action."};
     const auto filter = filter_rule(tuning, options.filter, pid_wanted(options));
     if (!filter) return filter.error();
-    Problem problem = make_problem(options, *filter);
+    DesignProblem problem = make_problem(options, *filter);
     problem.plant = &tuning.linear;
     problem.sign = first_sign(tuning.linear);
     return problem;
 }
 
-std::optional<Error> without_optimum(const Problem& problem) {
+std::optional<Error> without_optimum(const DesignProblem& problem) {
     if (auto error = check_Mks(problem)) return error;
     if (!has_no_finite_optimum(problem)) return std::nullopt;
     return Error{ErrorKind::unbounded_optimum, "filter",
@@ -150,7 +150,7 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
                                       const RunControl& control) {
     auto posed = nominal_problem(tuning, options);
     if (!posed) return posed.error();
-    Problem problem = *posed;
+    DesignProblem problem = *posed;
     auto others = other_members(tuning, first_sign);
     if (!others) return others.error();
     problem.others = *others;
@@ -171,7 +171,7 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
         }
         others->insert(others->end(), added.begin(), added.end());
         problem.others = *others;
-        const Point before = found->x;
+        const DesignPoint before = found->x;
         found = verified_search(kind, problem, start, nullptr, control, &before);
     }
     if (!found) return found.error();
@@ -194,7 +194,7 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
     const auto filter = explicit_filter(options.filter, pid_wanted(options));
     if (!filter) return filter.error();
     const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = 0.1};
-    Problem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
+    DesignProblem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
     problem.measured = &plant;
     problem.sign = plant.gain_sign();
     problem.objective = Objective::load_ie;
@@ -287,12 +287,12 @@ Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& contro
         nearest = &*design;
         distance = apart(M, other);
     }
-    std::optional<Point> before;
+    std::optional<DesignPoint> before;
     if (nearest != nullptr) {
         const Pid& pid = nearest->controller;
-        before = Point{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
+        before = DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
     }
-    Problem problem = *posed;
+    DesignProblem problem = *posed;
     auto found =
         verified_search(SearchKind::fast, problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
     if (before && (!found || !in_order(M, std::exp(found->log_cost)))) {

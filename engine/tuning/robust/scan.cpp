@@ -23,7 +23,7 @@ bool stable_at_low_gain(const LinearPlant& plant, double sign) {
     return sign * plant.low_frequency_gain() > 0;
 }
 
-bool first_gap_is_stable(const Problem& problem) {
+bool first_gap_is_stable(const DesignProblem& problem) {
     if (problem.measured) return false;
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (!stable_at_low_gain(problem.plant_at(i), problem.sign)) return false;
@@ -33,7 +33,7 @@ bool first_gap_is_stable(const Problem& problem) {
 }  // namespace
 
 std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
-    const Problem& problem = sweep.problem();
+    const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
     std::vector<double> gains;
     const bool first_is_stable = first_gap_is_stable(problem);
@@ -50,7 +50,7 @@ std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
 }
 
 std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box) {
-    const Problem& problem = sweep.problem();
+    const DesignProblem& problem = sweep.problem();
     const double unit = 1 / sweep.reference();
     std::vector<ScanPoint> found;
     const auto Td_values =

@@ -8,7 +8,7 @@
 namespace tunewright::robust {
 
 struct ScanPoint {
-    Point x{};
+    DesignPoint x{};
     double log_ie = 0;  ///< ln(Ti/|Kp|), a lower bound of ln(load IAE)
 };
 

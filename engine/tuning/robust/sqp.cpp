@@ -19,7 +19,7 @@ double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1
 Vector3 times(const Matrix3& H, const Vector3& v) { return {dot(H[0], v), dot(H[1], v), dot(H[2], v)}; }
 double longest(const Vector3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
 
-Point moved(const Point& x, const Vector3& p) { return {x[0] + p[0], x[1] + p[1], x[2] + p[2]}; }
+DesignPoint moved(const DesignPoint& x, const Vector3& p) { return {x[0] + p[0], x[1] + p[1], x[2] + p[2]}; }
 
 /// BFGS on the Lagrangian with Powell's damping: stays positive definite where the constraints' curvature is not.
 void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
@@ -39,7 +39,7 @@ void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
 }
 
 /// The peaks' linear models and the trust region, which ends at the bounds of Ti and Td, for a step from x.
-std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const Point& x,
+std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const DesignPoint& x,
                                          double radius, std::size_t most) {
     std::vector<LinearConstraint> constraints;
     for (const auto& peak : peaks) {
@@ -74,7 +74,7 @@ Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
 
 }  // namespace
 
-bool is_stable(const Problem& problem, const Point& x) {
+bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
     const ParallelPid gains = to_parallel(controller_at(problem, x));
     if (problem.measured) {
         const auto loop = MeasuredLoop::make(*problem.measured, gains);
@@ -87,7 +87,7 @@ bool is_stable(const Problem& problem, const Point& x) {
     return true;
 }
 
-std::optional<Point> restore(const Sweep& sweep, Point x) {
+std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
     const int n = sweep.problem().dimension();
     Matrix3 identity{};
     for (std::size_t i = 0; i < 3; ++i) identity[i][i] = 1;
@@ -106,8 +106,8 @@ std::optional<Point> restore(const Sweep& sweep, Point x) {
     return std::nullopt;
 }
 
-SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& start, const SqpOptions& options,
-                   const Report& report) {
+SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& start,
+                   const SqpOptions& options, const Report& report) {
     const int n = problem.dimension();
     SqpResult result;
     result.x = restore(sweep, start).value_or(start);

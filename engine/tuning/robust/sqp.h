@@ -18,24 +18,24 @@ struct SqpOptions {
 };
 
 struct SqpResult {
-    Point x{};
+    DesignPoint x{};
     double log_cost = 0;
     int iterations = 0;
     bool converged = false;
 };
 
 /// `report` is called after every accepted step; false stops the search.
-using Report = std::function<bool(const Point&, double log_cost)>;
+using Report = std::function<bool(const DesignPoint&, double log_cost)>;
 
 /// `start` must be stable and feasible to 1e-3.
-SqpResult minimise(const Sweep& sweep, const Problem& problem, const Point& start, const SqpOptions& options,
-                   const Report& report);
+SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& start,
+                   const SqpOptions& options, const Report& report);
 
 /// Moves x to the feasible side by Newton steps on the violated peaks, along the shortest way. The steps aim 1e-7
 /// inside (of a constraint's logarithm); up to 1e-8 outside is accepted. Empty if that does not succeed.
-std::optional<Point> restore(const Sweep& sweep, Point x);
+std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x);
 
 /// Is the loop at x stable, on every plant?
-bool is_stable(const Problem& problem, const Point& x);
+bool is_stable(const DesignProblem& problem, const DesignPoint& x);
 
 }  // namespace tunewright::robust

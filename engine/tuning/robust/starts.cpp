@@ -17,7 +17,7 @@ constexpr double kWiderLimits = 1.4;  // times M - 1
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
 
-void consider(Candidate& best, const Problem& problem, const Point& x) {
+void consider(Candidate& best, const DesignProblem& problem, const DesignPoint& x) {
     if (log_cost_bound(problem, x) >= best.log_cost) return;
     const double cost = log_cost(problem, x, kScanTolerance);
     if (cost < best.log_cost) best = {x, cost};
@@ -25,7 +25,7 @@ void consider(Candidate& best, const Problem& problem, const Point& x) {
 
 /// The least integrated error Ti/Kp costs sweeps only, and often is next to the optimum (Garpinger and Hagglund 2008;
 /// Hast et al. 2013).
-Point least_integrated_error(const Sweep& sweep, Problem problem, const Point& start) {
+DesignPoint least_integrated_error(const Sweep& sweep, DesignProblem problem, const DesignPoint& start) {
     problem.objective = Objective::load_ie;
     SqpOptions options;
     options.cost_tolerance = 1e-4;
@@ -38,8 +38,9 @@ std::optional<Candidate> if_below(const Candidate& best, double below) {
 
 }  // namespace
 
-std::optional<Candidate> best_start(const Sweep& sweep, const Problem& problem, const std::vector<ScanPoint>& points) {
-    const Point integrated = least_integrated_error(sweep, problem, points.front().x);
+std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& problem,
+                                    const std::vector<ScanPoint>& points) {
+    const DesignPoint integrated = least_integrated_error(sweep, problem, points.front().x);
     Candidate best;
     if (is_stable(problem, integrated)) consider(best, problem, integrated);
     int compared = 0;
@@ -55,7 +56,7 @@ std::optional<Candidate> best_start(const Sweep& sweep, const Problem& problem, 
     return std::nullopt;
 }
 
-std::vector<Candidate> valley_starts(const Problem& problem, const std::vector<ScanPoint>& points) {
+std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points) {
     std::vector<Candidate> starts;
     for (const auto& point : points) {
         const auto same_Td = [&](const Candidate& c) { return std::abs(c.x[2] - point.x[2]) < 1e-9; };
@@ -71,14 +72,14 @@ std::vector<Candidate> valley_starts(const Problem& problem, const std::vector<S
     return starts;
 }
 
-std::optional<Candidate> cheapest(const Problem& problem, const std::vector<ScanPoint>& points, double below) {
+std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points, double below) {
     Candidate best{.log_cost = below};
     for (const auto& point : points) consider(best, problem, point.x);
     return if_below(best, below);
 }
 
-std::optional<Candidate> cheapest_island(const Sweep& sweep, const Problem& problem, double below) {
-    Problem wider = problem;
+std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem& problem, double below) {
+    DesignProblem wider = problem;
     for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
     Candidate best{.log_cost = below};
     for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox)) {

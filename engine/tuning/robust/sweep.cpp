@@ -17,7 +17,7 @@ constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::vector<double> frequencies(const Problem& problem, const LinearPlant& plant, double reference,
+std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant& plant, double reference,
                                 double resolved_to) {
     const double L = plant.dead_time();
     double high = reference * std::pow(10, kDecades);
@@ -61,7 +61,7 @@ double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits&
 
 }  // namespace
 
-Sweep::Sweep(const Problem& problem, double reference) : problem_(problem), reference_(reference) {
+Sweep::Sweep(const DesignProblem& problem, double reference) : problem_(problem), reference_(reference) {
     if (problem.measured) curves_.push_back(measured_curve());
     for (std::size_t i = 0; !problem.measured && i < problem.plants(); ++i) curves_.push_back(curve_of(i));
     for (Curve& curve : curves_) complete(curve);
@@ -114,7 +114,7 @@ void Sweep::complete(Curve& curve) const {
     for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());
 }
 
-Sweep::Shape Sweep::shape(const Point& x) const {
+Sweep::Shape Sweep::shape(const DesignPoint& x) const {
     const Pid pid = controller_at(problem_, x);
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
@@ -250,7 +250,7 @@ void Sweep::fill_levels(Curve& curve, const Shape& c) const {
     }
 }
 
-std::vector<ActivePeak> Sweep::peaks(const Point& x, double threshold) const {
+std::vector<ActivePeak> Sweep::peaks(const DesignPoint& x, double threshold) const {
     const Shape c = shape(x);
     std::vector<ActivePeak> found;
     for (Curve& curve : curves_) {
@@ -351,7 +351,7 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
     return gaps;
 }
 
-double reference_frequency(const Problem& problem) {
+double reference_frequency(const DesignProblem& problem) {
     if (problem.measured) return problem.measured->phase_crossover().value_or(problem.measured->high() / 3);
     const LinearPlant& plant = *problem.plant;
     const double L = plant.dead_time();

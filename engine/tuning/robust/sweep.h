@@ -34,22 +34,22 @@ struct GainGap {
 class Sweep {
 public:
     /// `reference` is the frequency around which the loop will live (phase crossover or the like).
-    Sweep(const Problem& problem, double reference);
+    Sweep(const DesignProblem& problem, double reference);
 
     /// All local maxima above `threshold` on every plant, and the limits at frequency infinity; the largest value
     /// first.
-    std::vector<ActivePeak> peaks(const Point& x, double threshold) const;
+    std::vector<ActivePeak> peaks(const DesignPoint& x, double threshold) const;
 
     /// The gaps left by the union of all forbidden intervals of |Kp| for given Ti, Td (Garpinger and Hagglund 2008, Eq.
     /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 
     /// The constraint's value on the nominal plant at one frequency, exactly.
-    double value(ConstraintKind kind, const Point& x, double omega) const {
+    double value(ConstraintKind kind, const DesignPoint& x, double omega) const {
         return value(curves_.front(), kind, shape(x), omega);
     }
 
-    const Problem& problem() const { return problem_; }
+    const DesignProblem& problem() const { return problem_; }
     double reference() const { return reference_; }
 
 private:
@@ -70,7 +70,7 @@ private:
     Curve measured_curve() const;
     void complete(Curve& curve) const;  // what follows from its frequencies
     std::complex<double> plant_at(const Curve& curve, double omega) const;
-    Shape shape(const Point& x) const;
+    Shape shape(const DesignPoint& x) const;
     double value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
     void fill_levels(Curve& curve, const Shape& c) const;
     void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Shape& c,
@@ -80,7 +80,7 @@ private:
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;
     std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
 
-    Problem problem_;
+    DesignProblem problem_;
     double reference_;
     double circle_centre_ = 0, circle_radius_ = 0;
     mutable std::vector<Curve> curves_;
@@ -88,6 +88,6 @@ private:
 
 /// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
 /// falls through -180 degrees; else 1/L; else the filter's or the slowest lag's corner.
-double reference_frequency(const Problem& problem);
+double reference_frequency(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

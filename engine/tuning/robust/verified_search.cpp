@@ -17,7 +17,7 @@ namespace {
 constexpr double kAllowedExcess = 2e-5;
 
 /// The largest relative excess over a limit, on a grid that the search never saw.
-double measured_excess(const Problem& problem, const Point& x) {
+double measured_excess(const DesignProblem& problem, const DesignPoint& x) {
     if (problem.measured) return excess_on_points(problem, x);
     double worst = -1;
     for (std::size_t i = 0; i < problem.plants(); ++i)
@@ -25,7 +25,7 @@ double measured_excess(const Problem& problem, const Point& x) {
     return worst;
 }
 
-Problem tightened(Problem problem, double relative) {
+DesignProblem tightened(DesignProblem problem, double relative) {
     problem.limits.Ms = 1 + (problem.limits.Ms - 1) * (1 - relative);
     problem.limits.Mt = 1 + (problem.limits.Mt - 1) * (1 - relative);
     if (problem.limits.Mks) *problem.limits.Mks *= 1 - relative;
@@ -34,9 +34,9 @@ Problem tightened(Problem problem, double relative) {
 
 class ProgressReport {
 public:
-    ProgressReport(const Problem& problem, const RunControl& control) : problem_(problem), control_(control) {}
+    ProgressReport(const DesignProblem& problem, const RunControl& control) : problem_(problem), control_(control) {}
 
-    bool operator()(const Point& x, double log_cost) {
+    bool operator()(const DesignPoint& x, double log_cost) {
         ++steps_;
         if (control_.progress) {
             Progress progress;
@@ -53,12 +53,12 @@ public:
     }
 
 private:
-    const Problem& problem_;
+    const DesignProblem& problem_;
     const RunControl& control_;
     int steps_ = 0;
 };
 
-std::optional<Found> search(SearchKind kind, const Sweep& sweep, const Problem& problem, PlaneStart start,
+std::optional<Found> search(SearchKind kind, const Sweep& sweep, const DesignProblem& problem, PlaneStart start,
                             CostSurface* surface, const Report& report) {
     if (kind == SearchKind::fast && surface == nullptr) return fast_search(sweep, problem, report);
     if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
@@ -72,10 +72,10 @@ std::optional<Found> search(SearchKind kind, const Sweep& sweep, const Problem& 
 }
 
 /// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
-bool has_reference_optima(Problem& problem, const Sweep& sweep) {
+bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     if (problem.objective != Objective::weighted) return true;
     for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
-        Problem alone = problem;
+        DesignProblem alone = problem;
         alone.objective = part;
         const auto found = fast_search(sweep, alone, {});
         if (!found) return false;
@@ -86,7 +86,7 @@ bool has_reference_optima(Problem& problem, const Sweep& sweep) {
 
 /// Where the scan saw nothing: the feasible set may be a small one around the least peak, or belong to the other sign
 /// of Kp.
-std::optional<Found> search_from_least_peak(Problem& problem, const Report& report) {
+std::optional<Found> search_from_least_peak(DesignProblem& problem, const Report& report) {
     for (int attempt = 0; attempt < 2; ++attempt, problem.sign = -problem.sign) {
         const auto least = least_common_peak(problem);
         if (!least) continue;
@@ -101,12 +101,12 @@ std::optional<Found> search_from_least_peak(Problem& problem, const Report& repo
 }
 
 /// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
-std::optional<Found> search_again(const Sweep& sweep, const Problem& problem, const Point& before,
+std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& before,
                                   const Report& report) {
     const auto start = feasible_near(sweep, before);
     if (!start) return std::nullopt;
     bool stopped = false;
-    const Report watch = [&](const Point& x, double cost) {
+    const Report watch = [&](const DesignPoint& x, double cost) {
         stopped = report && !report(x, cost);
         return !stopped;
     };
@@ -117,7 +117,7 @@ std::optional<Found> search_again(const Sweep& sweep, const Problem& problem, co
 
 /// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
 /// is.
-std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
+std::optional<double> workable_limit(DesignProblem problem, const LeastPeak& least) {
     for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
         problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
         if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
@@ -125,12 +125,12 @@ std::optional<double> workable_limit(Problem problem, const LeastPeak& least) {
     return std::nullopt;
 }
 
-std::string on_plants(const Problem& problem) {
+std::string on_plants(const DesignProblem& problem) {
     return problem.others.empty() ? " on this plant"
                                   : " on all " + std::to_string(problem.plants()) + " plants looked at";
 }
 
-Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& least) {
+Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least) {
     const std::string name = problem.pid ? "PID" : "PI";
     if (!least)
         return {ErrorKind::unstable_plant, "",
@@ -158,11 +158,11 @@ Error why_infeasible(const Problem& problem, const std::optional<LeastPeak>& lea
 
 }  // namespace
 
-Expected<Found> verified_search(SearchKind kind, Problem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const Point* before) {
+Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
+                                const RunControl& control, const DesignPoint* before) {
     const double reference = reference_frequency(problem);
     ProgressReport progress(problem, control);
-    const Report report = [&](const Point& x, double cost) { return progress(x, cost); };
+    const Report report = [&](const DesignPoint& x, double cost) { return progress(x, cost); };
     const Sweep sweep(problem, reference);
     std::optional<Found> found;
     if (has_reference_optima(problem, sweep)) {
@@ -179,7 +179,7 @@ Expected<Found> verified_search(SearchKind kind, Problem& problem, const PlaneSt
         if (excess <= 0.5 * kAllowedExcess) return *found;
         if (!std::isfinite(excess) || round == 3) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
-        const Problem narrowed = tightened(problem, std::min(tighter, 0.5));
+        const DesignProblem narrowed = tightened(problem, std::min(tighter, 0.5));
         const Sweep narrow_sweep(narrowed, reference);
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
         found->x = again.x;

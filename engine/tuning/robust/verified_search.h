@@ -25,7 +25,7 @@ using PlaneStart = std::optional<std::pair<double, double>>;
 /// `problem` receives the reference optima of a weighted objective and the sign of
 /// Kp that was found to work. Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.
-Expected<Found> verified_search(SearchKind kind, Problem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const Point* before);
+Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
+                                const RunControl& control, const DesignPoint* before);
 
 }  // namespace tunewright::robust

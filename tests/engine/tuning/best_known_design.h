@@ -31,8 +31,8 @@ inline Expected<TunedController> designed(const DesignTask& task, const std::str
 }
 
 /// The problem that a design answered. `linear` must outlive it.
-inline robust::Problem problem_of(const DesignTask& task, const LinearPlant& linear, const Pid& design) {
-    robust::Problem problem;
+inline robust::DesignProblem problem_of(const DesignTask& task, const LinearPlant& linear, const Pid& design) {
+    robust::DesignProblem problem;
     problem.plant = &linear;
     problem.sign = design.Kp < 0 ? -1 : 1;
     problem.limits.Ms = problem.limits.Mt = task.M;
@@ -46,19 +46,20 @@ inline robust::Problem problem_of(const DesignTask& task, const LinearPlant& lin
     return problem;
 }
 
-inline robust::Point point_of(const Pid& pid) {
+inline robust::DesignPoint point_of(const Pid& pid) {
     return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
 }
 
 /// The cost to five digits or more; empty where a limit is exceeded by more than the product allows itself.
-inline std::optional<double> checked_cost(const robust::Problem& problem, const robust::Point& x) {
+inline std::optional<double> checked_cost(const robust::DesignProblem& problem, const robust::DesignPoint& x) {
     if (robust::excess_on(*problem.plant, problem, x, {.step = 0.05, .density = 60}) > 2e-5) return std::nullopt;
     const double cost = robust::log_cost(problem, x, 1e-6);
     return std::isfinite(cost) ? std::optional(std::exp(cost)) : std::nullopt;
 }
 
 /// The least cost that quadratic programming reaches from `count` random feasible points of the (Ti, Td) plane.
-inline std::optional<double> best_from_random_starts(const robust::Problem& problem, int count, std::uint64_t seed) {
+inline std::optional<double> best_from_random_starts(const robust::DesignProblem& problem, int count,
+                                                     std::uint64_t seed) {
     const robust::Sweep sweep(problem, robust::reference_frequency(problem));
     const double unit = 1 / sweep.reference();
     Random random(seed);

@@ -19,7 +19,7 @@ bool expect_best_known(const DesignTask& task, int random_starts, std::uint64_t 
     const auto fast = designed(task, "fast"), simplex = designed(task, "nelder_mead");
     EXPECT_TRUE(fast || !simplex) << name;
     if (!fast) return false;
-    const robust::Problem problem = problem_of(task, linear, fast->controller);
+    const robust::DesignProblem problem = problem_of(task, linear, fast->controller);
     const auto cost = checked_cost(problem, point_of(fast->controller));
     EXPECT_TRUE(cost.has_value()) << name << " exceeds a limit";
     const auto best = best_from_random_starts(problem, random_starts, seed);
@@ -55,7 +55,7 @@ void expect_no_dearer_than(const Pid& known, const DesignTask& task) {
     const LinearPlant linear = *LinearPlant::make(task.plant);
     const auto fast = designed(task, "fast");
     ASSERT_TRUE(fast.has_value());
-    const robust::Problem problem = problem_of(task, linear, fast->controller);
+    const robust::DesignProblem problem = problem_of(task, linear, fast->controller);
     const auto other = checked_cost(problem, point_of(known)), cost = checked_cost(problem, point_of(fast->controller));
     ASSERT_TRUE(other.has_value() && cost.has_value());
     EXPECT_LE(*cost, *other * (1 + kAllowed));
@@ -74,7 +74,7 @@ TEST(RobustSearch, ASmallIslandOfHighGainIsFound) {
 TEST(RobustSearch, AnIntegralAloneBehindAHeavyFilterIsFound) {
     const RandomPlant drawn = random_plant(2070, true);
     const LinearPlant linear = *LinearPlant::make(drawn.plant);
-    robust::Problem problem;
+    robust::DesignProblem problem;
     problem.plant = &linear;
     const double unit = 1 / robust::reference_frequency(problem);
     Pid known;
@@ -142,7 +142,7 @@ TEST(RobustSearch, TheBoundIsNeverAboveTheCost) {
             const auto fast = designed(task, "fast");
             ASSERT_TRUE(fast.has_value()) << seed;
             const LinearPlant linear = *LinearPlant::make(drawn.plant);
-            const Problem problem = problem_of(task, linear, fast->controller);
+            const DesignProblem problem = problem_of(task, linear, fast->controller);
             const Sweep sweep(problem, reference_frequency(problem));
             int looked_at = 0;
             for (const auto& point : scan(sweep)) {

@@ -267,18 +267,18 @@ TEST(Sweep, GradientsAgreeWithDifferences) {
     const auto plant = LinearPlant::make(Sopdt{.K = 1, .T1 = 2, .T2 = 1, .L = 0.5});
     for (const bool tied : {true, false})
         for (const bool circle : {true, false}) {
-            Problem problem;
+            DesignProblem problem;
             problem.plant = &*plant;
             problem.limits = {.Ms = 1.3, .Mt = 1.2, .Mks = 3, .m_circle = circle};
             problem.filter = tied ? FilterRule{std::nullopt, 0.2} : FilterRule{0.1, std::nullopt};
             const Sweep sweep(problem, reference_frequency(problem));
-            const Point x = {std::log(2.0), std::log(2.5), std::log(0.6)};
+            const DesignPoint x = {std::log(2.0), std::log(2.5), std::log(0.6)};
             const auto peaks = sweep.peaks(x, -2);
             ASSERT_FALSE(peaks.empty());
             for (const auto& peak : peaks)
                 for (std::size_t i = 0; i < 3; ++i) {
                     if (!std::isfinite(peak.omega)) continue;
-                    Point up = x, down = x;
+                    DesignPoint up = x, down = x;
                     up[i] += 1e-5;
                     down[i] -= 1e-5;
                     const double slope =

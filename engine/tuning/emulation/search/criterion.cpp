@@ -14,7 +14,7 @@ constexpr int kMaxSteps = 20000;
 
 }  // namespace
 
-Criterion::Criterion(const Problem& problem, const std::vector<Trajectory>& trajectories)
+Criterion::Criterion(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories)
     : problem_(problem), trajectories_(trajectories), weights_(simpson_weights(problem)) {
     for (const Trajectory& trajectory : trajectories)
         at_rest_ += (problem.wy * trajectory.y_size + problem.wu * trajectory.u_size) /

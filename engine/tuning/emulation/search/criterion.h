@@ -22,7 +22,7 @@ struct Cost {
 /// By simulation on the nonlinear plant.
 class Criterion {
 public:
-    Criterion(const Problem& problem, const std::vector<Trajectory>& trajectories);
+    Criterion(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories);
 
     /// `stop` ends the run early.
     PidRun run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop = {}) const;
@@ -36,13 +36,13 @@ public:
     /// J, or where a run ended early more than that: the earlier, the more. Finite.
     double penalised(const Cost& cost) const;
 
-    const Problem& problem() const { return problem_; }
+    const EmulationProblem& problem() const { return problem_; }
     const std::vector<Trajectory>& trajectories() const { return trajectories_; }
 
 private:
     Cost weigh(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>* residuals) const;
 
-    const Problem& problem_;
+    const EmulationProblem& problem_;
     const std::vector<Trajectory>& trajectories_;
     std::vector<double> weights_;
     double at_rest_ = 0;  // J where nothing moves

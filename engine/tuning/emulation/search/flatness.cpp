@@ -15,20 +15,20 @@ constexpr int kStepRounds = 8;
 
 // Steps to either side at which the curvature of J stands out and is still that of the optimum.
 struct Differences {
-    Point step, curvature;
+    SettingsPoint step, curvature;
 };
 
-double second_difference(const std::function<double(const Point&)>& J, const Point& at, double J0, std::size_t i,
-                         double step) {
-    Point up = at, down = at;
+double second_difference(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& at, double J0,
+                         std::size_t i, double step) {
+    SettingsPoint up = at, down = at;
     up[i] += step;
     down[i] -= step;
     return (J(up) - 2 * J0 + J(down)) / (step * step);
 }
 
-std::optional<Differences> measure(const std::function<double(const Point&)>& J, const Point& at, const Point& sizes,
-                                   double J0) {
-    Differences found{Point(at.size()), Point(at.size())};
+std::optional<Differences> measure(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& at,
+                                   const SettingsPoint& sizes, double J0) {
+    Differences found{SettingsPoint(at.size()), SettingsPoint(at.size())};
     for (std::size_t i = 0; i < at.size(); ++i) {
         double step = kFirstStep * sizes[i];
         for (int round = 0; round < kStepRounds; ++round) {
@@ -46,8 +46,8 @@ std::optional<Differences> measure(const std::function<double(const Point&)>& J,
 
 }  // namespace
 
-std::optional<Flatness> flatness(const std::function<double(const Point&)>& J, const Point& optimum,
-                                 const Point& sizes) {
+std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& optimum,
+                                 const SettingsPoint& sizes) {
     const std::size_t n = optimum.size();
     const double J0 = J(optimum);
     if (!(J0 > 0)) return std::nullopt;
@@ -60,7 +60,7 @@ std::optional<Flatness> flatness(const std::function<double(const Point&)>& J, c
             double mixed = 0;
             for (const int a : {1, -1})
                 for (const int b : {1, -1}) {
-                    Point moved = optimum;
+                    SettingsPoint moved = optimum;
                     moved[i] += a * found->step[i];
                     moved[j] += b * found->step[j];
                     mixed += a * b * J(moved);

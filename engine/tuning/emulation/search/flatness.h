@@ -17,7 +17,7 @@ struct Flatness {
 
 /// `J` is finite near `optimum`, on both sides of bounds; `sizes` are those that the unknowns may have. An optimum on a
 /// bound counts with its curvature all the same. Empty: no curvature that could be told from rounding.
-std::optional<Flatness> flatness(const std::function<double(const Point&)>& J, const Point& optimum,
-                                 const Point& sizes);
+std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& optimum,
+                                 const SettingsPoint& sizes);
 
 }  // namespace tunewright::emulation

@@ -8,21 +8,21 @@
 
 namespace tunewright::emulation {
 
-using Point = std::vector<double>;
+using SettingsPoint = std::vector<double>;
 
 /// Their names, a bound and a coordinate of a Point for each.
-std::vector<std::string> unknowns(const Problem& problem);
+std::vector<std::string> unknowns(const EmulationProblem& problem);
 
 struct Bounds {
-    Point low, high;
+    SettingsPoint low, high;
 };
 
 /// The controller at a point: b = 1, the filter derivative with PID.
-Pid controller_at(const Problem& problem, const Point& point);
+Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
 
 /// Its point; a PI of a PID problem has Td = 0.
-Point point_of(const Problem& problem, const Pid& pid);
+SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid);
 
-Point clipped(const Point& point, const Bounds& bounds);
+SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
 
 }  // namespace tunewright::emulation

@@ -50,18 +50,18 @@ private:
     bool logarithmic_;
 };
 
-class Search {
+class SettingsSearch {
 public:
-    Search(const Criterion& criterion, const Bounds& bounds, const RunControl& control)
+    SettingsSearch(const Criterion& criterion, const Bounds& bounds, const RunControl& control)
         : criterion_(criterion), bounds_(bounds), control_(control) {
         for (std::size_t i = 0; i < bounds.low.size(); ++i) scales_.emplace_back(bounds.low[i], bounds.high[i]);
     }
 
-    std::optional<Optimum> run(const std::vector<Point>& starts) {
+    std::optional<Optimum> run(const std::vector<SettingsPoint>& starts) {
         std::vector<LocalMinimum> met = look_around();
-        for (const Point& start : starts) {
+        for (const SettingsPoint& start : starts) {
             if (stopped()) break;
-            const Point inside = clipped(start, bounds_);
+            const SettingsPoint inside = clipped(start, bounds_);
             met.push_back({units(inside), judged(inside, kCoarseTolerance)});
         }
         if (met.empty()) return std::nullopt;
@@ -91,17 +91,17 @@ private:
             best = best_so_far(*criterion_.problem().linear, controller_at(criterion_.problem(), best_.point));
         control_.progress({fraction, "tune", message, best});
     }
-    Point point_at(const std::vector<double>& q) const {
-        Point point(q.size());
+    SettingsPoint point_at(const std::vector<double>& q) const {
+        SettingsPoint point(q.size());
         for (std::size_t i = 0; i < q.size(); ++i) point[i] = scales_[i].from_unit(q[i]);
         return point;
     }
-    std::vector<double> units(const Point& point) const {
+    std::vector<double> units(const SettingsPoint& point) const {
         std::vector<double> q(point.size());
         for (std::size_t i = 0; i < q.size(); ++i) q[i] = std::clamp(scales_[i].to_unit(point[i]), 0.0, 1.0);
         return q;
     }
-    double judged(const Point& point, double tolerance) const {
+    double judged(const SettingsPoint& point, double tolerance) const {
         return criterion_.penalised(
             criterion_.cost(controller_at(criterion_.problem(), point), tolerance, control_.stop));
     }
@@ -138,13 +138,13 @@ private:
         std::vector<double> size, g, H;
     };
 
-    std::optional<Slope> slope_at(const Point& point, const std::vector<double>& residuals) const {
+    std::optional<Slope> slope_at(const SettingsPoint& point, const std::vector<double>& residuals) const {
         const std::size_t n = point.size();
         std::vector<std::vector<double>> columns(n);
         Slope slope{std::vector<double>(n), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
         for (std::size_t i = 0; i < n; ++i) {
             slope.size[i] = std::max(std::abs(point[i]), kMinSize * (bounds_.high[i] - bounds_.low[i]));
-            Point moved = point;
+            SettingsPoint moved = point;
             moved[i] += kDifference * slope.size[i];
             if (stopped()) return std::nullopt;
             const Cost cost = criterion_.cost(controller_at(criterion_.problem(), moved), kSearchTolerance,
@@ -165,7 +165,7 @@ private:
     }
 
     // Levenberg and Marquardt's step inside the box.
-    Point stepped(const Point& point, const Slope& slope, double damping) const {
+    SettingsPoint stepped(const SettingsPoint& point, const Slope& slope, double damping) const {
         const std::size_t n = point.size();
         std::vector<double> H = slope.H, low(n), high(n);
         for (std::size_t i = 0; i < n; ++i) {
@@ -174,13 +174,13 @@ private:
             high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kMaxStep));
         }
         const std::vector<double> d = best_step_in_box(H, slope.g, low, high);
-        Point next = point;
+        SettingsPoint next = point;
         for (std::size_t i = 0; i < n; ++i) next[i] += d[i] * slope.size[i];
         return clipped(next, bounds_);
     }
 
     // What the step should gain, relative to J.
-    static double expected_fall(const Point& from, const Point& to, const Slope& slope, double J) {
+    static double expected_fall(const SettingsPoint& from, const SettingsPoint& to, const Slope& slope, double J) {
         const std::size_t n = from.size();
         double fall = 0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -192,7 +192,7 @@ private:
     }
 
     // Whether it ends where no step promises anything.
-    bool polish(Point point) {
+    bool polish(SettingsPoint point) {
         std::vector<double> residuals, tried;
         Cost cost =
             criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop, residuals);
@@ -204,7 +204,7 @@ private:
             if (!slope) return false;
             for (;;) {
                 if (stopped()) return false;
-                const Point next = stepped(point, *slope, damping);
+                const SettingsPoint next = stepped(point, *slope, damping);
                 const double fall = expected_fall(point, next, *slope, cost.J);
                 if (fall < kFlat) return damping < kConfident;
                 Cost there =
@@ -224,7 +224,7 @@ private:
         return false;
     }
 
-    void keep(const Point& point, const Cost& cost) {
+    void keep(const SettingsPoint& point, const Cost& cost) {
         const double value = criterion_.penalised(cost);
         if (value >= best_value_) return;
         best_value_ = value;
@@ -238,7 +238,7 @@ private:
             if (stop) return kNotLookedAt;
             double outside = 0;
             for (const double x : q) outside += std::max(0.0, -x) + std::max(0.0, x - 1);
-            const Point point = point_at(q);
+            const SettingsPoint point = point_at(q);
             const Cost cost =
                 criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop);
             if (outside == 0) keep(point, cost);
@@ -260,9 +260,9 @@ private:
 
 }  // namespace
 
-std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds, const std::vector<Point>& starts,
-                                    const RunControl& control) {
-    return Search(criterion, bounds, control).run(starts);
+std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
+                                    const std::vector<SettingsPoint>& starts, const RunControl& control) {
+    return SettingsSearch(criterion, bounds, control).run(starts);
 }
 
 }  // namespace tunewright::emulation

@@ -9,15 +9,15 @@
 namespace tunewright::emulation {
 
 struct Optimum {
-    Point point;
+    SettingsPoint point;
     Cost cost;
     bool stopped = false;  ///< the best design so far
 };
 
 /// The least J: DIRECT over the box (NLopt) and `starts`, the best of them polished by bounded Levenberg-Marquardt
 /// steps, then by NLopt's subplex where those leave off before J is flat. Empty: stopped before anything was tried.
-std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds, const std::vector<Point>& starts,
-                                    const RunControl& control);
+std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
+                                    const std::vector<SettingsPoint>& starts, const RunControl& control);
 
 /// Of the last simulations, for J as precise as the answer tells it.
 constexpr double kFineTolerance = 1e-9;

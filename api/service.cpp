@@ -64,13 +64,15 @@ Problem timeout_too_long(double timeout_s, const JobLimits& limits) {
 /// `text` spells the request that is kept.
 template <class Spelling>
 std::variant<PreparedJob, Problem> prepared(const Json& value, const JobLimits& limits, const Spelling& text) {
-    const auto decoded = decode(value, job_contract());
+    auto decoded = decode(value, job_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
-    const auto& request = std::get<JobRequest>(decoded);
+    auto& request = std::get<JobRequest>(decoded);
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
-    return PreparedJob{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, text(),
-                       sha256_hex(canonical(value))};
+    PreparedJob job{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, text(),
+                    sha256_hex(canonical(value))};
+    job.request = std::make_shared<const JobRequest>(std::move(request));
+    return job;
 }
 
 /// What a batch's request leaves open about traces; one of the wrong kind is left to the contract.
@@ -115,32 +117,10 @@ std::string method_label(const JobRequest& request) {
     return request.tune.size() == 1 ? request.tune.front().method : "several";
 }
 
-}  // namespace
-
-std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
-    const auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    return prepared(std::get<Json>(parsed), limits, [&] { return compact(body); });
-}
-
-std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
-    auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    Json& value = std::get<Json>(parsed);
-    ask_for_no_traces(value);
-    return prepared(value, limits, [&] { return value.dump(); });
-}
-
-JobOutcome run_job(std::string_view request_json, const RunControl& control) {
-    const auto parsed = parse(request_json);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
-    const Json& value = std::get<Json>(parsed);
-    auto decoded = decode(value, job_contract());
-    if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
-    auto& request = std::get<JobRequest>(decoded);
-
+/// The answer to a request whose hash is known.
+JobOutcome computed(JobRequest request, std::string_view hash, const RunControl& control) {
     const std::string method = method_label(request);
-    ReadRecord read{{}, request.read.dropped, request.read.notes};
+    const ReadRecord read{{}, request.read.dropped, request.read.notes};
     const std::optional<Units> units = request.units;
     const IdentifyQuestion question = request.identify;
     auto result = tune(to_engine(std::move(request)), control);
@@ -156,8 +136,39 @@ JobOutcome run_job(std::string_view request_json, const RunControl& control) {
     }
     const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
     Writer out;
-    result_contract().write({std::move(*result), units, sha256_hex(canonical(value))}, out);
+    result_contract().write({std::move(*result), units, std::string(hash)}, out);
     return {status, out.take(), {}, method};
+}
+
+}  // namespace
+
+std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    return prepared(std::get<Json>(parsed), limits, [&] { return compact(body); });
+}
+
+std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
+    auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    Json& value = std::get<Json>(parsed);
+    ask_for_no_traces(value);
+    auto job = prepared(value, limits, [&] { return value.dump(); });
+    // Entries wait for the store in groups, as text alone.
+    if (auto* ready = std::get_if<PreparedJob>(&job)) ready->request.reset();
+    return job;
+}
+
+JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
+    return computed(*job.request, job.request_hash, control);
+}
+
+JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
+    const auto parsed = parse(stored.json);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
+    auto decoded = decode(std::get<Json>(parsed), job_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
+    return computed(std::get<JobRequest>(std::move(decoded)), stored.hash, control);
 }
 
 std::string progress_json(const Progress& progress) {

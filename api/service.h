@@ -1,6 +1,7 @@
 // The contract without sockets: JSON text in, JSON text out. What the server, the command line and the tests call.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,12 +12,21 @@
 
 namespace tunewright::api {
 
+struct JobRequest;
+
 /// A tuning request that has been read and found valid.
 struct PreparedJob {
     std::string name;  ///< "" if none
     double timeout_s = 60;
     std::string request_json;  ///< the request as sent, compact: what the store keeps and run_job takes
     std::string request_hash;  ///< of the canonical request, hexadecimal
+    std::shared_ptr<const JobRequest> request = {};  ///< decoded, for a run in this process; null for a batch's entry
+};
+
+/// A prepared request as a store keeps it, whose text is the truth for whichever process runs it.
+struct StoredRequest {
+    std::string_view json;  ///< PreparedJob::request_json
+    std::string_view hash;  ///< PreparedJob::request_hash
 };
 
 struct JobOutcome {
@@ -47,7 +57,8 @@ std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobL
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
 
 /// Runs a prepared request to its end. Never throws for anything in the request.
-JobOutcome run_job(std::string_view request_json, const RunControl& control);
+JobOutcome run_job(const PreparedJob& job, const RunControl& control);
+JobOutcome run_job(const StoredRequest& stored, const RunControl& control);
 
 std::string progress_json(const Progress& progress);
 

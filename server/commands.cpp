@@ -70,7 +70,7 @@ int tune(const std::string& file) {
     RunControl control;
     control.stop = stop.get_token();
     control.now_ms = monotonic_ms;
-    const api::JobOutcome outcome = api::run_job(job.request_json, control);
+    const api::JobOutcome outcome = api::run_job(job, control);
     timer.stop();
     if (outcome.status == api::JobOutcome::Status::succeeded) {
         std::cout << outcome.result_json << "\n";

@@ -129,7 +129,9 @@ private:
         if (config.retention_s > 0)
             made.retention = std::chrono::seconds(static_cast<std::int64_t>(config.retention_s));
         made.version = TUNEWRIGHT_VERSION;
-        made.run = api::run_job;
+        made.run = [](const api::StoredRequest& request, const RunControl& control) {
+            return api::run_job(request, control);
+        };
         made.now = wall_clock;
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);

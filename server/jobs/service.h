@@ -45,7 +45,7 @@ struct JobSettings {
     std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: they are kept
     std::string version;
     /// Computes a job: api::run_job, or a test's own.
-    std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
+    std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
     std::function<UnixMs()> now;  ///< wall clock
     JobObserver observer;
 };

@@ -16,7 +16,7 @@ Json run(const std::string& request) {
         ADD_FAILURE() << to_json(*problem);
         return {};
     }
-    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared), {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     if (outcome.result_json.empty()) return {};
     Json result = Json::parse(outcome.result_json);
@@ -278,7 +278,7 @@ TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {
     expect_valid(result, "TuningResult");
 
     const auto prepared = prepare_job(plant + R"({"method": "ziegler_nichols_step"}]})");
-    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared), {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::failed);
     EXPECT_EQ(schema_faults(Json::parse(outcome.error_json), "Problem"), std::vector<std::string>{});
 }
@@ -354,7 +354,7 @@ TEST(Answers, AStoppedJobIsCancelled) {
     const auto prepared = prepare_job(example("compare-methods").dump());
     std::stop_source source;
     source.request_stop();
-    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {source.get_token(), {}, {}});
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared), {source.get_token(), {}, {}});
     EXPECT_EQ(outcome.status, JobOutcome::Status::cancelled);
     EXPECT_TRUE(outcome.error_json.empty());
 }

@@ -23,7 +23,7 @@ Json request(const Json& tune, const Json& plant, int points = 0) {
 }
 
 Json tuned(const Json& request) {
-    const JobOutcome outcome = run_job(request.dump(), {});
+    const JobOutcome outcome = run_job(StoredRequest{request.dump(), {}}, {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     const Json result = Json::parse(outcome.result_json);
     EXPECT_EQ(schema_faults(result, "TuningResult"), std::vector<std::string>{});

@@ -63,7 +63,7 @@ TEST(NpidForm, ItsMethodsAnswerItAndTheBaselineMayHaveIt) {
                      {"method": "npid_iae", "optimise": true}],
             "baseline": {"form": "npid", "Kp": 2, "Ti": 10, "delta_r": 3}, "evaluate": {"points": 0}})");
     ASSERT_TRUE(std::holds_alternative<PreparedJob>(prepared));
-    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared), {});
     ASSERT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     const Json body = Json::parse(outcome.result_json);
     EXPECT_TRUE(schema_faults(body, "TuningResult").empty());

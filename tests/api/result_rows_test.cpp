@@ -46,7 +46,9 @@ std::string under(const std::string& heading, const std::string& line) {
     return "no such column";
 }
 
-std::string result_of(const std::string& members) { return run_job(request_with(members), {}).result_json; }
+std::string result_of(const std::string& members) {
+    return run_job(StoredRequest{request_with(members), {}}, {}).result_json;
+}
 
 TEST(ResultRows, AsNdjsonHoldResultAndErrorAsTheyAre) {
     std::string out;

@@ -18,7 +18,7 @@ std::vector<FieldError> faults_of(const std::string& tune) {
 }
 
 Json tuned(const std::string& request) {
-    const JobOutcome outcome = run_job(request, {});
+    const JobOutcome outcome = run_job(StoredRequest{request, {}}, {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     const Json result = Json::parse(outcome.result_json);
     EXPECT_EQ(schema_faults(result, "TuningResult"), std::vector<std::string>{});

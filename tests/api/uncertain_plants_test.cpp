@@ -21,7 +21,7 @@ Json run(const std::string& request) {
         ADD_FAILURE() << to_json(*problem);
         return {};
     }
-    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared).request_json, {});
+    const JobOutcome outcome = run_job(std::get<PreparedJob>(prepared), {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     const Json result = outcome.result_json.empty() ? Json() : Json::parse(outcome.result_json);
     EXPECT_EQ(schema_faults(result, "TuningResult"), std::vector<std::string>{});

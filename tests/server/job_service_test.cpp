@@ -61,8 +61,8 @@ protected:
         settings.workers = workers;
         settings.queue_limit = queue_limit;
         settings.version = "1.2.3";
-        settings.run = [this](std::string_view request, const RunControl& control) {
-            return compute(request, control);
+        settings.run = [this](const api::StoredRequest& request, const RunControl& control) {
+            return compute(request.json, control);
         };
         settings.now = [this] { return ++now_; };
         // The store may be about to tell the one before of something: it goes after the store.

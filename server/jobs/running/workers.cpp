@@ -57,7 +57,7 @@ api::JobOutcome Workers::compute(const std::shared_ptr<HeldJob>& held) {
     control.now_ms = monotonic_ms;
     control.progress = [&held](const Progress& progress) { held->report(progress); };
     try {
-        return settings_.run(held->job.request, control);
+        return settings_.run({held->job.request, held->job.request_hash}, control);
     } catch (const std::exception& fault) {
         log_error("job " + held->job.id + " met a fault: " + fault.what());
         return {Status::failed, "",

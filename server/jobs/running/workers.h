@@ -19,7 +19,7 @@ namespace tunewright::server {
 struct WorkerSettings {
     std::size_t count = 1;
     std::string version;
-    std::function<api::JobOutcome(std::string_view request, const RunControl& control)> run;
+    std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
     std::function<UnixMs()> now;
     std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another has it
 };

@@ -29,8 +29,8 @@ public:
         settings.lease = std::chrono::milliseconds(kLease);
         settings.version = "1.2.3";
         settings.now = [&now] { return now.load(); };
-        settings.run = [this](std::string_view request, const RunControl& control) {
-            return compute(request, control);
+        settings.run = [this](const api::StoredRequest& request, const RunControl& control) {
+            return compute(request.json, control);
         };
         settings.observer.dropped = [this] { dropped++; };
         jobs = std::make_unique<JobService>(view, timer, settings);

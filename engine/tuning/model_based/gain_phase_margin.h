@@ -13,12 +13,17 @@ struct GainPhaseMarginOptions {
     FilterOptions filter = {};
 };
 
-/// omega_p = (Am phi + pi Am (Am - 1)/2)/((Am^2 - 1) L); series form: Kp = omega_p T1/(Am K), Ti = 1/(2 omega_p - 4
-/// omega_p^2 L/pi + 1/T1), Td = T2.
+/// PI on a first-order, PID (series form, answered in the ideal form) on a second-order model with dead time, for
+/// `gain_margin` Am and `phase_margin_deg` phi:
 ///
-/// PI on a first-order, PID (series form, Td = T2, answered in the ideal form) on a second-order model with dead time,
-/// for `gain_margin` and `phase_margin_deg`; the arctangents of the margins' equations are taken as straight lines, so
-/// that both are met within some percent. Source: Ho, Hang & Cao, Automatica 31 (1995) 497-502.
+///     omega_p = (Am phi + pi Am (Am - 1)/2)/((Am^2 - 1) L)
+///     Kp = omega_p T1/(Am K)
+///     Ti = 1/(2 omega_p - 4 omega_p^2 L/pi + 1/T1)
+///     Td = T2
+///
+/// The arctangents of the margins' equations are taken as straight lines, so that both are met within some percent.
+///
+/// Source: Ho, Hang & Cao, Automatica 31 (1995) 497-502.
 TuningMethod gain_phase_margin_method();
 
 }  // namespace tunewright

@@ -11,11 +11,15 @@ struct HaalmanOptions {
     FilterOptions filter = {};
 };
 
-/// PI: Kp = 2 T/(3 K L), Ti = T; PID: Kp = 2 (T1 + T2)/(3 K L), Ti = T1 + T2, Td = T1 T2/(T1 + T2).
+/// PI on a first-order, PID on a second-order model with dead time:
 ///
-/// PI on a first-order, PID on a second-order model with dead time. On such a plant the loop is 2/(3 L s) e^(-Ls)
-/// whatever the lags: Ms = 1.9 (without the derivative's filter). Cancelled lags come back in the answer to loads, so
-/// it is slow where they are long against the dead time. Source: Haalman, Control Engineering 12 (1965) 71-73.
+///     PI    Kp = 2 T/(3 K L)            Ti = T
+///     PID   Kp = 2 (T1 + T2)/(3 K L)    Ti = T1 + T2    Td = T1 T2/(T1 + T2)
+///
+/// On such a plant the loop is 2/(3 L s) e^(-Ls) whatever the lags: Ms = 1.9 (without the derivative's filter).
+/// Cancelled lags come back in the answer to loads, so it is slow where they are long against the dead time.
+///
+/// Source: Haalman, Control Engineering 12 (1965) 71-73.
 TuningMethod haalman_method();
 
 }  // namespace tunewright

@@ -12,13 +12,15 @@ struct ImprovedSimcOptions {
     FilterOptions filter = {};
 };
 
-/// PI: Kp = (T + L/3)/(K (tau_c + L)), Ti = min(T + L/3, 4 (tau_c + L)); PID, series form: Kp = T/(K (tau_c + L)), Ti =
-/// min(T, 4 (tau_c + L)), Td = L/3; integrating: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L).
+/// SIMC with T + L/3 in place of T for PI, and with a series derivative time L/3 for PID, answered in the ideal form;
+/// on a first-order model (half rule), also integrating, also a pure dead time:
 ///
-/// PI: SIMC with T + L/3 in place of T. PID: SIMC's PI settings with a series derivative time L/3, answered in the
-/// ideal form. On a first-order model (half rule), also integrating, also a pure dead time. Option tau_c, default L for
-/// PI, L/2 for PID. Sources: Grimholt & Skogestad, IFAC Conf. Advances in PID Control (2012) for PI; J. Process Control
-/// 70 (2018) 36-46 for PID.
+///     PI           Kp = (T + L/3)/(K (tau_c + L))   Ti = min(T + L/3, 4 (tau_c + L))
+///     PID, series  Kp = T/(K (tau_c + L))           Ti = min(T, 4 (tau_c + L))        Td = L/3
+///     integrating  Kp = 1/(K (tau_c + L))           Ti = 4 (tau_c + L)
+///
+/// Sources: Grimholt & Skogestad, IFAC Conf. Advances in PID Control (2012) for PI; J. Process Control 70 (2018) 36-46
+/// for PID.
 TuningMethod improved_simc_method();
 
 }  // namespace tunewright

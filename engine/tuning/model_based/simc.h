@@ -12,15 +12,16 @@ struct SimcOptions {
     FilterOptions filter = {};
 };
 
-/// Series form Kp (1 + 1/(s Ti)) (1 + s Td): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td = T2; integrating
-/// with lag T: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti =
-/// Td = 4 (tau_c + L).
+/// PI on a first-order, PID on a second-order model, in the series form Kp (1 + 1/(s Ti)) (1 + s Td):
 ///
-/// PI on a first-order, PID on a second-order model (also integrating, integrating with lag, double integrating).
-/// Option tau_c, the desired closed-loop time constant, defaults to L. The source's series form is answered exactly in
-/// the ideal form, Ti + Td, Ti Td/(Ti + Td) and Kp (1 + Td/Ti), whose derivative is then filtered with Tf = Td/10: a
-/// tenth of the series Td, as the source has it, would be slower than the loop itself for two lags far above the dead
-/// time. A pure dead time gets pure integral action, which the ideal form cannot carry: unsupported.
+///     stable               Kp = T1/(K (tau_c + L))       Ti = min(T1, 4 (tau_c + L))   Td = T2
+///     integrating, lag T   Kp = 1/(K (tau_c + L))        Ti = 4 (tau_c + L)            Td = T
+///     double integrating   Kp = 1/(4 K (tau_c + L)^2)    Ti = Td = 4 (tau_c + L)
+///
+/// The series form is answered exactly in the ideal form, Ti + Td, Ti Td/(Ti + Td) and Kp (1 + Td/Ti), whose derivative
+/// is then filtered with Tf = Td/10: a tenth of the series Td, as the source has it, would be slower than the loop
+/// itself for two lags far above the dead time. A pure dead time gets pure integral action, which the ideal form cannot
+/// carry: unsupported.
 ///
 /// Source: Skogestad, J. Process Control 13 (2003) 291-309, Table 1, Eqs. 23-29.
 TuningMethod simc_method();

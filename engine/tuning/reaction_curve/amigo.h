@@ -11,14 +11,22 @@ struct AmigoOptions {
     FilterOptions filter = {};
 };
 
-/// PI: Kp = 0.15/K + (0.35 - L T/(L + T)^2) T/(K L), Ti = 0.35 L + 13 L T^2/(T^2 + 12 L T + 7 L^2); PID: Kp = (0.2 +
-/// 0.45 T/L)/K, Ti = L (0.4 L + 0.8 T)/(L + 0.1 T), Td = 0.5 L T/(0.3 L + T); integrating PI: Kp = 0.35/(K L), Ti
-/// = 13.4 L; integrating PID: Kp = 0.45/(K L), Ti = 8 L, Td = 0.5 L.
-///
 /// First-order model with dead time L > 0 (T = 0 is allowed) or integrator with dead time, from the tangent and the 63
-/// % time. PID: set-point weight b = 0 for L/(L + T) <= 0.5, else 1; PI: b = 1. PID filter: measurement_second_order,
-/// Tf = Td/10. Sources: PI: Hagglund & Astrom, Asian J. Control 4 (2002); PID: Hagglund & Astrom, J. Process Control 14
-/// (2004), Eqs. 12-15; both: Astrom & Hagglund, Advanced PID Control (2006), Section 7.
+/// % time:
+///
+///     PI    Kp = 0.15/K + (0.35 - L T/(L + T)^2) T/(K L)
+///           Ti = 0.35 L + 13 L T^2/(T^2 + 12 L T + 7 L^2)
+///     PID   Kp = (0.2 + 0.45 T/L)/K
+///           Ti = L (0.4 L + 0.8 T)/(L + 0.1 T)
+///           Td = 0.5 L T/(0.3 L + T)
+///     integrating PI    Kp = 0.35/(K L)   Ti = 13.4 L
+///     integrating PID   Kp = 0.45/(K L)   Ti = 8 L   Td = 0.5 L
+///
+/// PID: set-point weight b = 0 for L/(L + T) <= 0.5, else 1; PI: b = 1. PID filter: measurement_second_order, Tf =
+/// Td/10.
+///
+/// Sources: PI: Hagglund & Astrom, Asian J. Control 4 (2002); PID: Hagglund & Astrom, J. Process Control 14 (2004),
+/// Eqs. 12-15; both: Astrom & Hagglund, Advanced PID Control (2006), Section 7.
 TuningMethod amigo_method();
 
 /// The same without a request. Errors: those of reduce(); unsupported for L = 0.

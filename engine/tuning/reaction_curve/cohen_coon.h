@@ -10,10 +10,16 @@ struct CohenCoonOptions {
     FirstOrderOptions model = {};
 };
 
-/// With q = L/T: P: Kp = (1 + q/3)/(K q); PI: Kp = (0.9 + q/12)/(K q), Ti = L (30 + 3 q)/(9 + 20 q); PID: Kp = (4/3 +
-/// q/4)/(K q), Ti = L (32 + 6 q)/(13 + 8 q), Td = 4 L/(11 + 2 q). Dominant poles of decay ratio 1/4; q from 0.1 to 1.
-/// Oscillatory: Ms is typically above 2. T of a plant of other form is static gain over steepest slope, as on the
-/// reaction curve of the source. Source: Cohen & Coon, Trans. ASME 75 (1953) 827-834.
+/// Dominant poles of decay ratio 1/4; q = L/T from 0.1 to 1:
+///
+///     P     Kp = (1 + q/3)/(K q)
+///     PI    Kp = (0.9 + q/12)/(K q)    Ti = L (30 + 3 q)/(9 + 20 q)
+///     PID   Kp = (4/3 + q/4)/(K q)     Ti = L (32 + 6 q)/(13 + 8 q)     Td = 4 L/(11 + 2 q)
+///
+/// The loop is oscillatory: Ms is typically above 2. T of a plant of other form is static gain over steepest slope, as
+/// on the reaction curve of the source.
+///
+/// Source: Cohen & Coon, Trans. ASME 75 (1953) 827-834.
 TuningMethod cohen_coon_method();
 
 }  // namespace tunewright

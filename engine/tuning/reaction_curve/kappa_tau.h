@@ -14,9 +14,15 @@ struct KappaTauOptions {
 };
 
 /// PI and PID in tau = L/(L + T), fitted to designs by dominant poles with Ms of 1.4 or 2 (`table_Ms`) over a batch of
-/// plants: a Kp, Ti/L, Td/L and b are a0 exp(a1 tau + a2 tau^2) with a = K L/T. b above 1 is answered as 1. The ranges
-/// of L/T are ours: on a plain first-order plant the PID loses stability below about 0.2. Source: Astrom & Hagglund,
-/// PID Controllers: Theory, Design, and Tuning (1995), section 5.3, tables for stable processes.
+/// plants:
+///
+///     a Kp, Ti/L, Td/L, b = a0 exp(a1 tau + a2 tau^2),   a = K L/T
+///
+/// with a0, a1, a2 of each from a table. A b above 1 is answered as 1. The ranges of L/T are ours: on a plain
+/// first-order plant the PID loses stability below about 0.2.
+///
+/// Source: Astrom & Hagglund, PID Controllers: Theory, Design, and Tuning (1995), section 5.3, tables for stable
+/// processes.
 TuningMethod kappa_tau_method();
 
 }  // namespace tunewright

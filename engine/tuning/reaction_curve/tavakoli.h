@@ -5,10 +5,16 @@
 
 namespace tunewright {
 
-/// PID with the least ISE, IAE or ITAE of a set-point step on a first-order model with dead time, in q = L/T. In the
-/// only table that we know (Jin & Son 2019, Table 1) the columns headed Ti/tau and Td/tau hold Ti/L and Td/L: only so
-/// do its nine published settings follow. Those have a pure derivative: filter {"Tf_over_Td": 0}. Source: Tavakoli &
-/// Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946.
+/// PID with the least ISE, IAE or ITAE of a set-point step on a first-order model with dead time, in q = L/T:
+///
+///     ISE    Kp = (0.3 q + 0.75)/(K (q + 0.05))   Ti = 2.4 L/(q + 0.4)               Td = L/(90 q)
+///     IAE    Kp = 1/(K (q + 0.2))                 Ti = L (0.3 q + 1.2)/(q + 0.08)    Td = L/(90 q)
+///     ITAE   Kp = 0.8/(K (q + 0.1))               Ti = L (0.3 + 1/q)                 Td = 0.06 L/(q + 0.04)
+///
+/// In the only table that we know (Jin & Son 2019, Table 1) the columns headed Ti/tau and Td/tau hold Ti/L and Td/L:
+/// only so do its nine published settings follow. Those have a pure derivative: filter {"Tf_over_Td": 0}.
+///
+/// Source: Tavakoli & Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946.
 TuningMethod tavakoli_ise_method();
 TuningMethod tavakoli_iae_method();
 TuningMethod tavakoli_itae_method();

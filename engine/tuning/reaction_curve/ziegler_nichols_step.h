@@ -11,9 +11,16 @@ struct ZieglerNicholsStepOptions {
     FilterOptions filter = {};
 };
 
-/// P: Kp = 1/a; PI: Kp = 0.9/a, Ti = L/0.3; PID: Kp = 1.2/a, Ti = 2 L, Td = 0.5 L, from the tangent at the steepest
-/// point: a = K L/T with T = K/slope (the reaction curve's own construction, not the 63 % time). Aims at
-/// quarter-amplitude damping: Ms is typically above 2. PID filter: derivative, Tf = Td/10 (the source has none).
+/// From the tangent at the steepest point of the step response, a = K L/T with T = K/slope (the reaction curve's own
+/// construction, not the 63 % time); integrating: a = K L:
+///
+///     P     Kp = 1/a
+///     PI    Kp = 0.9/a   Ti = L/0.3
+///     PID   Kp = 1.2/a   Ti = 2 L     Td = 0.5 L
+///
+/// The rule aims at quarter-amplitude damping: Ms is typically above 2. PID filter: derivative, Tf = Td/10 (the source
+/// has none).
+///
 /// Source: Ziegler & Nichols, Trans. ASME 64 (1942) 759-768.
 TuningMethod ziegler_nichols_step_method();
 

@@ -11,10 +11,15 @@ struct AmigoUltimateOptions {
     FilterOptions filter = {};
 };
 
-/// PI: Kp = 0.16 Ku, Ti = Pu/(1 + 4.5 kappa); PID: Kp = (0.3 - 0.1 kappa^4) Ku, Ti = 0.6 Pu/(1 + 2 kappa), Td = 0.15 Pu
-/// (1 - kappa)/(1 - 0.95 kappa) in kappa = 1/(K Ku), 0 for integrating plants, near 1 for pure dead time. Filter:
-/// second order on the measurement. Source: Astrom & Hagglund, J. Process Control 14 (2004) 635-650, and Advanced PID
-/// Control (2006), chapter 7.
+/// PI and PID in kappa = 1/(K Ku), 0 for integrating plants, near 1 for pure dead time:
+///
+///     PI    Kp = 0.16 Ku                     Ti = Pu/(1 + 4.5 kappa)
+///     PID   Kp = (0.3 - 0.1 kappa^4) Ku      Ti = 0.6 Pu/(1 + 2 kappa)
+///           Td = 0.15 Pu (1 - kappa)/(1 - 0.95 kappa)
+///
+/// Filter: second order on the measurement.
+///
+/// Source: Astrom & Hagglund, J. Process Control 14 (2004) 635-650, and Advanced PID Control (2006), chapter 7.
 TuningMethod amigo_ultimate_method();
 
 }  // namespace tunewright

@@ -11,9 +11,16 @@ struct TyreusLuybenOptions {
     FilterOptions filter = {};
 };
 
-/// PI: Kp = Ku/3.2, Ti = 2.2 Pu; PID: Kp = Ku/2.2, Ti = 2.2 Pu, Td = Pu/6.3. More damped than Ziegler and Nichols' and
-/// with a long integral time: made for lag-dominated and integrating plants. Sources: Tyreus & Luyben, Ind. Eng. Chem.
-/// Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben, Essentials of Process Control (1997) (PID).
+/// More damped than Ziegler and Nichols' rules and with a long integral time: made for lag-dominated and integrating
+/// plants.
+///
+///     PI    Kp = Ku/3.2   Ti = 2.2 Pu
+///     PID   Kp = Ku/2.2   Ti = 2.2 Pu   Td = Pu/6.3
+///
+/// Filter of the PID: derivative, Tf = Td/10 (the sources have none).
+///
+/// Sources: Tyreus & Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben, Essentials of Process
+/// Control (1997) (PID).
 TuningMethod tyreus_luyben_method();
 
 }  // namespace tunewright

@@ -73,9 +73,10 @@ class ReplicaTest(unittest.TestCase):
                 again = [job for job in jobs.values() if job["attempts"] > 1]
                 if again:
                     break
-            self.assertEqual(len(again), 1, "the one that the victim computed")
-            late = self.seconds(again[0]["finished_at"]) - killed
-            print("the killed replica's job had ended %.1f s after it, with a lease of %d s" % (late, LEASE))
+            # The one that the victim computed, and those that it had claimed ahead (claims.cpp: 16 short ones at most).
+            self.assertIn(len(again), range(1, 18))
+            late = max(self.seconds(job["finished_at"]) for job in again) - killed
+            print("%d jobs of the killed replica had ended %.1f s after it, with a lease of %d s" % (len(again), late, LEASE))
             self.assertLess(late, 5 * LEASE)
 
     def wait_until_it_computes(self, service):

@@ -14,6 +14,7 @@ NumberRule rule_of(const OptionDescription& option) {
 
 std::vector<std::string> names_of(const std::vector<OptionDescription>& options) {
     std::vector<std::string> names;
+    names.reserve(options.size());
     for (const OptionDescription& option : options) names.push_back(option.name);
     return names;
 }
@@ -114,13 +115,14 @@ void read_numbers_by_name(const Json& value, const OptionDescription& option, co
     if (value.size() > static_cast<std::size_t>(option.most))
         return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " names; it must have at most " +
                             std::to_string(option.most) + ".");
+    const std::string below = path + "/";
     for (const auto& [name, member] : value.items()) {
         if (!is_name(name)) {
             reader.fault_at(name, shown(Json(name)) + " is no name; names have letters, digits and _, no digit first.");
             continue;
         }
         const Reader::At at(reader, name);
-        if (const auto number = read_number(member, rule_of(option), reader)) target.set(path + "/" + name, *number);
+        if (const auto number = read_number(member, rule_of(option), reader)) target.set(below + name, *number);
     }
 }
 
@@ -170,7 +172,7 @@ Json object_schema(const OptionDescription& option) {
 Json option_schema(const OptionDescription& option);
 
 Json bare_schema(const OptionDescription& option) {
-    const Json plain = number_schema(rule_of(option));
+    Json plain = number_schema(rule_of(option));
     switch (option.type) {
         case OptionType::number: return plain;
         case OptionType::integer: {

@@ -58,10 +58,9 @@ void read_options_of_all(const Json& value, MethodOptions& target, Reader& reade
 }
 
 void read_method(const Json& value, MethodRequest& target, Reader& reader) {
-    if (!value.is_object())
-        return reader.fault(wrong_kind(value, "an object such as {\"method\": \"robust\"}", reader));
+    if (!value.is_object()) return reader.fault(wrong_kind(value, R"(an object such as {"method": "robust"})", reader));
     auto ids = method_ids();
-    ids.push_back(kAll);
+    ids.emplace_back(kAll);
     const auto word = value.find("method");
     if (word == value.end()) return reader.fault_at("method", "method is missing; it must be " + listed(ids) + ".");
     if (*word == kAll) {
@@ -133,8 +132,7 @@ Codec<std::vector<MethodRequest>> tune_list() {
         } else if (value.is_array()) {
             list(value, target, reader);
         } else {
-            reader.fault(
-                wrong_kind(value, "an array of methods such as [{\"method\": \"robust\"}], or \"all\"", reader));
+            reader.fault(wrong_kind(value, R"(an array of methods such as [{"method": "robust"}], or "all")", reader));
         }
     };
     codec.schema = [list = codec.schema](SchemaBook& book) {

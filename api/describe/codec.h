@@ -132,6 +132,7 @@ Codec<T> unless(Codec<T> codec, std::function<bool(const T&)> empty) {
 template <class E>
 Codec<E> choice(std::vector<std::pair<std::string, E>> words) {
     std::vector<std::string> names;
+    names.reserve(words.size());
     for (const auto& [word, value] : words) names.push_back(word);
     Codec<E> codec;
     codec.read = [words, names](const Json& value, E& target, Reader& reader) {

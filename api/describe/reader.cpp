@@ -45,7 +45,7 @@ std::string Reader::name() const {
     std::string indices;
     for (auto segment = path_.rbegin(); segment != path_.rend(); ++segment) {
         if (!segment->name.empty()) return std::string(segment->name) + indices;
-        indices = "[" + std::to_string(segment->index) + "]" + indices;
+        indices.insert(0, "[" + std::to_string(segment->index) + "]");
     }
     return indices.empty() ? "the request" : indices;
 }

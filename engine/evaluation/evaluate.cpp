@@ -36,7 +36,7 @@ std::optional<Error> loop_fault(const Subject& subject, const Controller& contro
 
 EvaluateOptions on_linearisation(const Subject& subject, EvaluateOptions options) {
     const NonlinearSystem* system = subject.equations();
-    return system ? limited_as(*system, std::move(options)) : options;
+    return system ? limited_as(*system, options) : options;
 }
 
 }  // namespace tunewright

@@ -62,5 +62,7 @@ template <class... Functions>
 struct OfKinds : Functions... {
     using Functions::operator()...;
 };
+template <class... Functions>
+OfKinds(Functions...) -> OfKinds<Functions...>;
 
 }  // namespace tunewright

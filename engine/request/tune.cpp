@@ -267,7 +267,7 @@ Error all_failed(const std::vector<TuningEntry>& entries) {
     Error error = *entries.front().error;
     if (told.size() == 1) return error;
     error.message = "No method gave a controller.";
-    for (const auto& [methods, reason] : told) error.message += " " + methods + ": " + reason;
+    for (const auto& [methods, reason] : told) error.message.append(" ").append(methods).append(": ").append(reason);
     return error;
 }
 

@@ -75,7 +75,7 @@ Codec<std::vector<NamedValue>> states() {
 }
 
 Codec<std::vector<NamedExpression>> equations() {
-    return {members_by_name<NamedExpression>(1, kMaxStates, "{\"h\": \"(q - k*sqrt(h))/A\"}", read_expression),
+    return {members_by_name<NamedExpression>(1, kMaxStates, R"({"h": "(q - k*sqrt(h))/A"})", read_expression),
             write_by_name<NamedExpression>([](const NamedExpression& e, Writer& out) { out.text(e.text); }),
             [](SchemaBook&) { return by_name_schema(expression_schema(), 1, kMaxStates); }};
 }
@@ -85,7 +85,7 @@ Codec<std::vector<Parameter>> parameters() {
         if (const double* number = std::get_if<double>(&parameter.value)) return out.number(*number);
         out.text(std::get<std::string>(parameter.value));
     };
-    return {members_by_name<Parameter>(0, kMaxParameters, "{\"A\": 0.5, \"k\": \"2*A\"}", read_parameter),
+    return {members_by_name<Parameter>(0, kMaxParameters, R"({"A": 0.5, "k": "2*A"})", read_parameter),
             write_by_name<Parameter>(write),
             [](SchemaBook&) {
                 return by_name_schema({{"oneOf", Json::array({Json{{"type", "number"}}, expression_schema()})}}, 0,

@@ -8,7 +8,6 @@ namespace tunewright::api {
 namespace {
 
 constexpr std::size_t kMaxOrder = 50;
-constexpr FieldOptions kOptional{};
 
 // What numbers must keep (plant_rules.h), as the schema shows it.
 Codec<double> gain() { return engine_ruled({.not_zero = true}); }
@@ -273,7 +272,7 @@ const Description<StateSpace>& state_space() {
                    "System matrix, n x n, row by row.", {.required = true, .unit = "1/time"})
             .field("B", &StateSpace::B, vector(), "Input column, n numbers.", {.required = true})
             .field("C", &StateSpace::C, vector(), "Output row, n numbers.", {.required = true})
-            .field("D", &StateSpace::D, direct_term(), "Direct term.", kOptional);
+            .field("D", &StateSpace::D, direct_term(), "Direct term.");
         return with_dead_time(d, false).example({{"type", "state_space"},
                                                  {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
                                                  {"B", {1, 0}},

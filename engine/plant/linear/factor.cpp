@@ -28,8 +28,8 @@ void add_lag(Factors& factors, double T) {
 }
 
 void add_pair(std::vector<Complex>& list, Complex value) {
-    list.push_back({value.real(), std::abs(value.imag())});
-    list.push_back({value.real(), -std::abs(value.imag())});
+    list.emplace_back(value.real(), std::abs(value.imag()));
+    list.emplace_back(value.real(), -std::abs(value.imag()));
 }
 
 Expected<Factors> factor_of(const Fopdt& p) {

@@ -60,6 +60,7 @@ std::vector<Section> denominators(Roots poles, std::size_t zero_pairs) {
 /// Numerators: complex zero pairs to second-order sections, real zeros to the nearest section that has room.
 void give_zeros(std::vector<Section>& sections, Roots zeros) {
     std::vector<int> room;
+    room.reserve(sections.size());
     for (auto& section : sections) room.push_back(section.order);
     for (std::size_t i = 0; i < zeros.pairs.size(); ++i) {
         sections[i].b2 = 1;

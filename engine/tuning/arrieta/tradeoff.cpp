@@ -30,7 +30,7 @@ Expected<Loop> usable_loop(const LinearPlant& plant, const ParallelPid& controll
     auto loop = Loop::make(plant, controller);
     if (!loop) return loop.error();
     if (!count_unstable_poles(*loop).stable()) return Error{ErrorKind::unstable_plant, "", kUnstable};
-    return std::move(*loop);
+    return *loop;
 }
 
 Expected<double> iae_with(const LinearPlant& plant, const Pid& pid, const StepInputs& inputs) {

@@ -54,7 +54,7 @@ Expected<Scenario> scenario_at(const std::string& path, const std::shared_ptr<co
         const auto at =
             std::ranges::find_if(states, [&id = name](const NamedValue& state) { return state.name == id; });
         if (at == states.end())
-            return wrong(path + "/initial/" + name,
+            return wrong(std::string(path).append("/initial/").append(name),
                          name + " is no state of the plant; its states are " + state_names(*nominal) + ".");
         if (scenario.x0.empty()) scenario.x0.assign(steady.begin(), steady.end());
         scenario.x0[static_cast<std::size_t>(at - states.begin())] = value;

@@ -89,10 +89,11 @@ public:
 
     /// A double or int, or one of these that may be left out.
     template <class M>
-    OptionSet& number(M T::*member, std::string name, std::string sentence, const NumberOption& how = {}) {
+    OptionSet& number(M T::*member, const std::string& name, const std::string& sentence,
+                      const NumberOption& how = {}) {
         using Number = typename detail::Content<M>::type;
         const auto type = std::is_same_v<Number, int> ? OptionType::integer : OptionType::number;
-        OptionDescription option = described(type, std::move(name), std::move(sentence), how);
+        OptionDescription option = described(type, name, sentence, how);
         if (const Number* value = detail::content(defaults_.*member); value != nullptr && !how.required)
             option.default_value = static_cast<double>(*value);
         else if (how.otherwise)
@@ -108,8 +109,8 @@ public:
 
     /// A bool, or one that may be left out.
     template <class M>
-    OptionSet& flag(M T::*member, std::string name, std::string sentence) {
-        OptionDescription option = described(OptionType::boolean, std::move(name), std::move(sentence));
+    OptionSet& flag(M T::*member, const std::string& name, const std::string& sentence) {
+        OptionDescription option = described(OptionType::boolean, name, sentence);
         if (const bool* value = detail::content(defaults_.*member)) option.default_value = *value;
         return add(
             std::move(option), member,
@@ -118,8 +119,8 @@ public:
     }
 
     template <class E>
-    OptionSet& choice(E T::*member, std::string name, std::string sentence, Words<E> words) {
-        OptionDescription option = described(OptionType::choice, std::move(name), std::move(sentence));
+    OptionSet& choice(E T::*member, const std::string& name, const std::string& sentence, Words<E> words) {
+        OptionDescription option = described(OptionType::choice, name, sentence);
         for (const auto& [word, value] : words) {
             option.choices.push_back(word);
             if (value == defaults_.*member) option.default_value = word;
@@ -136,9 +137,9 @@ public:
     }
 
     /// A number, or `word`, for which the member is empty.
-    OptionSet& number_or_word(std::optional<double> T::*member, std::string name, std::string sentence,
+    OptionSet& number_or_word(std::optional<double> T::*member, const std::string& name, const std::string& sentence,
                               const std::string& word, const NumberOption& how = {}) {
-        OptionDescription option = described(OptionType::number_or_word, std::move(name), std::move(sentence), how);
+        OptionDescription option = described(OptionType::number_or_word, name, sentence, how);
         option.choices = {word};
         if (const auto& value = defaults_.*member) option.default_value = *value;
         const std::string own = option.name;
@@ -156,15 +157,15 @@ public:
 
     /// [low, high], low < high.
     template <class M>
-    OptionSet& range(M T::*member, std::string name, std::string sentence, const NumberOption& how = {}) {
-        return add(described(OptionType::range, std::move(name), std::move(sentence), how), member,
+    OptionSet& range(M T::*member, const std::string& name, const std::string& sentence, const NumberOption& how = {}) {
+        return add(described(OptionType::range, name, sentence, how), member,
                    [](const MethodOptions& given, const std::string& path) { return given.range(path); });
     }
 
-    OptionSet& number_or_range(std::optional<std::variant<double, NumberRange>> T::*member, std::string name,
-                               std::string sentence, const NumberOption& how = {}) {
+    OptionSet& number_or_range(std::optional<std::variant<double, NumberRange>> T::*member, const std::string& name,
+                               const std::string& sentence, const NumberOption& how = {}) {
         using Value = std::variant<double, NumberRange>;
-        return add(described(OptionType::number_or_range, std::move(name), std::move(sentence), how), member,
+        return add(described(OptionType::number_or_range, name, sentence, how), member,
                    [](const MethodOptions& given, const std::string& path) -> std::optional<Value> {
                        if (const auto range = given.range(path)) return Value(*range);
                        if (const auto number = given.number(path)) return Value(*number);
@@ -173,21 +174,23 @@ public:
     }
 
     /// Numbers under names that the request chooses.
-    OptionSet& numbers_by_name(std::map<std::string, double> T::*member, std::string name, std::string sentence) {
-        return add(described(OptionType::numbers_by_name, std::move(name), std::move(sentence)), member,
+    OptionSet& numbers_by_name(std::map<std::string, double> T::*member, const std::string& name,
+                               const std::string& sentence) {
+        return add(described(OptionType::numbers_by_name, name, sentence), member,
                    [](const MethodOptions& given, const std::string& path) {
                        std::map<std::string, double> numbers;
+                       const std::string below = path + "/";
                        for (const std::string& own : given.names(path))
-                           numbers[own] = given.number(path + "/" + own).value_or(0);
+                           numbers[own] = given.number(below + own).value_or(0);
                        return std::optional(std::move(numbers));
                    });
     }
 
     /// Numbers or pairs [re, im], at most `most`; `element` describes one.
-    OptionSet& complex_list(std::vector<std::complex<double>> T::*member, std::string name, std::string sentence,
-                            OptionDescription element, int most) {
+    OptionSet& complex_list(std::vector<std::complex<double>> T::*member, const std::string& name,
+                            const std::string& sentence, OptionDescription element, int most) {
         element.type = OptionType::complex;
-        return list(member, std::move(name), std::move(sentence), std::move(element), most,
+        return list(member, name, sentence, std::move(element), most,
                     [](const MethodOptions& given, const std::string& path) {
                         if (const auto real = given.number(path)) return std::complex<double>(*real);
                         return std::complex<double>(given.number(path + "/0").value_or(0),
@@ -195,28 +198,28 @@ public:
                     });
     }
 
-    OptionSet& text_list(std::vector<std::string> T::*member, std::string name, std::string sentence,
+    OptionSet& text_list(std::vector<std::string> T::*member, const std::string& name, const std::string& sentence,
                          OptionDescription element, int most) {
         element.type = OptionType::text;
-        return list(member, std::move(name), std::move(sentence), std::move(element), most,
+        return list(member, name, sentence, std::move(element), most,
                     [](const MethodOptions& given, const std::string& path) { return given.text(path).value_or(""); });
     }
 
     template <class E>
-    OptionSet& object_list(std::vector<E> T::*member, std::string name, std::string sentence, OptionDescription element,
-                           const OptionSet<E>& set, int most) {
+    OptionSet& object_list(std::vector<E> T::*member, const std::string& name, const std::string& sentence,
+                           OptionDescription element, const OptionSet<E>& set, int most) {
         element.type = OptionType::object;
         element.fields = set.descriptions();
-        return list(member, std::move(name), std::move(sentence), std::move(element), most,
+        return list(member, name, sentence, std::move(element), most,
                     [set](const MethodOptions& given, const std::string& path) { return set.read(given, path + "/"); });
     }
 
     /// A struct under a name of its own, or one that may be left out; with `at_most_fields` > 0 no more of them may be
     /// given.
     template <class M>
-    OptionSet& object(M T::*member, std::string name, std::string sentence,
+    OptionSet& object(M T::*member, const std::string& name, const std::string& sentence,
                       const OptionSet<typename detail::Content<M>::type>& set, int at_most_fields = 0) {
-        OptionDescription option = described(OptionType::object, std::move(name), std::move(sentence));
+        OptionDescription option = described(OptionType::object, name, sentence);
         option.fields = set.descriptions();
         option.at_most_fields = at_most_fields;
         bind_part(member, set, option.name + "/");
@@ -239,12 +242,12 @@ private:
         std::function<void(const T& value, const T& other, MethodOptions&)> write = {};
     };
 
-    static OptionDescription described(OptionType type, std::string name, std::string sentence,
+    static OptionDescription described(OptionType type, const std::string& name, const std::string& sentence,
                                        const NumberOption& how = {}) {
         OptionDescription option;
-        option.name = std::move(name);
+        option.name = name;
         option.type = type;
-        option.sentence = std::move(sentence);
+        option.sentence = sentence;
         option.unit = how.unit;
         option.minimum = how.minimum;
         option.exclusive_minimum = how.exclusive_minimum;
@@ -289,9 +292,9 @@ private:
     }
 
     template <class E, class Take>
-    OptionSet& list(std::vector<E> T::*member, std::string name, std::string sentence, OptionDescription element,
-                    int most, Take take) {
-        OptionDescription option = described(OptionType::list, std::move(name), std::move(sentence));
+    OptionSet& list(std::vector<E> T::*member, const std::string& name, const std::string& sentence,
+                    OptionDescription element, int most, Take take) {
+        OptionDescription option = described(OptionType::list, name, sentence);
         option.fields = {std::move(element)};
         option.most = most;
         const std::string own = option.name;

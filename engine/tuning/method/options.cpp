@@ -97,6 +97,7 @@ std::optional<std::string> misfit(const std::vector<OptionDescription>& options,
     const OptionDescription* option = named(options, name);
     if (option == nullptr) {
         std::vector<std::string> names;
+        names.reserve(options.size());
         for (const OptionDescription& known : options) names.push_back(known.name);
         return name + " is none of " + listed(names) + ".";
     }

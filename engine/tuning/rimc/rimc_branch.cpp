@@ -92,7 +92,7 @@ double RimcBranch::nearest_approach(const Pid& pid) const {
 }
 
 void RimcBranch::find_least_Ms() {
-    const auto& [lowest, highest] = scaled_admissible_;
+    const double lowest = scaled_admissible_.low, highest = scaled_admissible_.high;
     const double ratio = 1.1;
     double best = 0, farthest = 0;
     for (double x = highest; x > std::max(lowest, 0.02); x /= ratio) {

@@ -11,6 +11,7 @@ namespace {
 
 std::vector<double> spaced(double low, double high, int n) {
     std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) values.push_back(low * std::pow(high / low, n > 1 ? double(i) / (n - 1) : 0.5));
     return values;
 }

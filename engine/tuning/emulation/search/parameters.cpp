@@ -6,8 +6,8 @@ namespace tunewright::emulation {
 
 std::vector<std::string> unknowns(const EmulationProblem& problem) {
     std::vector<std::string> names = {"Kp", "Ti"};
-    if (problem.with_derivative) names.push_back("Td");
-    if (problem.free_Tf()) names.push_back("Tf");
+    if (problem.with_derivative) names.emplace_back("Td");
+    if (problem.free_Tf()) names.emplace_back("Tf");
     return names;
 }
 

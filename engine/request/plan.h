@@ -12,7 +12,8 @@
 namespace tunewright {
 
 struct MethodRequest {
-    std::string method = default_method();  ///< or "all": every method in all its variants, each with those options it knows
+    std::string method =
+        default_method();  ///< or "all": every method in all its variants, each with those options it knows
     MethodOptions options;
 
     bool of_all() const { return method == "all"; }

@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import path from "node:path";
 import test from "node:test";
-import { accessibilityViolations, browserTests, openPage, overflow, tracesShown } from "../harness.mjs";
+import { browserTests, openPage, tracesShown } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;
@@ -355,49 +354,4 @@ test("an address of a job that does not exist says so", async () => {
   } finally {
     await opened.close();
   }
-});
-
-for (const scheme of ["light", "dark"]) {
-  test(`axe finds nothing on Start and Design in the ${scheme} theme`, async () => {
-    await withPage("#/new/fopdt?K=1.25&T=40&L=8", { scheme }, async (page) => {
-      await page.getByText(/^Compare with/).click();
-      await page.getByRole("checkbox", { name: / simc$/ }).check();
-      await page.getByLabel("Kp", { exact: true }).fill("1.2");
-      assert.deepEqual(await accessibilityViolations(page), []);
-      await page.getByRole("button", { name: "Tune this model" }).click();
-      await designShown(page);
-      for (const summary of ["All figures", "How it was computed"])
-        await page.getByText(summary, { exact: true }).click();
-      await page.getByRole("button", { name: "Table" }).first().click();
-      assert.deepEqual(await accessibilityViolations(page), []);
-    });
-  });
-}
-
-for (const [name, width, height] of [
-  ["desktop", 1440, 900],
-  ["tablet", 834, 1194],
-  ["phone", 390, 844],
-]) {
-  test(`nothing is wider than the window on a ${name}`, async () => {
-    await withPage("", { width, height }, async (page) => {
-      assert.equal(await overflow(page), 0);
-      await page.getByRole("button", { name: "Tune this model" }).click();
-      await designShown(page);
-      assert.equal(await overflow(page), 0);
-    });
-  });
-}
-
-test("what the first visit loads stays below 100 kB compressed", async () => {
-  const { gzipSync } = await import("node:zlib");
-  const html = await (await fetch(`${tests.service.base}/`)).text();
-  const assets = [...html.matchAll(/(?:src|href)="\.\/([^"]+)"/g)].map((match) => match[1]);
-  let total = gzipSync(html).length;
-  for (const asset of assets)
-    total += gzipSync(
-      Buffer.from(await (await fetch(`${tests.service.base}/${path.posix.normalize(asset)}`)).arrayBuffer()),
-    ).length;
-  assert.ok(assets.length >= 2);
-  assert.ok(total <= 100 * 1024, `${total} bytes`);
 });

@@ -20,6 +20,14 @@ std::variant<Request, Problem> decode(const Json& value, const Description<Reque
     return request;
 }
 
+/// The same from the text of a body.
+template <class Request>
+std::variant<Request, Problem> read_body(std::string_view body, const Description<Request>& contract) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    return decode(std::get<Json>(parsed), contract);
+}
+
 Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
@@ -164,9 +172,7 @@ JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
 }
 
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
-    const auto parsed = parse(stored.json);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
-    auto decoded = decode(std::get<Json>(parsed), job_contract());
+    auto decoded = read_body(stored.json, job_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
     return computed(std::get<JobRequest>(std::move(decoded)), stored.hash, control);
 }
@@ -199,9 +205,7 @@ std::string progress_json(const Progress& progress) {
 }
 
 Answer evaluate_call(std::string_view body, const RunControl& control) {
-    const auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
-    const auto decoded = decode(std::get<Json>(parsed), evaluate_request_contract());
+    const auto decoded = read_body(body, evaluate_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
@@ -213,9 +217,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
 }
 
 Answer identify_call(std::string_view body, const RunControl& control) {
-    const auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
-    const auto decoded = decode(std::get<Json>(parsed), identify_request_contract());
+    const auto decoded = read_body(body, identify_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<IdentifyRequest>(decoded);
 
@@ -223,9 +225,7 @@ Answer identify_call(std::string_view body, const RunControl& control) {
 }
 
 Answer relay_call(std::string_view body, const RunControl& control) {
-    const auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
-    const auto decoded = decode(std::get<Json>(parsed), relay_request_contract());
+    const auto decoded = read_body(body, relay_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<RelayRequest>(decoded);
 

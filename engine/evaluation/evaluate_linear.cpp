@@ -101,10 +101,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
         warn_of_limits(evaluation, setpoint, *o.actuator, "set-point");
         warn_of_limits(evaluation, load, *o.actuator, "load");
     }
-    if (!setpoint.settles || !load.settles)
-        evaluation.warnings.push_back(
-            {"does-not-settle",
-             "The response does not settle within the time computed; figures that need it are empty."});
+    if (!setpoint.settles || !load.settles) warn_of_no_rest(evaluation);
     if (o.points < 2) return;
     const double horizon = o.horizon ? *o.horizon : o.trace_horizon.value_or(covering_horizon(setpoint, load));
     evaluation.responses = Responses{trace_of(setpoint, horizon, o.points), trace_of(load, horizon, o.points),

@@ -62,10 +62,7 @@ void warn_of_runs(Evaluation& evaluation, const Runs& runs) {
                                          " step; Ms, Mt and the margins hold for the unlimited loop."});
         settles = settles && (run->escaped || run->loop.settles);
     }
-    if (!settles)
-        evaluation.warnings.push_back(
-            {"does-not-settle",
-             "The response does not settle within the time computed; figures that need it are empty."});
+    if (!settles) warn_of_no_rest(evaluation);
 }
 
 /// Where the linearisation does not tell what these steps do.

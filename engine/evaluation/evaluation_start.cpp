@@ -98,4 +98,9 @@ void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
                               "; do not use it."});
 }
 
+void warn_of_no_rest(Evaluation& evaluation) {
+    evaluation.warnings.push_back(
+        {"does-not-settle", "The response does not settle within the time computed; figures that need it are empty."});
+}
+
 }  // namespace tunewright

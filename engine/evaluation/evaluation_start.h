@@ -1,4 +1,4 @@
-// What every evaluation begins with: what it makes sure of, and what does not depend on the plant.
+// What evaluations have in common: what they make sure of first, and what they say whatever the plant.
 #pragma once
 
 #include <optional>
@@ -23,5 +23,8 @@ Error of_controller(Error error);
 
 /// An unstable loop's figures and warning.
 void mark_unstable(Evaluation& evaluation, const StabilityCount& count);
+
+/// Adds that a response does not come to rest within the time computed.
+void warn_of_no_rest(Evaluation& evaluation);
 
 }  // namespace tunewright

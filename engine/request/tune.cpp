@@ -152,7 +152,7 @@ void TuningRun::evaluate_into(TuningEntry& entry, const Controller& controller, 
 
 // The method's own, completed, and what was asked for of every controller.
 void TuningRun::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
-    if (!entry.evaluation) return;
+    if (!entry.evaluation || !(own || request_.evaluate.tradeoff)) return;
     if (!tradeoffs_) tradeoffs_.emplace(subject_->nominal(), request_.evaluate);
     if (own) {
         own->complete({*subject_, request_.evaluate, *tradeoffs_}, *entry.evaluation);

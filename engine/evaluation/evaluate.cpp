@@ -1,7 +1,6 @@
 #include "engine/evaluation/evaluate.h"
 
 #include "engine/evaluation/evaluate_linear.h"
-#include "engine/evaluation/evaluate_measured.h"
 #include "engine/evaluation/evaluate_nonlinear.h"
 #include "engine/loop/loop.h"
 

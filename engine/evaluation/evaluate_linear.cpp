@@ -4,19 +4,21 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluation_start.h"
-#include "engine/evaluation/family_figures.h"
-#include "engine/evaluation/frequency_traces.h"
 #include "engine/evaluation/measured_response.h"
 #include "engine/evaluation/nonlinear_figures.h"
 #include "engine/evaluation/performance_figures.h"
 #include "engine/evaluation/robustness_figures.h"
+#include "engine/loop/measured_loop.h"
 #include "engine/number_text.h"
 #include "engine/simulation/limited/limited_response.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
+
 namespace {
+
+constexpr double kRounding = 1e-9;  // of a count of samples over their number
 
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
 constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
@@ -93,7 +95,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
         evaluation.warnings.push_back(
             {"coarse-figures",
              "Halving the time steps still moves an index by more than is promised, or could not be tried; "
-             "verification tells by how much."});
+             "verification says by how much."});
     if (delta_r) {
         evaluation.nonlinear = nonlinear_figures(loop, *delta_r);
         warn_of_nonlinearity(evaluation, setpoint, load, o);
@@ -112,7 +114,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
 std::string share(double fraction) {
     if (fraction > 0.999) return "more than 99.9 %";
     if (fraction < 0.001) return "less than 0.1 %";
-    return text(std::floor(1000 * fraction + 1e-9) / 10) + " %";
+    return text(std::floor(1000 * fraction + kRounding) / 10) + " %";
 }
 
 void add_region(Evaluation& evaluation, const PlantFamily& family) {
@@ -145,6 +147,33 @@ Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Control
     }
     if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
     if (!subject.family.single()) add_region(evaluation, subject.family);
+    return evaluation;
+}
+
+namespace {
+
+constexpr const char* kNoTime =
+    "The plant is known by points of its frequency response alone, which have no response over time.";
+
+}  // namespace
+
+Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Controller& controller,
+                                       const EvaluateOptions& options) {
+    if (auto error = refuse_evaluation(controller, options)) return *error;
+    const auto loop = MeasuredLoop::make(plant, gains(controller));
+    if (!loop) return of_controller(loop.error());
+    if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
+
+    Evaluation evaluation = begun(controller, options);
+    evaluation.performance = no_performance(kNoTime);
+    if (options.noise) evaluation.performance.noise = NoisePerformance{no_figure(kNoTime), no_figure(kNoTime)};
+    const StabilityCount count = loop->count_unstable_poles();
+    if (count.stable())
+        evaluation.robustness = robustness_of(loop->peaks(), loop->margins());
+    else
+        mark_unstable(evaluation, count);
+    if (std::holds_alternative<Npid>(controller)) warn_of_linear_part(evaluation);
+    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, options.points);
     return evaluation;
 }
 

@@ -65,7 +65,7 @@ void warn_of_runs(Evaluation& evaluation, const Runs& runs) {
     if (!settles) warn_of_no_rest(evaluation);
 }
 
-/// Where the linearisation does not tell what these steps do.
+/// Warns where the linearisation's figures for these steps are far from the plant's own.
 void warn_of_distance(Evaluation& evaluation) {
     const Performance &own = evaluation.performance, &linear = evaluation.linear->performance;
     std::string differences;

@@ -1,4 +1,5 @@
-// What evaluations have in common: what they make sure of first, and what they say whatever the plant.
+// What every evaluation begins with: the checks that come first, and the remarks that do not depend on the kind of
+// plant.
 #pragma once
 
 #include <optional>

@@ -23,7 +23,7 @@ struct MeasuredResponse {
 
 using Simulate = std::function<StepResponse(const ResponseOptions&)>;
 
-/// `simulate` is run with `options` and then finer: on the halved schedule where it tells one, else with a sixteenth of
+/// `simulate` is run with `options` and then finer: on the halved schedule where it gives one, else with a sixteenth of
 /// the tolerance (which halves steps of order 4) or less. `target` is what y is to reach. Without a horizon the
 /// integrals go to infinity.
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target);

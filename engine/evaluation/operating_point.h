@@ -1,4 +1,4 @@
-// Where a nonlinear plant rests, and what it looks like from there: what an answer tells of both.
+// Where a nonlinear plant rests, and its linearisation there.
 #pragma once
 
 #include "engine/plant/nonlinear/nonlinear_system.h"

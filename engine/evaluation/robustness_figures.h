@@ -1,17 +1,33 @@
-// Peaks and margins as the contract tells them.
+// What an evaluation says over frequency: peaks and margins, the same over a family of plants, and the loop's curves.
+
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/loop/frequency_grid.h"
 #include "engine/loop/margins.h"
+#include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/plant/uncertain/plant_family.h"
 
 namespace tunewright {
 
 /// Of a stable loop.
 Robustness robustness_of(const Peaks& peaks, const Margins& margins);
 
-/// Every figure empty, and why.
+/// Of an unstable loop: every figure is empty and has the reason.
 Robustness unstable_robustness(const StabilityCount& count);
+
+/// How one controller serves every plant of a family. `stable_fraction`: of each region, by 128 points spread uniformly
+/// over its parameters, the mean over the plants of a set; 1 only where no unstable plant was found anywhere.
+/// `worst_Ms`: the largest at those points, at the regions' ends and where a local search from the worst of them leads.
+RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller);
+
+/// The loop's curves, thinned out for drawing: at most about `points` frequencies of the decades that matter: the
+/// grid's own, with more where the Nyquist curve bends near the critical point, phase unwrapped on the fine grid.
+FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points);
+
+/// The whole measured band.
+FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points);
 
 }  // namespace tunewright

@@ -11,7 +11,7 @@
 namespace tunewright {
 
 /// The 95 % confidence region of the chosen model, and beside it the best fit of every structure that the record does
-/// not tell from its own. Error: numerical_failure where the covariance is no covariance.
+/// not distinguish from its own. Error: numerical_failure where the covariance is no covariance.
 Expected<PlantFamily> identified_region(const IdentifiedModel& model);
 
 /// Whether some plant of the region is unstable, or beyond the limit on Ms that the method was asked for, if it was.

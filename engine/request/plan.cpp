@@ -1,8 +1,13 @@
 #include "engine/request/plan.h"
 
-#include "engine/request/league.h"
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
+
 namespace {
 
 Error unknown_method(const std::string& id, const std::string& where) {
@@ -19,7 +24,7 @@ Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& re
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const std::string where = "tune/" + std::to_string(i);
         if (requests[i].of_all()) {
-            for (PlannedRow& row : league_rows(requests[i].options)) {
+            for (PlannedRow& row : comparison_rows(requests[i].options)) {
                 row.where = where;
                 planned.push_back(std::move(row));
             }
@@ -32,6 +37,90 @@ Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& re
     if (planned.empty())
         return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
     return planned;
+}
+
+namespace {
+
+std::string first_name(const std::string& path) { return path.substr(0, path.find('/')); }
+
+// One row for each controller with integral action: without it a load leaves a lasting error.
+std::vector<MethodVariant> variants_of(const TuningMethod& method) {
+    if (!method.variants.empty()) return method.variants;
+    std::vector<MethodVariant> variants;
+    if (const OptionDescription* controller = named(method.options, kControllerOption)) {
+        for (const std::string& choice : controller->choices) {
+            if (choice == "P") continue;
+            variants.push_back({choice, {}});
+            variants.back().options.set(kControllerOption, choice);
+        }
+    }
+    if (variants.empty()) variants.push_back({});
+    return variants;
+}
+
+Error unsuitable(const std::string& path, const std::string& message) {
+    return {ErrorKind::unsupported, path, message};
+}
+
+// The given options that the method knows, or what in them does not suit it.
+Expected<MethodOptions> known_options(const MethodOptions& given, const TuningMethod& method) {
+    MethodOptions known;
+    for (const auto& [path, value] : given.values()) {
+        if (!named(method.options, first_name(path))) {
+            if (path != kControllerOption || value == OptionValue(std::string("PID"))) continue;
+            return unsuitable(
+                path, method.id + " tunes PID controllers only; " + std::get<std::string>(value) + " was asked for.");
+        }
+        if (const auto fault = misfit(method.options, path, value))
+            return unsuitable(path, method.id + " cannot take this: " + *fault);
+        known.set(path, value);
+    }
+    return known;
+}
+
+bool contradicts(const MethodOptions& variant, const MethodOptions& given) {
+    return std::ranges::any_of(variant.values(), [&](const auto& item) {
+        const auto at = given.values().find(item.first);
+        return at != given.values().end() && at->second != item.second;
+    });
+}
+
+std::string row_title(const TuningMethod& method, const std::string& variant) {
+    return variant.empty() ? method.title : method.title + " (" + variant + ")";
+}
+
+}  // namespace
+
+std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
+    std::vector<PlannedRow> rows;
+    for (const TuningMethod& method : method_registry()) {
+        const auto known = known_options(given, method);
+        if (!known) {
+            rows.push_back({&method, {}, method.title, known.error(), {}, true});
+            continue;
+        }
+        const std::size_t before = rows.size();
+        for (const MethodVariant& variant : variants_of(method)) {
+            if (contradicts(variant.options, *known)) continue;
+            MethodOptions options = variant.options;
+            for (const auto& [path, value] : known->values()) options.set(path, value);
+            rows.push_back({&method, std::move(options), row_title(method, variant.name), {}, {}, true});
+        }
+        if (rows.size() > before) continue;
+        const auto controller = known->text(kControllerOption);
+        rows.push_back({&method, *known, row_title(method, controller.value_or("")), {}, {}, true});
+    }
+    return rows;
+}
+
+bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms) {
+    const auto key = [&](const Evaluation& e) {
+        const auto worst_Ms = e.region ? e.region->worst_Ms : e.robustness.Ms;
+        const bool within = e.robustness.stable && worst_Ms && *worst_Ms <= rank_Ms;
+        const auto& IAE = e.performance.load.IAE;
+        return std::tuple(!within, !e.robustness.stable, IAE ? *IAE : std::numeric_limits<double>::infinity());
+    };
+    return key(a) < key(b);
 }
 
 }  // namespace tunewright

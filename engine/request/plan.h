@@ -1,4 +1,6 @@
 // What a request's list of methods asks for, row by row.
+// For method "all": the rows of a comparison of every method, and the order in which its entries rank.
+
 #pragma once
 
 #include <optional>
@@ -6,8 +8,10 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/method/options.h"
 
 namespace tunewright {
 
@@ -29,7 +33,15 @@ struct PlannedRow {
     bool of_all = false;
 };
 
-/// In the request's order, "all" expanded (league.h). Errors: invalid_argument for an unknown method or none.
+/// In the request's order, "all" expanded. Errors: invalid_argument for an unknown method or none.
 Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& requests);
+
+/// Every method's variants (method.h), in the registry's order. Each takes those of the `given` options that it knows;
+/// a variant that contradicts one is left out; a method without any variant left is one row with its refusal.
+std::vector<PlannedRow> comparison_rows(const MethodOptions& given);
+
+/// Whether `a` comes before `b`: stable with Ms <= rank_Ms (on the worst plant of a region) first, then stable, then
+/// the rest, each by load IAE.
+bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms);
 
 }  // namespace tunewright

@@ -7,7 +7,7 @@
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
 #include "engine/request/identified_region.h"
-#include "engine/request/league.h"
+#include "engine/request/plan.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
 
 namespace tunewright {
@@ -254,20 +254,20 @@ void TuningRun::keep_best(const TuningEntry& entry) {
     best_ = BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
 }
 
-// Reasons that several methods share are told once.
+// A reason that several methods share is stated once.
 Error all_failed(const std::vector<TuningEntry>& entries) {
-    std::vector<std::pair<std::string, std::string>> told;  // methods, reason
+    std::vector<std::pair<std::string, std::string>> reasons;  // methods, reason
     for (const auto& entry : entries) {
-        const auto at = std::ranges::find(told, entry.error->message, &std::pair<std::string, std::string>::second);
-        if (at == told.end())
-            told.emplace_back(entry.method, entry.error->message);
+        const auto at = std::ranges::find(reasons, entry.error->message, &std::pair<std::string, std::string>::second);
+        if (at == reasons.end())
+            reasons.emplace_back(entry.method, entry.error->message);
         else if (!(", " + at->first).ends_with(", " + entry.method))
             at->first += ", " + entry.method;
     }
     Error error = *entries.front().error;
-    if (told.size() == 1) return error;
+    if (reasons.size() == 1) return error;
     error.message = "No method gave a controller.";
-    for (const auto& [methods, reason] : told) error.message.append(" ").append(methods).append(": ").append(reason);
+    for (const auto& [methods, reason] : reasons) error.message.append(" ").append(methods).append(": ").append(reason);
     return error;
 }
 
@@ -314,8 +314,8 @@ void TuningRun::compare_with_optima(double from) {
 }
 
 bool TuningRun::wants_optima() const {
-    const bool league = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
-    return problem_ && request_.evaluate.optimum_at_Ms.value_or(league);
+    const bool of_all = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
+    return problem_ && request_.evaluate.optimum_at_Ms.value_or(of_all);
 }
 
 Expected<TuningResult> TuningRun::result() {

@@ -1,5 +1,5 @@
 // How one controller serves every plant of a family.
-#include "engine/evaluation/family_figures.h"
+#include "engine/evaluation/robustness_figures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/tuning/robust/cost_surface.h"
+#include "engine/tuning/robust/robust.h"
 
 #include "api/contract/reports/reports.h"
 

@@ -1,4 +1,5 @@
 // Servo/regulation rules: one PID for set points and loads, by robustness or by allowed degradation.
+
 #pragma once
 
 #include "engine/tuning/arrieta/arrieta_rule.h"

@@ -4,7 +4,7 @@
 #include "engine/tuning/emulation/level_one.h"
 #include "engine/tuning/emulation/options.h"
 #include "engine/tuning/emulation/report.h"
-#include "engine/tuning/emulation/search/search.h"
+#include "engine/tuning/emulation/search.h"
 #include "engine/tuning/method/rule.h"
 
 namespace tunewright {

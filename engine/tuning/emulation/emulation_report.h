@@ -1,4 +1,5 @@
-// What the method emulation tells beside its controller. Times from the step; y and u absolute; J in the user's units.
+// What the method emulation reports beside its controller. Times from the step; y and u absolute; J in the user's
+// units.
 #pragma once
 
 #include <complex>

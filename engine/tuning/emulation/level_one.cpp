@@ -6,15 +6,78 @@
 #include <numbers>
 
 #include "engine/number_text.h"
+#include "engine/numerics/local_minimum.h"
+#include "engine/plant/plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/tuning/emulation/emulation.h"
-#include "engine/tuning/emulation/step_model.h"
 #include "engine/tuning/emulation/target.h"
 #include "engine/tuning/model_based/imc.h"
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright::emulation {
+
 namespace {
+
+constexpr double kTolerance = 1e-12;
+constexpr int kMaxEvaluations = 600;
+constexpr double kLeastT = 1e-3;          // of the test's length, to start from
+constexpr double kLeastSquares = 1e-300;  // keeps the logarithm of an exact fit finite
+constexpr double kFirstSteps = 0.1;       // in ln T, and of L relative to T
+
+// K by least squares for a shape, and the sum of squares that is left.
+struct Fit {
+    double K = 0, left = 0;
+};
+
+Fit fit(const StepTest& test, double T, double L) {
+    double ys = 0, ss = 0, yy = 0;
+    for (std::size_t i = 0; i < test.t.size(); ++i) {
+        const double s = test.t[i] > L ? -std::expm1(-(test.t[i] - L) / T) : 0;
+        ys += s * test.y[i];
+        ss += s * s;
+        yy += test.y[i] * test.y[i];
+    }
+    return {ys / ss / test.du, std::max(0.0, yy - ys * ys / ss)};
+}
+
+double time_at(const StepTest& test, double share) {
+    const double level = share * test.y.back();
+    for (std::size_t i = 0; i < test.t.size(); ++i)
+        if (std::abs(test.y[i]) >= std::abs(level)) return test.t[i];
+    return test.t.back();
+}
+
+StepTest held_as_long_again(StepTest test) {
+    const std::size_t rows = test.t.size();
+    const double end = test.t.back();
+    for (std::size_t i = 1; i < rows; ++i) {
+        test.t.push_back(end + test.t[i]);
+        test.y.push_back(test.y[rows - 1]);
+    }
+    return test;
+}
+
+// The first-order model with dead time of a simulated test, which has no noise and no offset: the least sum of squared
+// differences over K, T > 0 and L >= 0; the test's last value counts for as long again. Errors: unsupported for a test
+// that has not settled.
+Expected<Fopdt> first_order_model(const StepTest& recorded) {
+    if (!recorded.settled || recorded.t.size() < 2)
+        return Error{ErrorKind::unsupported, "plant",
+                     "The simulated step test does not settle, so it has no first-order model: the plant integrates or "
+                     "is unstable. Name methods for such plants, simc or lambda, in bounds_from, or give bounds."};
+    const StepTest test = held_as_long_again(recorded);
+    // The two instants of Smith's construction (28.3 % and 63.2 %) to start from.
+    const double slow = time_at(test, 0.632), fast = time_at(test, 0.283);
+    const double T0 = std::max(1.5 * (slow - fast), kLeastT * test.t.back());
+    const auto left = [&](const std::vector<double>& x, bool&) {
+        const double T = T0 * std::exp(std::clamp(x[0], -7.0, 7.0)), L = T0 * std::max(0.0, x[1]);
+        return std::log(fit(test, T, L).left + kLeastSquares);
+    };
+    const auto found = find_local_minimum(LocalSearch::nelder_mead, left, {0, std::max(0.0, slow / T0 - 1)},
+                                          {{kFirstSteps, kFirstSteps}, kTolerance, kMaxEvaluations});
+    const double T = T0 * std::exp(std::clamp(found.x[0], -7.0, 7.0)), L = T0 * std::max(0.0, found.x[1]);
+    return Fopdt{.K = fit(test, T, L).K, .T = T, .L = L};
+}
 
 constexpr double kMaxHysteresis = 3;    // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
 constexpr double kSlowIntegral = 4;     // Ti over the target's time, where the nonlinear controller gives Kp
@@ -207,7 +270,7 @@ Expected<std::vector<LevelOneRow>> level_one(const EmulationProblem& problem, co
 
 Expected<Bounds> search_bounds(const EmulationProblem& problem, const std::vector<LevelOneRow>& rows) {
     std::map<std::string, NumberRange> ranges = problem.bounds;
-    double sign = 0;  // that of the first row: an unstable plant's gain does not tell
+    double sign = 0;  // that of the first row: an unstable plant's static gain does not show it
     std::vector<Pid> settings;
     for (const LevelOneRow& row : rows) {
         const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;

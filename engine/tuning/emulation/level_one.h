@@ -1,11 +1,12 @@
 // The first level: classical settings from tests simulated on the nonlinear plant and from its linearisation, and the
 // bounds that follow from them (Eq. 3).
+
 #pragma once
 
 #include <vector>
 
 #include "engine/tuning/emulation/emulation_report.h"
-#include "engine/tuning/emulation/search/parameters.h"
+#include "engine/tuning/emulation/problem.h"
 
 namespace tunewright::emulation {
 

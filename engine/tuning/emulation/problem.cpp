@@ -11,6 +11,7 @@
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright::emulation {
+
 namespace {
 
 constexpr double kShareOfInput = 0.05;   // of the nominal input, or of its range: the default step
@@ -205,6 +206,35 @@ Expected<EmulationProblem> state_problem(const TuningProblem& plant, const Emula
     if (!level_one) return level_one.error();
     problem.level_one = std::move(*level_one);
     return problem;
+}
+
+std::vector<std::string> unknowns(const EmulationProblem& problem) {
+    std::vector<std::string> names = {"Kp", "Ti"};
+    if (problem.with_derivative) names.emplace_back("Td");
+    if (problem.free_Tf()) names.emplace_back("Tf");
+    return names;
+}
+
+Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point) {
+    Pid pid{.Kp = point[0], .Ti = point[1]};
+    if (!problem.with_derivative) return pid;
+    pid.Td = point[2];
+    pid.c = problem.error_derivative ? 1 : 0;
+    pid.filter = {FilterType::derivative, problem.free_Tf() ? point[3] : problem.Tf};
+    return pid;
+}
+
+SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid) {
+    SettingsPoint point = {pid.Kp, pid.Ti};
+    if (problem.with_derivative) point.push_back(pid.Td);
+    if (problem.free_Tf()) point.push_back(pid.filter.Tf > 0 ? pid.filter.Tf : problem.Tf);
+    return point;
+}
+
+SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds) {
+    SettingsPoint inside = point;
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = std::clamp(inside[i], bounds.low[i], bounds.high[i]);
+    return inside;
 }
 
 }  // namespace tunewright::emulation

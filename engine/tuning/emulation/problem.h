@@ -1,4 +1,5 @@
-// The emulation problem: which runs of which plants a PID is to resemble, counted how, within which bounds.
+// The emulation problem: the plants and scenarios to run, the weights of their errors, and the bounds of the settings.
+
 #pragma once
 
 #include <map>
@@ -60,5 +61,23 @@ Expected<EmulationProblem> state_problem(const TuningProblem& plant, const Emula
 
 /// Magnitude of the linearisation's static gain; of an integrating plant the gain at frequency 1/time.
 double gain_size(const LinearPlant& plant, double time);
+
+/// The unknowns of the second level: Kp, Ti, with PID Td, with a free filter Tf, in this order.
+using SettingsPoint = std::vector<double>;
+
+/// The unknowns' names, in the order of a point's coordinates.
+std::vector<std::string> unknowns(const EmulationProblem& problem);
+
+struct Bounds {
+    SettingsPoint low, high;
+};
+
+/// The controller at a point: b = 1, the filter derivative with PID.
+Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
+
+/// The point of a controller; a PI of a PID problem has Td = 0.
+SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid);
+
+SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
 
 }  // namespace tunewright::emulation

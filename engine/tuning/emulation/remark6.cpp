@@ -1,22 +1,111 @@
 #include "engine/tuning/emulation/remark6.h"
 
 #include <algorithm>
+#include <array>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
-
-#include "engine/tuning/emulation/error_signals.h"
-#include "engine/tuning/robust/quadratic_program.h"
+#include <functional>
+#include <vector>
 
 namespace tunewright::emulation {
+
 namespace {
 
-constexpr double kOnLimit = 1e-9;  // relative
-constexpr double kRidge = 1e-13;   // of the scaled normal matrix
-constexpr int kLimitRounds = 30;   // until the samples beyond a limit stay the same
-constexpr int kFilterScan = 9;     // points of a free filter
-constexpr int kFilterSteps = 40;   // of the golden section between them
-constexpr double kGolden = 0.6180339887498949;
+constexpr double kSeriesUpTo = 3;  // of h/Tf, where the recursion starts to be the accurate one
+constexpr int kSeriesTerms = 40;
 
-using Gains = std::array<double, 3>;
+using Four = std::array<double, 4>;
+
+// Coefficients in powers of sigma of the cubic with value 1 at position `at` and 0 at the other three of -first, 1 -
+// first, ...
+Four lagrange(int at, int first) {
+    Four c{1, 0, 0, 0};
+    int degree = 0;
+    double scale = 1;
+    for (int j = 0; j < 4; ++j) {
+        if (j == at) continue;
+        const double root = j - first;
+        for (int k = ++degree; k > 0; --k) {
+            const auto i = static_cast<std::size_t>(k);
+            c[i] = c[i - 1] - root * c[i];
+        }
+        c[0] *= -root;
+        scale *= at - j;
+    }
+    for (double& value : c) value /= scale;
+    return c;
+}
+
+// Weights of four neighbours in an integral over one interval, from the integrals of sigma^k over it; `first` of them
+// lie before the interval's start.
+Four interval_weights(const Four& moments, int first) {
+    Four weights{};
+    for (int at = 0; at < 4; ++at) {
+        const Four c = lagrange(at, first);
+        for (std::size_t k = 0; k < 4; ++k) weights[static_cast<std::size_t>(at)] += c[k] * moments[k];
+    }
+    return weights;
+}
+
+// a int_0^1 e^(-a (1 - sigma)) sigma^k d sigma for k = 0 to 3.
+Four filter_moments(double a) {
+    Four moments{};
+    if (a > kSeriesUpTo) {
+        moments[0] = -std::expm1(-a);
+        for (std::size_t k = 1; k < 4; ++k) moments[k] = 1 - static_cast<double>(k) / a * moments[k - 1];
+        return moments;
+    }
+    for (int k = 0; k < 4; ++k) {
+        double term = 1.0 / (k + 1), sum = term;
+        for (int j = 1; j < kSeriesTerms; ++j) sum += term *= -a / (j + k + 1);
+        moments[static_cast<std::size_t>(k)] = a * sum;
+    }
+    return moments;
+}
+
+// Calls `step(i, integral)` with the weighted integral over each interval i.
+void over_intervals(const std::vector<double>& samples, const Four& moments,
+                    const std::function<void(std::size_t, double)>& step) {
+    const std::array<Four, 3> weights = {interval_weights(moments, 0), interval_weights(moments, 1),
+                                         interval_weights(moments, 2)};
+    const std::size_t last = samples.size() - 1;
+    for (std::size_t i = 0; i < last; ++i) {
+        const std::size_t before = i == 0 ? 0 : i + 1 == last ? 2 : 1;
+        double sum = 0;
+        for (std::size_t k = 0; k < 4; ++k) sum += weights[before][k] * samples[i - before + k];
+        step(i, sum);
+    }
+}
+
+// The integral from the first sample on, by cubics; samples h apart, at least four.
+std::vector<double> running_integral(const std::vector<double>& samples, double h) {
+    std::vector<double> integral(samples.size(), 0);
+    over_intervals(samples, {1, 1.0 / 2, 1.0 / 3, 1.0 / 4},
+                   [&](std::size_t i, double part) { integral[i + 1] = integral[i] + h * part; });
+    return integral;
+}
+
+// (e - x)/Tf with Tf x' = e - x from x0: the derivative of e behind a first-order filter.
+std::vector<double> filtered_derivative(const std::vector<double>& e, double h, double Tf, double x0) {
+    std::vector<double> derivative(e.size());
+    const double a = h / Tf, decay = std::exp(-a);
+    double x = x0;
+    derivative[0] = (e[0] - x) / Tf;
+    over_intervals(e, filter_moments(a), [&](std::size_t i, double part) {
+        x = decay * x + part;
+        derivative[i + 1] = (e[i + 1] - x) / Tf;
+    });
+    return derivative;
+}
+
+constexpr double kOnLimit = 1e-9;        // relative
+constexpr double kRidge = 1e-13;         // of the scaled normal matrix
+constexpr int kLimitRounds = 30;         // until the samples beyond a limit stay the same
+constexpr int kFilterScan = 9;           // points of a free filter
+constexpr int kFilterBits = 26;          // of ln Tf between them: half of the digits, which is what a minimum shows
+constexpr double kNoController = 1e100;  // J of a filter with which there is none
+
+using Gains = robust::Vector3;
 
 Gains gains_at(const SettingsPoint& point) {
     return {point[0], point[0] / point[1], point.size() > 2 ? point[0] * point[2] : 0};
@@ -99,27 +188,22 @@ std::optional<Remark6::Found> Remark6::best_of_sign(double sign, double Tf, cons
     std::vector<bool> beyond(u_nl_.size(), false), next(u_nl_.size());
     std::optional<Found> best;
     for (int round = 0; round < kLimitRounds; ++round) {
-        robust::Matrix3 H{};
-        robust::Vector3 g{};
+        robust::Matrix3 H = robust::Matrix3::Zero();
+        robust::Vector3 g = robust::Vector3::Zero();
         for (std::size_t i = 0; i < u_nl_.size(); ++i) {
             if (beyond[i]) continue;
-            for (std::size_t j = 0; j < 3; ++j) {
-                g[j] -= sign * weights_[i] * signals[j][i] * u_nl_[i];
-                for (std::size_t k = 0; k <= j; ++k) H[j][k] += weights_[i] * signals[j][i] * signals[k][i];
-            }
+            const robust::Vector3 at(signals[0][i], signals[1][i], signals[2][i]);
+            g -= sign * weights_[i] * u_nl_[i] * at;
+            H += weights_[i] * at * at.transpose();
         }
-        Gains scale{1, 1, 1};
-        for (std::size_t j = 0; j < 3; ++j)
-            if (H[j][j] > 0) scale[j] = 1 / std::sqrt(H[j][j]);
-        for (std::size_t j = 0; j < 3; ++j) {
-            g[j] *= scale[j];
-            for (std::size_t k = 0; k <= j; ++k) H[k][j] = H[j][k] *= scale[j] * scale[k];
-            H[j][j] += kRidge;
-        }
+        Gains scale = Gains::Ones();
+        for (int j = 0; j < 3; ++j)
+            if (H(j, j) > 0) scale[j] = 1 / std::sqrt(H(j, j));
+        g = g.cwiseProduct(scale);
+        H = (scale.asDiagonal() * H * scale.asDiagonal()).eval() + kRidge * robust::Matrix3::Identity();
         const auto solved = robust::solve_quadratic_program(n, H, g, half_planes(sign, bounds, scale, n == 3));
         if (!solved) return best;
-        Gains gains{};
-        for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) gains[j] = sign * scale[j] * solved->p[j];
+        const Gains gains = sign * scale.cwiseProduct(solved->p);
         if (!(sign * gains[0] > 0) || !(sign * gains[1] > 0)) return best;
         const double J = J_of(gains, signals, &next);
         if (!best || J < best->J) {
@@ -151,7 +235,7 @@ std::optional<SettingsPoint> Remark6::best(const Bounds& bounds) const {
     const auto at = [&](double log_Tf) {
         const auto found = best_with(std::exp(log_Tf), bounds);
         if (found && (!best || found->J < best->J)) best = found;
-        return found ? found->J : HUGE_VAL;
+        return found ? found->J : kNoController;
     };
     if (!problem_.free_Tf()) {
         best = best_with(problem_.Tf, bounds);
@@ -161,19 +245,9 @@ std::optional<SettingsPoint> Remark6::best(const Bounds& bounds) const {
         std::array<double, kFilterScan> J{};
         for (int i = 0; i < kFilterScan; ++i) J[static_cast<std::size_t>(i)] = at(low + i * step);
         const auto least = std::ranges::min_element(J) - J.begin();
-        double left = std::max(low, low + static_cast<double>(least - 1) * step);
-        double right = std::min(high, low + static_cast<double>(least + 1) * step);
-        double inner = right - kGolden * (right - left), outer = left + kGolden * (right - left);
-        double J_inner = at(inner), J_outer = at(outer);
-        for (int i = 0; i < kFilterSteps; ++i) {
-            if (J_inner < J_outer) {
-                right = outer, outer = inner, J_outer = J_inner;
-                J_inner = at(inner = right - kGolden * (right - left));
-            } else {
-                left = inner, inner = outer, J_inner = J_outer;
-                J_outer = at(outer = left + kGolden * (right - left));
-            }
-        }
+        const double left = std::max(low, low + static_cast<double>(least - 1) * step);
+        const double right = std::min(high, low + static_cast<double>(least + 1) * step);
+        boost::math::tools::brent_find_minima(at, left, right, kFilterBits);  // `at` keeps the best
     }
     if (!best) return std::nullopt;
     return best->point;

@@ -1,12 +1,14 @@
 // Remark 6: the PID's error taken from the nonlinear controller's run, u compared alone. Its u is then linear in Kp,
 // Kp/Ti and Kp Td, and the least-squares problem is solved exactly inside the bounds.
+
 #pragma once
 
 #include <array>
 #include <optional>
 
-#include "engine/tuning/emulation/search/parameters.h"
-#include "engine/tuning/emulation/trajectories.h"
+#include "engine/tuning/emulation/criterion.h"
+#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/robust/quadratic_program.h"
 
 namespace tunewright::emulation {
 
@@ -30,7 +32,7 @@ private:
     };
 
     Signals signals(double Tf) const;
-    double J_of(const std::array<double, 3>& gains, const Signals& signals, std::vector<bool>* beyond) const;
+    double J_of(const robust::Vector3& gains, const Signals& signals, std::vector<bool>* beyond) const;
     std::optional<Found> best_with(double Tf, const Bounds& bounds) const;
     std::optional<Found> best_of_sign(double sign, double Tf, const Signals& signals, const Bounds& bounds) const;
 

@@ -2,32 +2,116 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
 
 #include "engine/number_text.h"
-#include "engine/tuning/emulation/search/flatness.h"
-#include "engine/tuning/emulation/search/search.h"
+#include "engine/numerics/linear_algebra.h"
+#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/emulation/search.h"
 
 namespace tunewright::emulation {
+
 namespace {
+
+constexpr double kRise = 0.05;  // of J, by which the flatness is measured
+
+// How far each unknown may move before J has risen by kRise: the others follow (reoptimised), or stay (alone).
+struct Flatness {
+    std::vector<double> reoptimised, alone;
+};
+
+constexpr double kFirstStep = 1e-3;   // relative to the unknown
+constexpr double kRiseSought = 2e-3;  // of J, relative, at the steps of the differences
+constexpr double kMaxStep = 0.3;
+constexpr int kStepRounds = 8;
+
+// Steps to either side at which the curvature of J stands out and is still that of the optimum.
+struct Differences {
+    SettingsPoint step, curvature;
+};
+
+double second_difference(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& at, double J0,
+                         std::size_t i, double step) {
+    SettingsPoint up = at, down = at;
+    up[i] += step;
+    down[i] -= step;
+    return (J(up) - 2 * J0 + J(down)) / (step * step);
+}
+
+std::optional<Differences> measure(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& at,
+                                   const SettingsPoint& sizes, double J0) {
+    Differences found{SettingsPoint(at.size()), SettingsPoint(at.size())};
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        double step = kFirstStep * sizes[i];
+        for (int round = 0; round < kStepRounds; ++round) {
+            found.step[i] = step;
+            found.curvature[i] = second_difference(J, at, J0, i, step);
+            const double rise = 0.5 * found.curvature[i] * step * step / J0;
+            if (rise > kRiseSought / 4 && rise < kRiseSought * 4) break;
+            const double factor = rise > 0 ? std::sqrt(kRiseSought / rise) : 10;
+            step = std::min(step * std::clamp(factor, 0.01, 30.0), kMaxStep * sizes[i]);
+        }
+        if (!(found.curvature[i] > 0)) return std::nullopt;
+    }
+    return found;
+}
+
+// From the Hessian of J at the optimum. `J` is finite near it, on both sides of bounds; `sizes` are those that the
+// unknowns may have. An optimum on a bound counts with its curvature all the same. Empty: no curvature that stands out
+// from rounding.
+std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& optimum,
+                                 const SettingsPoint& sizes) {
+    const std::size_t n = optimum.size();
+    const double J0 = J(optimum);
+    if (!(J0 > 0)) return std::nullopt;
+    const auto found = measure(J, optimum, sizes, J0);
+    if (!found) return std::nullopt;
+    std::vector<double> H(n * n, 0);  // in units of the steps
+    for (std::size_t i = 0; i < n; ++i) H[i * n + i] = found->curvature[i] * found->step[i] * found->step[i];
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            double mixed = 0;
+            for (const int a : {1, -1})
+                for (const int b : {1, -1}) {
+                    SettingsPoint moved = optimum;
+                    moved[i] += a * found->step[i];
+                    moved[j] += b * found->step[j];
+                    mixed += a * b * J(moved);
+                }
+            H[i * n + j] = H[j * n + i] = mixed / 4;
+        }
+    Flatness flat;
+    for (std::size_t i = 0; i < n; ++i) {
+        std::vector<double> unit(n, 0);
+        unit[i] = 1;
+        const auto column = solve(H, unit, static_cast<int>(n));
+        if (!column || !((*column)[i] > 0)) return std::nullopt;
+        flat.reoptimised.push_back(found->step[i] * std::sqrt(2 * kRise * J0 * (*column)[i]));
+        flat.alone.push_back(std::sqrt(2 * kRise * J0 / found->curvature[i]));
+    }
+    return flat;
+}
 
 constexpr double kOnBound = 1e-6;        // of the range
 constexpr double kLeftOfU = 0.1;         // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
 constexpr double kLeftOfY = 0.05;        // of int y_nl^2, likewise
 constexpr double kMinSize = 1e-3;        // of an unknown near 0, relative to its range
-constexpr int kReportedIntervals = 400;  // intervals of what is told
+constexpr int kReportedIntervals = 400;  // of a run in the answer
 
-// Every so many samples are told.
+// The answer carries every so many samples.
 std::size_t stride(const EmulationProblem& problem) {
     return static_cast<std::size_t>(problem.intervals / kReportedIntervals);
 }
 
-std::vector<double> told(const std::vector<double>& samples, double rest, std::size_t stride) {
+std::vector<double> thinned(const std::vector<double>& samples, double rest, std::size_t stride) {
     std::vector<double> values;
     for (std::size_t i = 0; i < samples.size(); i += stride) values.push_back(rest + samples[i]);
     return values;
 }
 
-std::vector<double> told_times(std::size_t samples, const EmulationProblem& problem) {
+std::vector<double> thinned_times(std::size_t samples, const EmulationProblem& problem) {
     std::vector<double> times;
     for (std::size_t i = 0; i < samples; i += stride(problem))
         times.push_back(problem.horizon * static_cast<double>(i) / problem.intervals);
@@ -68,20 +152,20 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pi
         const double share = 1 / static_cast<double>(problem.scenarios.size());
         report.fit.u_left += share * share_left(wanted.u_nl, done.u, wanted.u_size, weights);
         report.fit.y_left += share * share_left(wanted.y_nl, done.y, wanted.y_size, weights);
-        EmulatedScenario told_of;
-        told_of.setpoint_step = asked.setpoint_step;
-        told_of.initial = asked.initial;
-        told_of.parameters = asked.parameters;
-        told_of.y_rest = asked.system->y_steady();
-        told_of.u_rest = asked.system->u_nominal();
-        told_of.t = told_times(wanted.y_nl.size(), problem);
-        told_of.y_nl = told(wanted.y_nl, told_of.y_rest, every);
-        told_of.u_nl = told(wanted.u_nl, told_of.u_rest, every);
-        told_of.y = told(done.y, told_of.y_rest, every);
-        told_of.u = told(done.u, told_of.u_rest, every);
-        told_of.limited = wanted.limited;
-        told_of.ended = done.ended;
-        report.scenarios.push_back(std::move(told_of));
+        EmulatedScenario row;
+        row.setpoint_step = asked.setpoint_step;
+        row.initial = asked.initial;
+        row.parameters = asked.parameters;
+        row.y_rest = asked.system->y_steady();
+        row.u_rest = asked.system->u_nominal();
+        row.t = thinned_times(wanted.y_nl.size(), problem);
+        row.y_nl = thinned(wanted.y_nl, row.y_rest, every);
+        row.u_nl = thinned(wanted.u_nl, row.u_rest, every);
+        row.y = thinned(done.y, row.y_rest, every);
+        row.u = thinned(done.u, row.u_rest, every);
+        row.limited = wanted.limited;
+        row.ended = done.ended;
+        report.scenarios.push_back(std::move(row));
     }
     judge_fit(report.fit);
 }
@@ -96,9 +180,9 @@ void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remar
     const PidRun run = criterion.run(0, *pid, kFineTolerance);
     if (row.ended.empty()) row.ended = run.ended;
     const std::size_t every = stride(problem);
-    row.t = told_times(run.y.size(), problem);
-    row.y = told(run.y, problem.scenarios.front().system->y_steady(), every);
-    row.u = told(run.u, problem.scenarios.front().system->u_nominal(), every);
+    row.t = thinned_times(run.y.size(), problem);
+    row.y = thinned(run.y, problem.scenarios.front().system->y_steady(), every);
+    row.u = thinned(run.u, problem.scenarios.front().system->u_nominal(), every);
 }
 
 void add_bounds(EmulationReport& report, const EmulationProblem& problem, const EmulatedDesign& design) {

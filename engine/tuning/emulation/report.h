@@ -1,9 +1,10 @@
-// What is told of the emulating controller and of the runs that it was chosen from.
+// The report on the emulating controller and on the runs that it was chosen from.
+
 #pragma once
 
+#include "engine/tuning/emulation/criterion.h"
 #include "engine/tuning/emulation/emulation_report.h"
 #include "engine/tuning/emulation/remark6.h"
-#include "engine/tuning/emulation/search/criterion.h"
 
 namespace tunewright::emulation {
 

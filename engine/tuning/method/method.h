@@ -30,7 +30,7 @@ struct TunedController {
     bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
-    std::shared_ptr<MethodReport> report;  ///< what the method tells beside the controller; may be null
+    std::shared_ptr<MethodReport> report;  ///< what the method reports beside the controller; may be null
     std::optional<double> Ms_limit;        ///< that was asked for
     bool partial = false;                  ///< stopped early: the best feasible design so far
 

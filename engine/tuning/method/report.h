@@ -1,4 +1,4 @@
-// What a method tells beside its controller. Each kind is a type of its own in the method's folder; the contract
+// What a method reports beside its controller. Each kind is a type of its own in the method's folder; the contract
 // encodes it by its type.
 #pragma once
 

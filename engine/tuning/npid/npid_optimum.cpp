@@ -26,6 +26,16 @@ constexpr int kPolishes = 8;
 constexpr double kPolished = 2e-5;  // gain in ln at which they end
 constexpr int kExpected = kExplored + (kStarts + 2) * kLocalEvaluations;
 constexpr int kReportEvery = 50;
+// The box, in Ku, Pu and the sum of the lags: wider than any optimum that was found by searches without one.
+constexpr double kLeastGain = 0.02, kMostGain = 10;
+constexpr double kLeastTi = 0.05, kMostTi = 20;
+constexpr double kLeastTd = 2e-3;
+constexpr double kWideStep = 0.15, kWideTolerance = 1e-5;      // of the local searches, in ln
+constexpr double kNarrowStep = 0.03, kNarrowTolerance = 1e-7;  // of the polish
+constexpr double kRounding = 1e-9;                             // in ln, of a point on the box's edge
+// Of the responses: the coarser ones tell valleys apart, the finer ones show what a polish wins.
+constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-6;
+constexpr double kSettledOfTolerance = 0.01;
 constexpr double kNearBound = 1e-3;  // in ln
 constexpr int kMaxSteps = 4000;      // of a response; what has not settled then is no candidate
 
@@ -37,10 +47,10 @@ public:
         double lags = 0;
         for (const auto pole : problem.plant.poles()) lags += 1 / std::abs(pole);
         with_derivative_ = problem.plant.pole_excess() > 0 || problem.Tf_over_Td > 0 || problem.Tf;
-        box_.low = {std::log(0.02 * Ku), std::log(0.05 * Pu)};
-        box_.high = {std::log(10 * Ku), std::log(20 * (Pu + lags))};
+        box_.low = {std::log(kLeastGain * Ku), std::log(kLeastTi * Pu)};
+        box_.high = {std::log(kMostGain * Ku), std::log(kMostTi * (Pu + lags))};
         if (with_derivative_) {
-            box_.low.push_back(std::log(2e-3 * Pu));
+            box_.low.push_back(std::log(kLeastTd * Pu));
             box_.high.push_back(std::log(Pu + lags));
         }
         time_ = Pu;
@@ -50,7 +60,7 @@ public:
         const auto f = [this](const std::vector<double>& x, bool& stop) { return log_cost(x, stop); };
         std::vector<LocalMinimum> starts = apart(explore(f, box_, kExplored));
         if (problem_.start) starts.push_back({logs(*problem_.start), 0});
-        const LocalOptions wide{std::vector<double>(box_.low.size(), 0.15), 1e-5, kLocalEvaluations};
+        const LocalOptions wide{std::vector<double>(box_.low.size(), kWideStep), kWideTolerance, kLocalEvaluations};
         for (const auto& start : starts)
             if (!stopped_) find_local_minimum(LocalSearch::subplex, f, start.x, wide);
         if (!(best_.value < kNoLoop)) return nothing_found();
@@ -63,7 +73,8 @@ private:
     /// From the best point with finer responses, again and again: the valleys are narrow and bent where the plant's lag
     /// is long against its dead time.
     void polish(const std::function<double(const std::vector<double>&, bool&)>& f) {
-        const LocalOptions narrow{std::vector<double>(box_.low.size(), 0.03), 1e-7, kLocalEvaluations};
+        const LocalOptions narrow{std::vector<double>(box_.low.size(), kNarrowStep), kNarrowTolerance,
+                                  kLocalEvaluations};
         best_.value = kNoLoop;  // of the coarser responses
         for (int i = 0; i < kPolishes && !stopped_; ++i) {
             const double before = best_.value;
@@ -104,7 +115,7 @@ private:
 
     bool within(const std::vector<double>& x) const {
         for (std::size_t i = 0; i < x.size(); ++i)
-            if (!(x[i] >= box_.low[i] - 1e-9 && x[i] <= box_.high[i] + 1e-9)) return false;
+            if (!(x[i] >= box_.low[i] - kRounding && x[i] <= box_.high[i] + kRounding)) return false;
         return true;
     }
 
@@ -114,8 +125,8 @@ private:
         if (!loop) return kNoLoop;
         if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMaxNeutral) return kNoLoop;
         ResponseOptions options;
-        options.tolerance = fine_ ? 1e-6 : 1e-4;
-        options.settled = fine_ ? 1e-8 : 1e-6;
+        options.tolerance = fine_ ? kFineTolerance : kRoughTolerance;
+        options.settled = kSettledOfTolerance * options.tolerance;
         options.max_steps = kMaxSteps;
         const StepResponse response = simulate_npid(problem_.plant, loop->gains(), 1, {1, 0}, options);
         if (!response.settles) return kNoLoop;

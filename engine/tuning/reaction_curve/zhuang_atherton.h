@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/tuning/method/first_order_rule.h"
-#include "engine/tuning/reaction_curve/error_integral_table.h"
+#include "engine/tuning/reaction_curve/error_integral_rules.h"
 
 namespace tunewright {
 

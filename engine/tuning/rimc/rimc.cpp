@@ -9,6 +9,7 @@
 namespace tunewright {
 namespace {
 
+constexpr double kRounding = 1e-6;   // relative: of a lambda or an error that was asked for as a printed figure
 constexpr double kNearLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
 constexpr double kSlow = 2;          // L/T up to which the source has results
 constexpr int kCurvePoints = 60;
@@ -111,7 +112,7 @@ void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, doubl
     else if (limit && lambda < kNearLimit * *limit)
         warnings.push_back({"near-stability-limit", figures + "A small error of the model may make the loop unstable. "
                                                               "Give a larger lambda, or an Ms in its place."});
-    if (branch.branch() && lambda > branch.branch()->high * (1 + 1e-6))
+    if (branch.branch() && lambda > branch.branch()->high * (1 + kRounding))
         warnings.push_back(outside_validity("lambda = " + text(lambda) + " is beyond " + text(branch.branch()->high) +
                                             ", where Ms is least (" + text(branch.least_Ms()) +
                                             "): the response is slower without being more robust."));
@@ -126,7 +127,7 @@ std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch
                                             "beyond 2 T it gains little and its PID follows the design badly."));
     if (options.dead_time_error) {
         const double asked = *options.dead_time_error, all = branch.dead_time_error(lambda).value_or(0);
-        if (all < asked * (1 - 1e-6))
+        if (all < asked * (1 - kRounding))
             warnings.push_back({"smaller-errors-too",
                                 "Eq. 29 holds for the error " + text(asked) +
                                     ", but not for all smaller ones: for "

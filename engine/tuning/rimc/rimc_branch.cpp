@@ -22,10 +22,17 @@ constexpr double kOfNoDeadTime = 1.4142135623730951;  // theta = 0: |S| <= 1 as 
 constexpr double kLimitAccuracy = 1e-7;               // of the stability limit, relative
 constexpr double kRootTolerance = 1e-11;              // of ln lambda
 constexpr int kPointsPerDecade = 60;                  // of the sweep that finds the branch
+// That sweep's ends, times 1/T or 1/L: no Ms of a PID of the branch peaks beyond them.
+constexpr double kLowestSwept = 0.03, kHighestSwept = 300;
+constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time shows nothing more
+constexpr int kMaxHalvings = 60;         // of ln lambda: more than its digits
+constexpr double kOpenEnd = 1e-9;        // relative: where the admissible range excludes its end
+constexpr double kFirstStep = 1e-4;      // relative, from the sweep's answer to a bracket of the true one
 
 /// Where `holds` ends between a point at which it does and one at which it does not.
-double boundary(const std::function<bool(double)>& holds, double inside, double outside, double accuracy = 1e-11) {
-    for (int i = 0; i < 60 && std::abs(inside / outside - 1) > accuracy; ++i) {
+double boundary(const std::function<bool(double)>& holds, double inside, double outside,
+                double accuracy = kRootTolerance) {
+    for (int i = 0; i < kMaxHalvings && std::abs(inside / outside - 1) > accuracy; ++i) {
         const double middle = std::sqrt(inside * outside);
         (holds(middle) ? inside : outside) = middle;
     }
@@ -39,7 +46,8 @@ LinearPlant scaled_plant(const Fopdt& model) { return *LinearPlant::make(Fopdt{1
 RimcBranch::RimcBranch(const Fopdt& model, const RimcFilter& filter)
     : model_(model), scaled_{1, 1, model.L / model.T}, filter_(filter), plant_(scaled_plant(model)) {
     find_admissible();
-    const double highest = 300 / std::clamp(scaled_.L, 1e-3, 1.0), lowest = 0.03 / std::max(1.0, scaled_.L);
+    const double highest = kHighestSwept / std::clamp(scaled_.L, kShortestSwept, 1.0),
+                 lowest = kLowestSwept / std::max(1.0, scaled_.L);
     const int n = static_cast<int>(kPointsPerDecade * std::log10(highest / lowest));
     for (int i = 0; i <= n; ++i) {
         omega_.push_back(lowest * std::pow(highest / lowest, static_cast<double>(i) / n));
@@ -116,7 +124,7 @@ void RimcBranch::find_least_Ms() {
 }
 
 void RimcBranch::find_stability_limit() {
-    const double lowest = std::max(scaled_admissible_.low * (1 + 1e-9), kSmallest);
+    const double lowest = std::max(scaled_admissible_.low * (1 + kOpenEnd), kSmallest);
     const auto stable = [&](double x) { return stable_loop(x).has_value(); };
     double& low = scaled_branch_->low;
     while (low * kStep > lowest) {
@@ -212,7 +220,7 @@ Expected<double> RimcBranch::lambda_for_Ms(double Ms) const {
         reach.x.value_or(Ms > least_Ms_ * 1.01 ? scaled_branch_->low * (1 + 2 * kLimitAccuracy) : scaled_branch_->high);
     // The sweep is off by little: from its answer outwards until the true Ms lies on both sides.
     double f = excess(near), next = near, f_next = f;
-    for (double step = 1e-4; f != 0 && (f < 0) == (f_next < 0); step *= 4) {
+    for (double step = kFirstStep; f != 0 && (f < 0) == (f_next < 0); step *= 4) {
         near = next;
         f = f_next;
         next = std::clamp(f < 0 ? near / (1 + step) : near * (1 + step), scaled_branch_->low, scaled_branch_->high);

@@ -5,7 +5,7 @@
 
 #include "engine/controller/imc_controller.h"
 #include "engine/plant/plant.h"
-#include "engine/tuning/model_based/imc_terms.h"
+#include "engine/tuning/model_based/imc.h"
 
 namespace tunewright {
 

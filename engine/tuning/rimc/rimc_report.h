@@ -1,4 +1,4 @@
-// What the revised IMC design tells beside its controller.
+// What the revised IMC design reports beside its controller.
 #pragma once
 
 #include <optional>

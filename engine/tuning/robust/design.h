@@ -18,6 +18,9 @@ enum class Constraint { circles, m_circle };
 
 enum class Objective { load_iae, load_ie, setpoint_iae, weighted };
 
+/// fast: scan and quadratic programming; nelder_mead, grid: the searches of the paper.
+enum class SearchKind { fast, nelder_mead, grid };
+
 /// Tf as a fixed time or as a fraction of Td; neither: no filter (PI).
 struct FilterRule {
     std::optional<double> Tf;
@@ -78,5 +81,9 @@ inline Pid controller_at(const DesignProblem& problem, const DesignPoint& x) {
     if (Tf > 0) pid.filter = {FilterType::measurement_second_order, Tf};
     return pid;
 }
+
+/// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
+/// falls through -180 degrees; else 1/L; else the filter's or the slowest lag's corner.
+double reference_frequency(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

@@ -11,7 +11,7 @@
 namespace tunewright::robust {
 
 /// Members of the tuning problem's family beside the nominal plant. Error: no_feasible_controller if they need gains of
-/// both signs; `sign_of` tells a plant's sign.
+/// both signs; `sign_of` gives a plant's sign.
 Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, double (*sign_of)(const LinearPlant&));
 
 /// Density of the frequency grid, as make_loop_grid's.

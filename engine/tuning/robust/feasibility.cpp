@@ -7,12 +7,13 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/local_minimum.h"
-#include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
+#include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {
 namespace {
 
+constexpr double kPeakTolerance = 1e-5;        // of ln M: a hundredth of what is promised
 constexpr double kFarTi = 200, kFarTd = 1e-3;  // times the period over 2 pi at the reference frequency
 constexpr double kUnstable = 20;               // ln of the larger peak, where the loop is unstable
 
@@ -75,7 +76,7 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
     // Started anew with shorter steps: the larger of two peaks has kinks on which a search stalls.
     for (const double step : {0.4, 0.1, 0.1}) {
         const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
-                                              {.step = std::vector<double>(n, step), .tolerance = 1e-5});
+                                              {.step = std::vector<double>(n, step), .tolerance = kPeakTolerance});
         centre = stepped(found.x);
         least = found.value;
     }

@@ -1,69 +1,47 @@
 #include "engine/tuning/robust/quadratic_program.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <span>
 
 namespace tunewright::robust {
 namespace {
 
-constexpr int kMaxSize = 6;
+constexpr int kMaxSize = 6;           // unknowns and multipliers
+constexpr double kSingular = 1e-13;   // the least pivot; H and the constraints' gradients are of the order of 1
+constexpr double kNegative = -1e-10;  // a multiplier below it pulls in the wrong direction; above it, it is rounding
+constexpr double kSlack = 1e-9;       // of a constraint, absolute and relative to its b
 
-/// Gaussian elimination with pivoting on [A | b], size at most 6. False: singular.
-bool eliminate(std::array<std::array<double, kMaxSize + 1>, kMaxSize>& A, int size) {
-    for (int k = 0; k < size; ++k) {
-        int pivot = k;
-        for (int i = k + 1; i < size; ++i)
-            if (std::abs(A[std::size_t(i)][std::size_t(k)]) > std::abs(A[std::size_t(pivot)][std::size_t(k)]))
-                pivot = i;
-        if (std::abs(A[std::size_t(pivot)][std::size_t(k)]) < 1e-13) return false;
-        std::swap(A[std::size_t(k)], A[std::size_t(pivot)]);
-        for (int i = 0; i < size; ++i) {
-            if (i == k) continue;
-            const double factor = A[std::size_t(i)][std::size_t(k)] / A[std::size_t(k)][std::size_t(k)];
-            for (int j = k; j <= size; ++j)
-                A[std::size_t(i)][std::size_t(j)] -= factor * A[std::size_t(k)][std::size_t(j)];
-        }
-    }
-    for (int k = 0; k < size; ++k) A[std::size_t(k)][std::size_t(size)] /= A[std::size_t(k)][std::size_t(k)];
-    return true;
-}
-
-double dot(const Vector3& a, const Vector3& b, int n) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += a[std::size_t(i)] * b[std::size_t(i)];
-    return sum;
-}
+using System = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxSize, kMaxSize>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSize, 1>;
 
 /// The stationary point with the given constraints as equations; kept if it satisfies all others and pulls in the right
 /// direction.
 std::optional<QuadraticSolution> try_active_set(int n, const Matrix3& H, const Vector3& g,
                                                 const std::vector<LinearConstraint>& constraints,
-                                                const std::array<int, 3>& active, int count) {
-    std::array<std::array<double, kMaxSize + 1>, kMaxSize> A{};
-    const int size = n + count;
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) A[std::size_t(i)][std::size_t(j)] = H[std::size_t(i)][std::size_t(j)];
-        A[std::size_t(i)][std::size_t(size)] = -g[std::size_t(i)];
-        for (int k = 0; k < count; ++k) {
-            const double a = constraints[std::size_t(active[std::size_t(k)])].a[std::size_t(i)];
-            A[std::size_t(i)][std::size_t(n + k)] = a;
-            A[std::size_t(n + k)][std::size_t(i)] = a;
-        }
+                                                std::span<const int> active) {
+    const int count = static_cast<int>(active.size());
+    System A = System::Zero(n + count, n + count);
+    Column right(n + count);
+    A.topLeftCorner(n, n) = H.topLeftCorner(n, n);
+    right.head(n) = -g.head(n);
+    for (int k = 0; k < count; ++k) {
+        const auto& constraint = constraints[std::size_t(active[std::size_t(k)])];
+        A.col(n + k).head(n) = constraint.a.head(n);
+        A.row(n + k).head(n) = constraint.a.head(n).transpose();
+        right[n + k] = constraint.b;
     }
-    for (int k = 0; k < count; ++k)
-        A[std::size_t(n + k)][std::size_t(size)] = constraints[std::size_t(active[std::size_t(k)])].b;
-    if (!eliminate(A, size)) return std::nullopt;
+    const Eigen::PartialPivLU<System> lu(A);
+    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() < kSingular) return std::nullopt;
+    const Column x = lu.solve(right);
+    if (count > 0 && x.tail(count).minCoeff() < kNegative) return std::nullopt;
     QuadraticSolution solution;
-    for (int i = 0; i < n; ++i) solution.p[std::size_t(i)] = A[std::size_t(i)][std::size_t(size)];
-    for (int k = 0; k < count; ++k)
-        if (A[std::size_t(n + k)][std::size_t(size)] < -1e-10) return std::nullopt;
+    solution.p.head(n) = x.head(n);
     for (const auto& c : constraints)
-        if (dot(c.a, solution.p, n) > c.b + 1e-9 * (1 + std::abs(c.b))) return std::nullopt;
+        if (c.a.dot(solution.p) > c.b + kSlack * (1 + std::abs(c.b))) return std::nullopt;
     solution.multipliers.assign(constraints.size(), 0);
-    for (int k = 0; k < count; ++k)
-        solution.multipliers[std::size_t(active[std::size_t(k)])] =
-            std::max(0.0, A[std::size_t(n + k)][std::size_t(size)]);
+    for (int k = 0; k < count; ++k) solution.multipliers[std::size_t(active[std::size_t(k)])] = std::max(0.0, x[n + k]);
     return solution;
 }
 
@@ -72,17 +50,20 @@ std::optional<QuadraticSolution> try_active_set(int n, const Matrix3& H, const V
 std::optional<QuadraticSolution> solve_quadratic_program(int n, const Matrix3& H, const Vector3& g,
                                                          const std::vector<LinearConstraint>& constraints) {
     const int m = static_cast<int>(constraints.size());
-    if (auto free = try_active_set(n, H, g, constraints, {}, 0)) return free;
+    const auto attempt = [&](std::initializer_list<int> active) {
+        return try_active_set(n, H, g, constraints, {active.begin(), active.size()});
+    };
+    if (auto free = attempt({})) return free;
     for (int i = 0; i < m; ++i)
-        if (auto one = try_active_set(n, H, g, constraints, {i}, 1)) return one;
+        if (auto one = attempt({i})) return one;
     for (int i = 0; i < m; ++i)
         for (int j = i + 1; j < m; ++j)
-            if (auto two = try_active_set(n, H, g, constraints, {i, j}, 2)) return two;
+            if (auto two = attempt({i, j})) return two;
     if (n < 3) return std::nullopt;
     for (int i = 0; i < m; ++i)
         for (int j = i + 1; j < m; ++j)
             for (int k = j + 1; k < m; ++k)
-                if (auto three = try_active_set(n, H, g, constraints, {i, j, k}, 3)) return three;
+                if (auto three = attempt({i, j, k})) return three;
     return std::nullopt;
 }
 

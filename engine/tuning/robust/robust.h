@@ -1,11 +1,14 @@
 // Robust design: the least IAE of a load step under limits on Ms and Mt (Garpinger and Hagglund 2008).
+
 #pragma once
 
 #include <map>
+#include <optional>
+#include <vector>
 
+#include "engine/tuning/method/report.h"
 #include "engine/tuning/method/rule.h"
 #include "engine/tuning/robust/design.h"
-#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {
 
@@ -48,6 +51,13 @@ private:
 
     const TuningProblem& problem_;
     std::map<double, Expected<Design>> known_;
+};
+
+/// The method's report with `surface`: the least cost over Kp; cost[i][j] belongs to Ti[i] (time) and Td[j] (time).
+/// Empty: no Kp keeps the limits.
+struct CostSurface : MethodReport {
+    std::vector<double> Ti, Td;
+    std::vector<std::vector<std::optional<double>>> cost;
 };
 
 }  // namespace tunewright

@@ -14,28 +14,40 @@ constexpr double kNear = -0.25;     // constraints below it cannot become active
 constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
 constexpr double kFeasible = 1e-8;  // and accepted with this much slack
 
-Vector3 difference(const Vector3& a, const Vector3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector3 times(const Matrix3& H, const Vector3& v) { return {dot(H[0], v), dot(H[1], v), dot(H[2], v)}; }
-double longest(const Vector3& v) { return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])}); }
+constexpr int kMaxRestoring = 12;           // Newton steps back to the feasible side; three or four are usual
+constexpr double kNearOfRestoring = -0.1;   // constraints below it do not stop a step back
+constexpr double kRestoringRadius = 0.5;    // of a logarithm
+constexpr std::size_t kRestoringPeaks = 6;  // the largest ones, as constraints of a step back
+constexpr double kMinLessGain = 1e-6;       // ln: less gain where the peaks have no common linear way out
+constexpr double kMaxLessGain = 0.3;
+constexpr std::size_t kPeaks = 8;           // the largest ones, as constraints of a step
+constexpr double kFirstCurvature = 0.3;     // of ln(cost) over logarithms, before gradients have shown it
+constexpr double kLeastCurvature = 1e-300;  // of a step whose update would divide by nothing
+constexpr double kPowellDamping = 0.2;      // of s.H s, which s.y keeps at least (Powell 1978)
+constexpr double kSamePeak = 0.3;           // ln omega: a peak that moves further is another one
+constexpr double kEnoughWon = 0.05;         // of what the model promised, for a step to be taken
+constexpr double kMuchWon = 0.7;            // of it, for the trust region to grow
+constexpr double kSmallestRadius = 1e-5;    // of a logarithm: nothing is left to win in it
+constexpr double kLargestRadius = 4;        // beyond it the linear models have no common solution at all
+constexpr double kFarRestored = 4;          // radii: what restoring moved further is another design
 
+double longest(const Vector3& v) { return v.cwiseAbs().maxCoeff(); }
+Vector3 vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+Vector3 difference(const std::array<double, 3>& a, const std::array<double, 3>& b) { return vector(a) - vector(b); }
 DesignPoint moved(const DesignPoint& x, const Vector3& p) { return {x[0] + p[0], x[1] + p[1], x[2] + p[2]}; }
 
 /// BFGS on the Lagrangian with Powell's damping: stays positive definite where the constraints' curvature is not.
 void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
-    const Vector3 Hs = times(H, step);
-    const double sHs = dot(step, Hs), sy = dot(step, y);
-    if (!(sHs > 1e-300)) return;
-    if (sy < 0.2 * sHs) {
-        const double theta = 0.8 * sHs / (sHs - sy);
-        for (std::size_t i = 0; i < 3; ++i) y[i] = theta * y[i] + (1 - theta) * Hs[i];
+    const Vector3 Hs = H * step;
+    const double sHs = step.dot(Hs), sy = step.dot(y);
+    if (!(sHs > kLeastCurvature)) return;
+    if (sy < kPowellDamping * sHs) {
+        const double theta = (1 - kPowellDamping) * sHs / (sHs - sy);
+        y = theta * y + (1 - theta) * Hs;
     }
-    const double scale = dot(step, y);
-    if (!(scale > 1e-300)) return;
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            H[std::size_t(i)][std::size_t(j)] +=
-                y[std::size_t(i)] * y[std::size_t(j)] / scale - Hs[std::size_t(i)] * Hs[std::size_t(j)] / sHs;
+    const double scale = step.dot(y);
+    if (!(scale > kLeastCurvature)) return;
+    H.topLeftCorner(n, n) += (y * y.transpose() / scale - Hs * Hs.transpose() / sHs).topLeftCorner(n, n);
 }
 
 /// The peaks' linear models and the trust region, which ends at the bounds of Ti and Td, for a step from x.
@@ -44,23 +56,21 @@ std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, c
     std::vector<LinearConstraint> constraints;
     for (const auto& peak : peaks) {
         if (constraints.size() == most) break;
-        constraints.push_back({peak.gradient, -peak.value - kAimBelow});
+        constraints.push_back({vector(peak.gradient), -peak.value - kAimBelow});
     }
     const auto log_time = [&](double in_reference) { return std::log(in_reference / sweep.reference()); };
     const std::array<double, 3> lowest = {-INFINITY, log_time(kMinTi), log_time(kMinTd)};
     const std::array<double, 3> highest = {INFINITY, INFINITY, log_time(kMaxTd)};
     for (std::size_t i = 0; i < std::size_t(sweep.problem().dimension()); ++i) {
-        Vector3 up{}, down{};
-        up[i] = 1;
-        down[i] = -1;
+        const Vector3 up = Vector3::Unit(static_cast<Eigen::Index>(i));
         constraints.push_back({up, std::clamp(highest[i] - x[i], 0.0, radius)});
-        constraints.push_back({down, std::clamp(x[i] - lowest[i], 0.0, radius)});
+        constraints.push_back({-up, std::clamp(x[i] - lowest[i], 0.0, radius)});
     }
     return constraints;
 }
 
 /// The gradient, at the new point, of the peak that was `old`.
-Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
+const std::array<double, 3>& followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
     const ActivePeak* best = nullptr;
     for (const auto& peak : peaks)
         if (peak.kind == old.kind && peak.plant == old.plant &&
@@ -68,7 +78,7 @@ Vector3 followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
              std::abs(std::log(peak.omega / old.omega)) < std::abs(std::log(best->omega / old.omega))))
             best = &peak;
     const bool same =
-        best != nullptr && (best->omega == old.omega || std::abs(std::log(best->omega / old.omega)) < 0.3);
+        best != nullptr && (best->omega == old.omega || std::abs(std::log(best->omega / old.omega)) < kSamePeak);
     return same ? best->gradient : old.gradient;
 }
 
@@ -89,19 +99,19 @@ bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
 
 std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
     const int n = sweep.problem().dimension();
-    Matrix3 identity{};
-    for (std::size_t i = 0; i < 3; ++i) identity[i][i] = 1;
-    for (int k = 0; k < 12; ++k) {
-        const auto peaks = sweep.peaks(x, -0.1);
+    for (int k = 0; k < kMaxRestoring; ++k) {
+        const auto peaks = sweep.peaks(x, kNearOfRestoring);
         if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return x;
-        const auto step = solve_quadratic_program(n, identity, {}, linearised(peaks, sweep, x, 0.5, 6));
+        const auto step = solve_quadratic_program(n, Matrix3::Identity(), Vector3::Zero(),
+                                                  linearised(peaks, sweep, x, kRestoringRadius, kRestoringPeaks));
         if (step) {
             x = moved(x, step->p);
         } else {
-            x[0] -= std::min(0.3, std::max(1e-6, 1.5 * peaks[0].value));  // no common linear way out: less gain
+            x[0] -=
+                std::clamp(1.5 * peaks[0].value, kMinLessGain, kMaxLessGain);  // no common linear way out: less gain
         }
     }
-    const auto peaks = sweep.peaks(x, -0.1);
+    const auto peaks = sweep.peaks(x, kNearOfRestoring);
     if (peaks.empty() || peaks[0].value <= kFeasible) return x;
     return std::nullopt;
 }
@@ -115,19 +125,18 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
     result.log_cost = cost.value;
     if (!std::isfinite(cost.value)) return result;
     std::vector<ActivePeak> peaks = sweep.peaks(result.x, kNear);
-    Matrix3 H{};
-    for (std::size_t i = 0; i < 3; ++i) H[i][i] = 0.3;
+    Matrix3 H = kFirstCurvature * Matrix3::Identity();
     double radius = options.trust_radius;
     int small_steps = 0;
     for (; result.iterations < options.max_iterations; ++result.iterations) {
-        const auto constraints = linearised(peaks, sweep, result.x, radius, 8);
-        const auto step = solve_quadratic_program(n, H, cost.gradient, constraints);
+        const auto constraints = linearised(peaks, sweep, result.x, radius, kPeaks);
+        const auto step = solve_quadratic_program(n, H, vector(cost.gradient), constraints);
         if (!step) {
             radius *= 2;
-            if (radius > 4) break;
+            if (radius > kLargestRadius) break;
             continue;
         }
-        const double promised = -(dot(cost.gradient, step->p) + 0.5 * dot(step->p, times(H, step->p)));
+        const double promised = -(vector(cost.gradient).dot(step->p) + 0.5 * step->p.dot(H * step->p));
         if (promised < options.cost_tolerance) {
             result.converged = true;
             break;
@@ -135,23 +144,23 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
         // Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
         const auto candidate = restore(sweep, moved(result.x, step->p));
         double candidate_cost = INFINITY;
-        if (candidate && longest(difference(*candidate, result.x)) < 4 * radius && is_stable(problem, *candidate))
+        if (candidate && longest(difference(*candidate, result.x)) < kFarRestored * radius &&
+            is_stable(problem, *candidate))
             candidate_cost = log_cost(problem, *candidate, options.simulation_tolerance);
         const double won = cost.value - candidate_cost;
-        if (!(won > 0.05 * promised)) {
+        if (!(won > kEnoughWon * promised)) {
             radius = std::min(radius, longest(step->p)) * 0.3;
-            if (radius < 1e-5) break;
+            if (radius < kSmallestRadius) break;
             continue;
         }
-        if (won > 0.7 * promised) radius = std::min(2 * radius, 1.0);
+        if (won > kMuchWon * promised) radius = std::min(2 * radius, 1.0);
         const CostWithGradient next = log_cost_with_gradient(problem, *candidate, options.simulation_tolerance);
         const auto next_peaks = sweep.peaks(*candidate, kNear);
         Vector3 y = difference(next.gradient, cost.gradient);
-        for (std::size_t i = 0; i < std::min<std::size_t>(peaks.size(), 8); ++i) {
+        for (std::size_t i = 0; i < std::min(peaks.size(), kPeaks); ++i) {
             const double lambda = step->multipliers[i];
             if (lambda == 0) continue;
-            const Vector3 change = difference(followed(next_peaks, peaks[i]), peaks[i].gradient);
-            for (std::size_t k = 0; k < 3; ++k) y[k] += lambda * change[k];
+            y += lambda * difference(followed(next_peaks, peaks[i]), peaks[i].gradient);
         }
         update(H, difference(*candidate, result.x), y, n);
         result.x = *candidate;

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/loop/stability.h"
 #include "engine/tuning/robust/cost.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
+
 namespace {
 
 constexpr double kScanTolerance = 1e-3;  // of the simulations that only compare starting points
+constexpr double kRoughCost = 1e-4;      // of ln of the integrated error of a start
 constexpr int kMaxCompared = 12;
 constexpr std::size_t kMaxValleys = 4;
+constexpr double kSameTd = 1e-9;      // of ln Td: rounding of one value of the scan
 constexpr double kWiderLimits = 1.4;  // times M - 1
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
@@ -28,7 +32,7 @@ void consider(Candidate& best, const DesignProblem& problem, const DesignPoint& 
 DesignPoint least_integrated_error(const Sweep& sweep, DesignProblem problem, const DesignPoint& start) {
     problem.objective = Objective::load_ie;
     SqpOptions options;
-    options.cost_tolerance = 1e-4;
+    options.cost_tolerance = kRoughCost;
     return minimise(sweep, problem, start, options, {}).x;
 }
 
@@ -59,7 +63,7 @@ std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& pro
 std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points) {
     std::vector<Candidate> starts;
     for (const auto& point : points) {
-        const auto same_Td = [&](const Candidate& c) { return std::abs(c.x[2] - point.x[2]) < 1e-9; };
+        const auto same_Td = [&](const Candidate& c) { return std::abs(c.x[2] - point.x[2]) < kSameTd; };
         auto at = std::find_if(starts.begin(), starts.end(), same_Td);
         if (at == starts.end()) at = starts.insert(starts.end(), Candidate{.x = point.x});
         consider(*at, problem, point.x);
@@ -87,6 +91,69 @@ std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem
         if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, *inside);
     }
     return if_below(best, below);
+}
+
+namespace {
+
+constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
+constexpr double kInside = 1e-9;  // of a gain: from the end of a gap
+
+std::vector<double> spaced(double low, double high, int n) {
+    std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) values.push_back(low * std::pow(high / low, n > 1 ? double(i) / (n - 1) : 0.5));
+    return values;
+}
+
+/// A stable plant with an integral of the right sign is stable at low gain, so the first gap needs no count.
+bool stable_at_low_gain(const LinearPlant& plant, double sign) {
+    if (plant.integrators() != 0 || plant.unstable_poles() != 0) return false;
+    for (const auto pole : plant.poles())
+        if (pole.real() > -kOnAxis * std::abs(pole)) return false;
+    return sign * plant.low_frequency_gain() > 0;
+}
+
+bool first_gap_is_stable(const DesignProblem& problem) {
+    if (problem.measured) return false;
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        if (!stable_at_low_gain(problem.plant_at(i), problem.sign)) return false;
+    return true;
+}
+
+}  // namespace
+
+std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
+    const DesignProblem& problem = sweep.problem();
+    const auto gaps = sweep.gain_gaps(Ti, Td);
+    std::vector<double> gains;
+    const bool first_is_stable = first_gap_is_stable(problem);
+    for (std::size_t i = gaps.size(); i-- > 0;) {
+        const GainGap& gap = gaps[i];
+        if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + kInside)) continue;
+        const double middle = gap.lower > 0 ? std::sqrt(gap.lower * gap.upper) : 0.5 * gap.upper;
+        const bool known = gap.lower == 0 && first_is_stable;
+        if (!known && !is_stable(problem, {std::log(middle), std::log(Ti), problem.pid ? std::log(Td) : 0})) continue;
+        gains.push_back(gap.upper * (1 - kInside));
+        if (gap.lower > 0) gains.push_back(gap.lower * (1 + kInside));
+    }
+    return gains;
+}
+
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box) {
+    const DesignProblem& problem = sweep.problem();
+    const double unit = 1 / sweep.reference();
+    std::vector<ScanPoint> found;
+    const auto Td_values =
+        problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
+    for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
+        for (const double Td : Td_values) {
+            const auto gains = feasible_gains(sweep, Ti, Td);
+            if (gains.empty()) continue;
+            const double Kp = *std::max_element(gains.begin(), gains.end());
+            found.push_back({{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp)});
+        }
+    std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
+    return found;
 }
 
 }  // namespace tunewright::robust

@@ -15,17 +15,29 @@ constexpr int kPointsPerDecade = 40;
 constexpr double kDecades = 3;      // below and above the reference
 constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
+constexpr double kFilterDecade = 30;     // times 1/Tf: where a fixed filter has ended the loop
+constexpr double kTiedDecade = 10;       // times 1/(Tf of the least Td)
+constexpr double kResonant = 0.3;        // damping below which a root gets points of its own
+constexpr double kLeastWidth = 1e-5;     // of a resonance, over its frequency
+constexpr int kResonancePoints = 12;     // to either side, ever wider apart
+constexpr double kLeastDistance = 1e-6;  // of L from -1 where the dead time takes every phase: far beyond any limit
+constexpr double kPeakRoom = 0.1;        // ln: grid points so far below the threshold may lie beside a peak above it
+constexpr int kMaxParabolas = 6;         // around one peak; three are usual
+constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's top stays away from
+constexpr double kSameFrequency = 1e-7;  // ln omega: an error of 1e-14 of ln M
+constexpr double kSameValue = 1e-10;     // ln M
+constexpr double kBeyondAll = 50;        // ln of a ratio that has no end
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant& plant, double reference,
                                 double resolved_to) {
     const double L = plant.dead_time();
     double high = reference * std::pow(10, kDecades);
-    if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, 30 / *problem.filter.Tf);
+    if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, kFilterDecade / *problem.filter.Tf);
     // Where the plant itself does not fall a tied filter alone ends the loop, and |C S| peaks near 1/Tf on any plant:
     // up to beyond the shortest Tf, which belongs to the least Td.
     if (problem.pid && problem.filter.Tf_over_Td && (plant.pole_excess() == 0 || problem.limits.Mks))
-        high = std::max(high, 10 * reference / (*problem.filter.Tf_over_Td * kMinTd));
+        high = std::max(high, kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
     std::vector<double> omega;
@@ -34,10 +46,10 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
         w = w < resolved_to ? std::min(w * ratio, w + spacing) : w * ratio;
     }
     const auto add_resonance = [&](Complex root) {
-        if (root.imag() <= 0 || std::abs(root.real()) > 0.3 * std::abs(root)) return;
-        const double centre = std::abs(root), width = std::max(std::abs(root.real()), 1e-5 * centre);
-        for (int k = -12; k <= 12; ++k) {
-            const double w = centre + width * k * std::abs(k) / 12.0;
+        if (root.imag() <= 0 || std::abs(root.real()) > kResonant * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
+        for (int k = -kResonancePoints; k <= kResonancePoints; ++k) {
+            const double w = centre + width * k * std::abs(k) / kResonancePoints;
             if (w > low && w < std::min(high, resolved_to)) omega.push_back(w);
         }
     };
@@ -78,7 +90,7 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     curve.index = index;
     if (plant.dead_time() > 0) curve.resolved_to = kTurnsResolved * 2 * std::numbers::pi / plant.dead_time();
     curve.omega = frequencies(problem_, plant, reference_, curve.resolved_to);
-    // On an undamped pole P is infinite; its neighbours tell the same.
+    // On an undamped pole P is infinite; its neighbours show the same.
     std::erase_if(curve.omega, [&](double w) { return !std::isfinite(std::abs(plant.at({0, w}))); });
     return curve;
 }
@@ -114,13 +126,13 @@ void Sweep::complete(Curve& curve) const {
     for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());
 }
 
-Sweep::Shape Sweep::shape(const DesignPoint& x) const {
+Sweep::Gains Sweep::gains(const DesignPoint& x) const {
     const Pid pid = controller_at(problem_, x);
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
 
 /// The constraint's value at one frequency, exactly.
-double Sweep::value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const {
+double Sweep::value(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const {
     const Complex s(0, omega);
     const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
     return constraint_value(kind, worst_phase(curve, plant_at(curve, omega) * C, omega), C, problem_.limits,
@@ -129,11 +141,10 @@ double Sweep::value(const Curve& curve, ConstraintKind kind, const Shape& c, dou
 
 Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
     if (omega < curve.resolved_to) return L;
-    // Reached within a turn of the dead time; |L| >= 1 there is far beyond any limit.
-    return -std::min(std::abs(L), 1 - 1e-6);
+    return -std::min(std::abs(L), 1 - kLeastDistance);  // reached within a turn of the dead time
 }
 
-std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const {
+std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const {
     const Complex s(0, omega), integral = c.Ki / s, derivative = c.Kd * s, sum = c.Kp + integral + derivative;
     const Complex filter = 1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s);
     // d ln C by ln Kp, ln Ti, ln Td.
@@ -153,11 +164,11 @@ std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, c
     return result;
 }
 
-void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Shape& c,
+void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Gains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
     // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
-    const double from = std::exp(2 * (threshold - 0.1));
+    const double from = std::exp(2 * (threshold - kPeakRoom));
     for (std::size_t i = 0; i < n; ++i) {
         const bool first = i == 0, last = i + 1 == n;
         if (level[i] < from || (!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
@@ -167,12 +178,12 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
             // moves.
             double a = std::log(curve.omega[i - 1]), b = std::log(curve.omega[i]), d = std::log(curve.omega[i + 1]);
             double fa = 0.5 * std::log(level[i - 1]), fb = peak.value, fd = 0.5 * std::log(level[i + 1]);
-            for (int k = 0; k < 6; ++k) {
+            for (int k = 0; k < kMaxParabolas; ++k) {
                 const double left = (fb - fa) / (b - a), right = (fd - fb) / (d - b), bend = (right - left) / (d - a);
                 if (!(bend < 0)) break;
-                const double top =
-                    std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + 0.02 * (b - a), d - 0.02 * (d - b));
-                if (std::abs(top - b) < 1e-7) break;
+                const double top = std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + kParabolaEdge * (b - a),
+                                              d - kParabolaEdge * (d - b));
+                if (std::abs(top - b) < kSameFrequency) break;
                 const double f = value(curve, kind, c, std::exp(top));
                 const double gain = f - fb;
                 if (f >= fb) {
@@ -184,7 +195,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
                     (top > b ? d : a) = top;
                     (top > b ? fd : fa) = f;
                 }
-                if (std::abs(gain) < 1e-10) break;
+                if (std::abs(gain) < kSameValue) break;
             }
             peak.omega = std::exp(b);
             peak.value = fb;
@@ -195,7 +206,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
     }
 }
 
-void Sweep::add_limits(const Curve& curve, const Shape& c, double threshold, std::vector<ActivePeak>& found) const {
+void Sweep::add_limits(const Curve& curve, const Gains& c, double threshold, std::vector<ActivePeak>& found) const {
     // Without filter a direct loop gain q remains at infinite frequency.
     if (c.Tf > 0 || curve.plant == nullptr) return;
     const int excess = curve.plant->pole_excess() - (problem_.pid ? 1 : 0);
@@ -206,20 +217,20 @@ void Sweep::add_limits(const Curve& curve, const Shape& c, double threshold, std
     const std::size_t gain_index = problem_.pid ? 2 : 0;
     const auto add = [&](ConstraintKind kind, double value, double slope) {
         if (!(value >= threshold)) return;
-        ActivePeak peak{.kind = kind, .plant = curve.index, .omega = kInfinity, .value = std::min(value, 50.0)};
+        ActivePeak peak{.kind = kind, .plant = curve.index, .omega = kInfinity, .value = std::min(value, kBeyondAll)};
         peak.gradient[0] = slope;
         if (gain_index == 2) peak.gradient[2] = slope;
         found.push_back(peak);
     };
     const double size = std::abs(q);
-    add(ConstraintKind::S, nearest > 0 ? -std::log(problem_.limits.Ms * nearest) : 50,
-        nearest > 0 ? size / nearest : 50);
-    add(ConstraintKind::T, nearest > 0 ? std::log(size / nearest / problem_.limits.Mt) : 50,
-        nearest > 0 ? 1 / nearest : 50);
+    add(ConstraintKind::S, nearest > 0 ? -std::log(problem_.limits.Ms * nearest) : kBeyondAll,
+        nearest > 0 ? size / nearest : kBeyondAll);
+    add(ConstraintKind::T, nearest > 0 ? std::log(size / nearest / problem_.limits.Mt) : kBeyondAll,
+        nearest > 0 ? 1 / nearest : kBeyondAll);
 }
 
 /// Squared ratios to the limits at every frequency of the grid.
-void Sweep::fill_levels(Curve& curve, const Shape& c) const {
+void Sweep::fill_levels(Curve& curve, const Gains& c) const {
     const Limits& limits = problem_.limits;
     const double s_limit = 1 / (limits.Ms * limits.Ms), t_limit = 1 / (limits.Mt * limits.Mt);
     const double cs_limit = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0,
@@ -241,17 +252,17 @@ void Sweep::fill_levels(Curve& curve, const Shape& c) const {
     for (std::size_t i = curve.resolved; i < n; ++i) {
         const Complex C =
             Complex(c.Kp, c.Kd * w[i] - c.Ki / w[i]) / Complex(1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, w[i] * c.Tf);
-        const double size = std::abs(C) * std::hypot(pr[i], pi[i]), nearest = size < 1 ? 1 - size : 1e-6;
+        const double size = std::abs(C) * std::hypot(pr[i], pi[i]), nearest = size < 1 ? 1 - size : kLeastDistance;
         S[i] = s_limit / (nearest * nearest);
         T[i] = size * size * t_limit / (nearest * nearest);
         CS[i] = std::norm(C) * cs_limit / (nearest * nearest);
         const double to_circle = std::abs(circle_centre_) - size;
-        circle[i] = circle_limit / std::max(to_circle * to_circle, 1e-12);
+        circle[i] = circle_limit / std::max(to_circle * to_circle, kLeastDistance * kLeastDistance);
     }
 }
 
 std::vector<ActivePeak> Sweep::peaks(const DesignPoint& x, double threshold) const {
-    const Shape c = shape(x);
+    const Gains c = gains(x);
     std::vector<ActivePeak> found;
     for (Curve& curve : curves_) {
         fill_levels(curve, c);
@@ -301,7 +312,7 @@ private:
 }  // namespace
 
 /// Adds the intervals of |Kp| that one plant forbids.
-void Sweep::forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& forbidden) const {
+void Sweep::forbid(const Curve& curve, const Gains& c, std::vector<GainGap>& forbidden) const {
     const Limits& limits = problem_.limits;
     JoinedIntervals first(forbidden), second(forbidden);
     const auto forbid_circle = [](JoinedIntervals& joined, double X, double Y, double centre, double radius) {
@@ -337,7 +348,7 @@ void Sweep::forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& for
 }
 
 std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
-    const Shape c = shape({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
+    const Gains c = gains({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
     std::vector<GainGap> forbidden;
     for (const Curve& curve : curves_) forbid(curve, c, forbidden);
     std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
@@ -349,46 +360,6 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
     }
     if (reached < kInfinity) gaps.push_back({reached, kInfinity});
     return gaps;
-}
-
-double reference_frequency(const DesignProblem& problem) {
-    if (problem.measured) return problem.measured->phase_crossover().value_or(problem.measured->high() / 3);
-    const LinearPlant& plant = *problem.plant;
-    const double L = plant.dead_time();
-    double slowest = kInfinity, fastest = 0;
-    const auto note = [&](double corner) {
-        if (!(corner > 0)) return;
-        slowest = std::min(slowest, corner);
-        fastest = std::max(fastest, corner);
-    };
-    for (const auto pole : plant.poles()) note(std::abs(pole));
-    for (const auto zero : plant.zeros()) note(std::abs(zero));
-    if (L > 0) note(1 / L);
-    const double Tf = problem.filter.Tf.value_or(0);
-    if (Tf > 0) note(1 / Tf);
-    if (fastest == 0) return 1;
-    // Right-half-plane poles are mirrored: what counts is where the lag of the loop's other parts has used up half a
-    // turn.
-    const auto lagging = [&](double w) {
-        const Complex s(0, w);
-        Complex value = 1.0 / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
-        for (const auto zero : plant.zeros()) value *= (s - zero) / (-zero);
-        for (const auto pole : plant.poles()) value /= s - Complex(-std::abs(pole.real()), pole.imag());
-        return value;
-    };
-    double w = slowest * 1e-2, before = std::arg(lagging(w)), unwrapped = -0.5 * std::numbers::pi * plant.integrators();
-    double total_before = unwrapped - w * L;
-    const double ratio = std::pow(10, 1.0 / 60);
-    for (; w < fastest * 1e2; w *= ratio) {
-        const double wrapped = std::arg(lagging(w));
-        unwrapped += std::remainder(wrapped - before, 2 * std::numbers::pi);
-        before = wrapped;
-        const double total = unwrapped - w * L;
-        if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;
-        total_before = total;
-    }
-    if (L > 0) return 1 / L;
-    return Tf > 0 ? 1 / Tf : slowest;
 }
 
 }  // namespace tunewright::robust

@@ -46,14 +46,14 @@ public:
 
     /// The constraint's value on the nominal plant at one frequency, exactly.
     double value(ConstraintKind kind, const DesignPoint& x, double omega) const {
-        return value(curves_.front(), kind, shape(x), omega);
+        return value(curves_.front(), kind, gains(x), omega);
     }
 
     const DesignProblem& problem() const { return problem_; }
     double reference() const { return reference_; }
 
 private:
-    struct Shape {
+    struct Gains {
         double Kp, Ki, Kd, Tf;
     };
     /// One plant on its own grid.
@@ -70,24 +70,20 @@ private:
     Curve measured_curve() const;
     void complete(Curve& curve) const;  // what follows from its frequencies
     std::complex<double> plant_at(const Curve& curve, double omega) const;
-    Shape shape(const DesignPoint& x) const;
-    double value(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
-    void fill_levels(Curve& curve, const Shape& c) const;
-    void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Shape& c,
+    Gains gains(const DesignPoint& x) const;
+    double value(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const;
+    void fill_levels(Curve& curve, const Gains& c) const;
+    void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Gains& c,
                    double threshold, std::vector<ActivePeak>& found) const;
-    void add_limits(const Curve& curve, const Shape& c, double threshold, std::vector<ActivePeak>& found) const;
-    void forbid(const Curve& curve, const Shape& c, std::vector<GainGap>& forbidden) const;
+    void add_limits(const Curve& curve, const Gains& c, double threshold, std::vector<ActivePeak>& found) const;
+    void forbid(const Curve& curve, const Gains& c, std::vector<GainGap>& forbidden) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;
-    std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const Shape& c, double omega) const;
+    std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const;
 
     DesignProblem problem_;
     double reference_;
     double circle_centre_ = 0, circle_radius_ = 0;
     mutable std::vector<Curve> curves_;
 };
-
-/// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
-/// falls through -180 degrees; else 1/L; else the filter's or the slowest lag's corner.
-double reference_frequency(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

@@ -5,10 +5,9 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/robust/family.h"
-#include "engine/tuning/robust/fast_search.h"
 #include "engine/tuning/robust/feasibility.h"
-#include "engine/tuning/robust/plane_search.h"
-#include "engine/tuning/robust/scan.h"
+#include "engine/tuning/robust/search.h"
+#include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {
 namespace {
@@ -158,6 +157,14 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak
 
 }  // namespace
 
+namespace {
+
+constexpr int kRounds = 4;                 // searches under tighter limits
+constexpr double kLeastTightening = 1e-6;  // of ln M - 1: what moves a design at all
+constexpr double kMostTightening = 0.5;
+
+}  // namespace
+
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
                                 const RunControl& control, const DesignPoint* before) {
     const double reference = reference_frequency(problem);
@@ -174,12 +181,12 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
     if (!found) found = search_from_least_peak(problem, report);
     if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
     double tighter = 0;
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < kRounds; ++round) {
         const double excess = measured_excess(problem, found->x);
         if (excess <= 0.5 * kAllowedExcess) return *found;
-        if (!std::isfinite(excess) || round == 3) break;
-        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + 1e-6;
-        const DesignProblem narrowed = tightened(problem, std::min(tighter, 0.5));
+        if (!std::isfinite(excess) || round + 1 == kRounds) break;
+        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
+        const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
         const Sweep narrow_sweep(narrowed, reference);
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
         found->x = again.x;

@@ -8,13 +8,9 @@
 
 #include "engine/expected.h"
 #include "engine/tuning/method/method.h"
-#include "engine/tuning/robust/cost_surface.h"
-#include "engine/tuning/robust/design.h"
+#include "engine/tuning/robust/robust.h"
 
 namespace tunewright::robust {
-
-/// fast: scan and quadratic programming; nelder_mead, grid: the searches of the paper.
-enum class SearchKind { fast, nelder_mead, grid };
 
 /// Where the plane searches begin, as (Ti, Td); empty: at the best point of a scan.
 using PlaneStart = std::optional<std::pair<double, double>>;

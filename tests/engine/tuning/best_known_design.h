@@ -9,8 +9,8 @@
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/cost.h"
 #include "engine/tuning/robust/family.h"
-#include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
+#include "engine/tuning/robust/starts.h"
 #include "tests/engine/tuning/random_plants.h"
 
 namespace tunewright::test {

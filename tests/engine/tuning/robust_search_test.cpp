@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/tuning/robust/fast_search.h"
+#include "engine/tuning/robust/search.h"
 #include "tests/engine/tuning/best_known_design.h"
 
 namespace tunewright::test {

@@ -8,7 +8,6 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/numerics/local_minimum.h"
-#include "engine/tuning/robust/cost_surface.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep.h"
 
@@ -229,21 +228,17 @@ TEST(Robust, SurfaceHasItsLeastValueAtTheDesign) {
 
 TEST(QuadraticProgram, MeetsItsOptimalityConditions) {
     using namespace robust;
-    const Matrix3 H = {{{2, 0.3, 0}, {0.3, 1, 0.2}, {0, 0.2, 3}}};
+    const Matrix3 H{{2, 0.3, 0}, {0.3, 1, 0.2}, {0, 0.2, 3}};
     const Vector3 g = {-1, 2, -3};
     const std::vector<LinearConstraint> constraints = {
         {{1, 1, 1}, 0.5}, {{-1, 0, 0}, 0.1}, {{0, 0, 1}, 0.4}, {{0, -1, 0}, 2}};
     const auto solution = solve_quadratic_program(3, H, g, constraints);
     ASSERT_TRUE(solution.has_value());
-    for (std::size_t i = 0; i < 3; ++i) {
-        double gradient = g[i];
-        for (std::size_t j = 0; j < 3; ++j) gradient += H[i][j] * solution->p[j];
-        for (std::size_t k = 0; k < constraints.size(); ++k) gradient += solution->multipliers[k] * constraints[k].a[i];
-        EXPECT_NEAR(gradient, 0, 1e-10);
-    }
+    Vector3 gradient = g + H * solution->p;
+    for (std::size_t k = 0; k < constraints.size(); ++k) gradient += solution->multipliers[k] * constraints[k].a;
+    EXPECT_NEAR(gradient.norm(), 0, 1e-10);
     for (std::size_t k = 0; k < constraints.size(); ++k) {
-        double slack = constraints[k].b;
-        for (std::size_t i = 0; i < 3; ++i) slack -= constraints[k].a[i] * solution->p[i];
+        const double slack = constraints[k].b - constraints[k].a.dot(solution->p);
         EXPECT_GE(slack, -1e-9);
         EXPECT_NEAR(slack * solution->multipliers[k], 0, 1e-9);
     }

@@ -1,10 +1,11 @@
 // The second level's optimum within its bounds: a global look, then Gauss-Newton steps on the residuals.
+
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "engine/tuning/emulation/search/criterion.h"
+#include "engine/tuning/emulation/criterion.h"
 
 namespace tunewright::emulation {
 
@@ -19,7 +20,7 @@ struct Optimum {
 std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
                                     const std::vector<SettingsPoint>& starts, const RunControl& control);
 
-/// Of the last simulations, for J as precise as the answer tells it.
+/// Of the last simulations, which give J to the digits of the answer.
 constexpr double kFineTolerance = 1e-9;
 
 }  // namespace tunewright::emulation

@@ -1,12 +1,18 @@
-// The paper's own searches in the (Ti, Td) plane, with Kp eliminated by tangency: Nelder-Mead and gridding.
+// The three searches of a robust design: the default one, and the paper's own in the (Ti, Td) plane, with Kp eliminated
+// by tangency (Nelder-Mead and gridding).
+
 #pragma once
 
 #include <optional>
 
-#include "engine/tuning/robust/cost_surface.h"
+#include "engine/tuning/robust/robust.h"
 #include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {
+
+/// A coarse scan, the optimum of the integrated error as a start, then the true cost by quadratic programming; from
+/// further starts where there may be more than one valley. Empty: no feasible controller was seen.
+std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
 
 /// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
 std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,

@@ -1,14 +1,105 @@
-#include "engine/tuning/emulation/search/search.h"
+#include "engine/tuning/emulation/search.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
 #include "engine/numerics/global_minimum.h"
-#include "engine/tuning/emulation/search/best_so_far.h"
-#include "engine/tuning/emulation/search/box_step.h"
+#include "engine/numerics/linear_algebra.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/progress.h"
+#include "engine/simulation/linear/indices.h"
 
 namespace tunewright::emulation {
+
 namespace {
+
+// The figures of a design that progress carries: on the linearisation, for a unit load. Empty where that loop is not
+// stable.
+std::optional<BestSoFar> best_so_far(const LinearPlant& plant, const Pid& pid) {
+    const auto loop = Loop::make(plant, to_parallel(pid));
+    if (!loop || !count_unstable_poles(*loop).stable()) return std::nullopt;
+    if (plant.dead_time() > 0 && loop->high_frequency_gain() >= 1) return std::nullopt;
+    const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));
+    const auto response = simulate_linear(plant, loop->gains(), {0, 1}, {});
+    if (!response.settles) return std::nullopt;
+    const auto integrals = error_integrals(response.nodes, 0, response.error_integral_final);
+    return BestSoFar{pid, integrals.IAE, peaks.S.value, peaks.T.value};
+}
+
+enum class Side { free, low, high };
+
+double value_of(const std::vector<double>& H, const std::vector<double>& g, const std::vector<double>& d) {
+    const std::size_t n = g.size();
+    double value = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        value += g[i] * d[i];
+        for (std::size_t j = 0; j < n; ++j) value += 0.5 * H[i * n + j] * d[i] * d[j];
+    }
+    return value;
+}
+
+// Solves for the free unknowns; the others lie on their side.
+std::optional<std::vector<double>> with_sides(const std::vector<double>& H, const std::vector<double>& g,
+                                              std::vector<double> d, const std::vector<Side>& sides) {
+    const std::size_t n = g.size();
+    std::vector<std::size_t> free;
+    for (std::size_t i = 0; i < n; ++i)
+        if (sides[i] == Side::free) free.push_back(i);
+    std::vector<double> matrix, right;
+    for (const std::size_t i : free) {
+        double b = -g[i];
+        for (std::size_t j = 0; j < n; ++j) {
+            if (sides[j] == Side::free)
+                matrix.push_back(H[i * n + j]);
+            else
+                b -= H[i * n + j] * d[j];
+        }
+        right.push_back(b);
+    }
+    if (free.empty()) return d;
+    const auto solved = solve(matrix, right, static_cast<int>(free.size()));
+    if (!solved) return std::nullopt;
+    for (std::size_t k = 0; k < free.size(); ++k) d[free[k]] = (*solved)[k];
+    return d;
+}
+
+bool inside(const std::vector<double>& d, const std::vector<double>& low, const std::vector<double>& high) {
+    for (std::size_t i = 0; i < d.size(); ++i)
+        if (!(d[i] >= low[i] && d[i] <= high[i])) return false;
+    return true;
+}
+
+// Minimises g.d + d.H d/2 subject to low <= d <= high, by trying every set of active bounds. H is n x n, row by row,
+// positive definite; low <= 0 <= high. At most four unknowns.
+std::vector<double> best_step_in_box(const std::vector<double>& H, const std::vector<double>& g,
+                                     const std::vector<double>& low, const std::vector<double>& high) {
+    const std::size_t n = g.size();
+    std::vector<double> best(n, 0);
+    double least = 0;
+    std::size_t combinations = 1;
+    for (std::size_t i = 0; i < n; ++i) combinations *= 3;
+    for (std::size_t code = 0; code < combinations; ++code) {
+        std::vector<Side> sides(n);
+        std::vector<double> d(n, 0);
+        std::size_t rest = code;
+        for (std::size_t i = 0; i < n; ++i, rest /= 3) {
+            sides[i] = static_cast<Side>(rest % 3);
+            if (sides[i] != Side::free) d[i] = sides[i] == Side::low ? low[i] : high[i];
+        }
+        const auto candidate = with_sides(H, g, d, sides);
+        if (!candidate || !inside(*candidate, low, high)) continue;
+        const double value = value_of(H, g, *candidate);
+        if (value >= least) continue;
+        least = value;
+        best = *candidate;
+        if (code == 0) break;  // nothing holds it
+    }
+    return best;
+}
 
 constexpr double kCoarseTolerance = 1e-6;        // of simulations while looking around
 constexpr double kSearchTolerance = 1e-8;        // of those between which differences are taken
@@ -26,6 +117,7 @@ constexpr double kMaxStep = 0.5;       // relative to the unknown
 constexpr double kMinSize = 1e-3;      // of an unknown near 0, relative to its range
 constexpr double kSubplexStep = 0.02;  // in a unit box
 constexpr double kNotLookedAt = 700;   // ln J of a point where the search is stopped
+constexpr double kLeastJ = 1e-300;     // keeps the logarithm of an exact emulation finite
 constexpr int kSubplexEvaluations = 150;
 constexpr double kSubplexTolerance = 1e-9;
 constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
@@ -109,7 +201,7 @@ private:
     std::vector<LocalMinimum> look_around() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
-            return stop ? kNotLookedAt : std::log(judged(point_at(q), kCoarseTolerance) + 1e-300);
+            return stop ? kNotLookedAt : std::log(judged(point_at(q), kCoarseTolerance) + kLeastJ);
         };
         const std::size_t n = scales_.size();
         report(0.1, "Looking for the emulating controller within the bounds.");
@@ -188,7 +280,7 @@ private:
             fall -= 2 * slope.g[i] * d;
             for (std::size_t j = 0; j < n; ++j) fall -= d * slope.H[i * n + j] * (to[j] - from[j]) / slope.size[j];
         }
-        return fall / (J + 1e-300);
+        return fall / (J + kLeastJ);
     }
 
     // Whether it ends where no step promises anything.
@@ -242,7 +334,7 @@ private:
             const Cost cost =
                 criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop);
             if (outside == 0) keep(point, cost);
-            return std::log(criterion_.penalised(cost) + 1e-300) + outside;
+            return std::log(criterion_.penalised(cost) + kLeastJ) + outside;
         };
         report(0.8, "Polishing the emulating controller.");
         const std::size_t n = scales_.size();

@@ -1,11 +1,13 @@
-#include "engine/tuning/emulation/search/criterion.h"
+#include "engine/tuning/emulation/criterion.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "engine/number_text.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 
 namespace tunewright::emulation {
+
 namespace {
 
 constexpr double kPenalty = 100;    // of a run that ends early, in J at rest
@@ -63,6 +65,50 @@ Cost Criterion::weigh(const Pid& pid, double tolerance, const std::stop_token& s
 double Criterion::penalised(const Cost& cost) const {
     const double early = cost.ended.empty() ? 0 : kPenalty * at_rest_ * (2 - cost.share);
     return std::isfinite(cost.J) ? std::min(cost.J + early, kLargest) : kLargest;
+}
+
+namespace {
+
+double square_integral(const std::vector<double>& values, const std::vector<double>& weights) {
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i] * values[i];
+    return sum;
+}
+
+Error cannot_run(std::size_t scenario, const std::string& reason) {
+    return {ErrorKind::unsupported, "scenarios/" + std::to_string(scenario),
+            "The nonlinear controller itself cannot make this step: " + reason +
+                " Give a smaller step, a slower target or wider limits of the input."};
+}
+
+}  // namespace
+
+std::vector<double> simpson_weights(const EmulationProblem& problem) {
+    const double third = problem.horizon / problem.intervals / 3;
+    const auto intervals = static_cast<std::size_t>(problem.intervals);
+    std::vector<double> weights(intervals + 1, 2 * third);
+    for (std::size_t i = 1; i < intervals; i += 2) weights[i] = 4 * third;
+    weights.front() = weights.back() = third;
+    return weights;
+}
+
+Expected<std::vector<Trajectory>> nonlinear_trajectories(const EmulationProblem& problem, const RunControl& control) {
+    const std::vector<double> weights = simpson_weights(problem);
+    std::vector<Trajectory> trajectories;
+    for (std::size_t i = 0; i < problem.scenarios.size(); ++i) {
+        const Scenario& scenario = problem.scenarios[i];
+        const auto run = simulate_linearising(
+            *scenario.system, problem.target, scenario.setpoint_step,
+            {.horizon = problem.horizon, .samples = problem.intervals + 1, .initial = scenario.x0}, control);
+        if (control.stop.stop_requested())
+            return Error{ErrorKind::cancelled, "", "The job was cancelled before a design was found."};
+        if (!run.ended.empty()) return cannot_run(i, run.ended);
+        Trajectory trajectory{run.even.y, run.even.u, 0, 0, run.limited};
+        trajectory.y_size = square_integral(trajectory.y_nl, weights);
+        trajectory.u_size = square_integral(trajectory.u_nl, weights);
+        trajectories.push_back(std::move(trajectory));
+    }
+    return trajectories;
 }
 
 }  // namespace tunewright::emulation

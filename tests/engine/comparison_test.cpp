@@ -1,5 +1,5 @@
 // Method "all": its rows, why a method has none, and how far each row lies above the optimum at its Ms.
-#include "engine/request/league.h"
+#include "engine/request/plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 const Fopdt kPlant{.K = 2, .T = 10, .L = 3};
 
-TuningResult league(const Plant& plant, MethodOptions options = {}) {
+TuningResult compare_all(const Plant& plant, MethodOptions options = {}) {
     TuningRequest request;
     request.subject = test::subject_of(plant);
     request.tune = {{.method = "all", .options = std::move(options)}};
@@ -41,12 +41,12 @@ MethodOptions options(const std::string& path, OptionValue value) {
 
 std::vector<PlannedRow> rows_of(const std::string& method, const MethodOptions& given) {
     std::vector<PlannedRow> rows;
-    for (PlannedRow& row : league_rows(given))
+    for (PlannedRow& row : comparison_rows(given))
         if (row.method->id == method) rows.push_back(std::move(row));
     return rows;
 }
 
-TEST(League, MakesARowOfEveryMethodForEachControllerWithIntegralAction) {
+TEST(Comparison, MakesARowOfEveryMethodForEachControllerWithIntegralAction) {
     for (const TuningMethod& method : method_registry()) EXPECT_FALSE(rows_of(method.id, {}).empty()) << method.id;
     const auto rows = rows_of("ziegler_nichols_step", {});
     ASSERT_EQ(rows.size(), 2u);
@@ -54,7 +54,7 @@ TEST(League, MakesARowOfEveryMethodForEachControllerWithIntegralAction) {
     EXPECT_EQ(rows[1].options.text("controller"), "PID");
 }
 
-TEST(League, AnOptionThatIsGivenSettlesTheVariantAndReachesTheMethodsThatKnowIt) {
+TEST(Comparison, AnOptionThatIsGivenSettlesTheVariantAndReachesTheMethodsThatKnowIt) {
     const auto P = rows_of("ziegler_nichols_step", options("controller", std::string("P")));
     ASSERT_EQ(P.size(), 1u);
     EXPECT_EQ(P[0].options.text("controller"), "P");
@@ -63,7 +63,7 @@ TEST(League, AnOptionThatIsGivenSettlesTheVariantAndReachesTheMethodsThatKnowIt)
     EXPECT_FALSE(rows_of("amigo", options("tau_c", 7.0))[0].options.has("tau_c"));
 }
 
-TEST(League, AnOptionThatDoesNotSuitAMethodIsItsRefusal) {
+TEST(Comparison, AnOptionThatDoesNotSuitAMethodIsItsRefusal) {
     const auto no_P = rows_of("robust", options("controller", std::string("P")));
     ASSERT_EQ(no_P.size(), 1u);
     ASSERT_TRUE(no_P[0].refusal);
@@ -77,22 +77,22 @@ TEST(League, AnOptionThatDoesNotSuitAMethodIsItsRefusal) {
     EXPECT_EQ(too_large[0].refusal->kind, ErrorKind::unsupported);
 }
 
-TEST(League, ARuleWithoutDerivativeHasOneRow) {
+TEST(Comparison, ARuleWithoutDerivativeHasOneRow) {
     const auto rows = [](const TuningResult& result) {
         return std::ranges::count(result.controllers, std::string("simc"), &TuningEntry::method);
     };
-    EXPECT_EQ(rows(league(kPlant)), 1) << "first order: SIMC's PID is its PI";
-    EXPECT_EQ(rows(league(Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3})), 2);
+    EXPECT_EQ(rows(compare_all(kPlant)), 1) << "first order: SIMC's PID is its PI";
+    EXPECT_EQ(rows(compare_all(Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3})), 2);
 }
 
-TEST(League, HasMoreThanTwentyFiveRowsOnAFirstOrderPlant) {
-    const auto result = league(kPlant);
+TEST(Comparison, HasMoreThanTwentyFiveRowsOnAFirstOrderPlant) {
+    const auto result = compare_all(kPlant);
     EXPECT_GE(std::ranges::count_if(result.controllers, [](const auto& e) { return e.evaluation.has_value(); }), 40);
     EXPECT_EQ(result.ranking.size(), result.controllers.size() - 1) << "Visioli's rule is for integrating plants alone";
 }
 
-TEST(League, TellsWhyARuleDoesNotApply) {
-    const auto result = league(Fopdt{.K = 1, .T = 5, .L = 0});
+TEST(Comparison, TellsWhyARuleDoesNotApply) {
+    const auto result = compare_all(Fopdt{.K = 1, .T = 5, .L = 0});
     const TuningEntry& amigo = entry_of(result, "amigo");
     ASSERT_TRUE(amigo.error);
     EXPECT_THAT(amigo.error->message, HasSubstr("dead time"));
@@ -100,8 +100,8 @@ TEST(League, TellsWhyARuleDoesNotApply) {
     EXPECT_TRUE(entry_of(result, "lambda").evaluation);
 }
 
-TEST(League, TheRobustOptimumItselfLiesAtTheOptimumAndNoRuleWithItsFilterBelow) {
-    const auto result = league(kPlant);
+TEST(Comparison, TheRobustOptimumItselfLiesAtTheOptimumAndNoRuleWithItsFilterBelow) {
+    const auto result = compare_all(kPlant);
     for (const TuningEntry& entry : result.controllers) {
         if (!entry.evaluation) continue;
         ASSERT_TRUE(entry.optimum_at_Ms) << entry.title;
@@ -123,8 +123,8 @@ TEST(League, TheRobustOptimumItselfLiesAtTheOptimumAndNoRuleWithItsFilterBelow) 
     EXPECT_NEAR(*today.excess_percent, 100 * (20.0 / *today.IAE - 1), 0.01);
 }
 
-TEST(League, TheOptimumIsThatOfTheRobustMethodAtTheSameMs) {
-    const auto result = league(kPlant);
+TEST(Comparison, TheOptimumIsThatOfTheRobustMethodAtTheSameMs) {
+    const auto result = compare_all(kPlant);
     const TuningEntry& simc = entry_of(result, "simc");
     const double Ms = *simc.evaluation->robustness.Ms;
     TuningRequest request;
@@ -137,7 +137,7 @@ TEST(League, TheOptimumIsThatOfTheRobustMethodAtTheSameMs) {
     EXPECT_FALSE(robust->controllers[0].optimum_at_Ms) << "asked for by all alone";
 }
 
-TEST(League, TheOptimumColumnCanBeLeftOutOfAllAndAskedForOfOne) {
+TEST(Comparison, TheOptimumColumnCanBeLeftOutOfAllAndAskedForOfOne) {
     TuningRequest request;
     request.subject = test::subject_of(Plant(kPlant));
     request.evaluate.optimum_at_Ms = true;
@@ -151,7 +151,7 @@ TEST(League, TheOptimumColumnCanBeLeftOutOfAllAndAskedForOfOne) {
     for (const auto& entry : all->controllers) EXPECT_FALSE(entry.optimum_at_Ms) << entry.title;
 }
 
-TEST(League, ReasonsThatMethodsShareAreToldOnceWhereNoneWorks) {
+TEST(Comparison, ReasonsThatMethodsShareAreToldOnceWhereNoneWorks) {
     TuningRequest request;
     request.subject = test::subject_of(Plant(TransferFunction{.num = {1, 0}, .den = {1, 2, 1}, .L = 1}));
     request.tune = {{.method = "all", .options = {}}};

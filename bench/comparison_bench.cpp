@@ -1,4 +1,5 @@
-// The league table on a FOPDT plant as a browser asks for it: every method in all its variants, traces of 400 points.
+// The comparison of all methods on a FOPDT plant as a browser asks for it: every method in all its variants, traces of
+// 400 points.
 #include <benchmark/benchmark.h>
 
 #include "engine/request/tune.h"
@@ -6,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-TuningRequest league(double L_over_T) {
+TuningRequest request_for(double L_over_T) {
     TuningRequest request;
     request.subject = std::get<Subject>(Subject::make(Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T})));
     request.tune = {{.method = "all", .options = {}}};
@@ -14,7 +15,7 @@ TuningRequest league(double L_over_T) {
 }
 
 void run(benchmark::State& state, bool with_optima) {
-    TuningRequest request = league(static_cast<double>(state.range(0)) / 100);
+    TuningRequest request = request_for(static_cast<double>(state.range(0)) / 100);
     request.evaluate.optimum_at_Ms = with_optima;
     int rows = 0;
     for (auto _ : state) {
@@ -26,11 +27,11 @@ void run(benchmark::State& state, bool with_optima) {
 }
 
 // The argument is 100 L/T.
-void league_table(benchmark::State& state) { run(state, false); }
-BENCHMARK(league_table)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+void comparison(benchmark::State& state) { run(state, false); }
+BENCHMARK(comparison)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
 
-void league_table_with_optima(benchmark::State& state) { run(state, true); }
-BENCHMARK(league_table_with_optima)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+void comparison_with_optima(benchmark::State& state) { run(state, true); }
+BENCHMARK(comparison_with_optima)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tunewright

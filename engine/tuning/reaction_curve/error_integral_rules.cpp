@@ -1,0 +1,110 @@
+#include "engine/tuning/reaction_curve/error_integral_rules.h"
+
+#include <cmath>
+#include <map>
+
+namespace tunewright {
+
+Pid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model) {
+    const double q = model.L / model.T1;
+    Pid pid{.Kp = row.a1 * std::pow(q, row.b1) / model.K};
+    if (row.a2 != 0)
+        pid.Ti = model.T1 * (law == IntegralLaw::power ? std::pow(q, row.b2) / row.a2 : 1 / (row.a2 + row.b2 * q));
+    if (row.a3 != 0) pid.Td = model.T1 * row.a3 * std::pow(q, row.b3);
+    return pid;
+}
+
+const char* to_string(FittedCriterion criterion) {
+    switch (criterion) {
+        case FittedCriterion::ise: return "ise";
+        case FittedCriterion::iae: return "iae";
+        case FittedCriterion::itae: return "itae";
+        case FittedCriterion::itse: return "itse";
+        case FittedCriterion::iste: return "iste";
+        case FittedCriterion::istse: return "istse";
+    }
+    return "";
+}
+
+namespace {
+
+using enum ControllerKind;
+using enum FittedCriterion;
+
+const std::map<ControllerKind, std::map<FittedCriterion, ErrorIntegralRow>> kLopez{
+    {P, {{ise, {1.411, -0.917}}, {iae, {0.902, -0.985}}, {itae, {0.490, -1.084}}}},
+    {PI,
+     {{ise, {1.305, -0.959, 0.492, 0.739}},
+      {iae, {0.984, -0.986, 0.608, 0.707}},
+      {itae, {0.859, -0.977, 0.674, 0.680}}}},
+    {PID,
+     {{ise, {1.495, -0.945, 1.101, 0.771, 0.560, 1.006}},
+      {iae, {1.435, -0.921, 0.878, 0.749, 0.482, 1.137}},
+      {itae, {1.357, -0.947, 0.842, 0.738, 0.381, 0.995}}}},
+};
+
+Expected<TunedController> tune_lopez(const TuningProblem& problem, const LopezOptions& options) {
+    const auto& row = kLopez.at(options.controller).at(options.criterion);
+    return tune_first_order(
+        problem, options.model, {.name = "Lopez", .least = 0.1, .most = 1},
+        [&](const ReducedModel& model) { return error_integral_settings(row, IntegralLaw::power, model); });
+}
+
+}  // namespace
+
+TuningMethod lopez_method() {
+    TuningMethod method;
+    method.id = "lopez";
+    method.title = "Lopez, load optimum";
+    method.formula =
+        "Kp = a1 (L/T)^b1/K, Ti = T (L/T)^b2/a2, Td = a3 T (L/T)^b3. PID, IAE: 1.435, -0.921, 0.878, 0.749, 0.482, "
+        "1.137; ISE: 1.495, -0.945, 1.101, 0.771, 0.560, 1.006; ITAE: 1.357, -0.947, 0.842, 0.738, 0.381, 0.995. PI, "
+        "IAE: 0.984, -0.986, 0.608, 0.707; ISE: 1.305, -0.959, 0.492, 0.739; ITAE: 0.859, -0.977, 0.674, 0.680. P, "
+        "IAE: 0.902, -0.985; ISE: 1.411, -0.917; ITAE: 0.490, -1.084";
+    method.source = "Lopez, Miller, Smith and Murrill, Instrumentation Technology 14 (1967) 57-62";
+    method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
+    method.validity = "L/T from 0.1 to 1; made for load steps, with no regard to robustness";
+    OptionSet<LopezOptions> options;
+    add_controller(options, {P, PI, PID});
+    add_criterion(options, {iae, ise, itae});
+    options.embed(&LopezOptions::model, first_order_options());
+    method.serve(options, tune_lopez);
+    return method;
+}
+
+namespace {
+
+const std::map<ControllerKind, std::map<FittedCriterion, ErrorIntegralRow>> kRovira{
+    {PI, {{iae, {0.758, -0.861, 1.020, -0.323}}, {itae, {0.586, -0.916, 1.030, -0.165}}}},
+    {PID, {{iae, {1.086, -0.869, 0.740, -0.130, 0.348, 0.914}}, {itae, {0.965, -0.850, 0.796, -0.1465, 0.308, 0.929}}}},
+};
+
+Expected<TunedController> tune_rovira(const TuningProblem& problem, const RoviraOptions& options) {
+    const auto& row = kRovira.at(options.controller).at(options.criterion);
+    return tune_first_order(
+        problem, options.model, {.name = "Rovira", .least = 0.1, .most = 1},
+        [&](const ReducedModel& model) { return error_integral_settings(row, IntegralLaw::line, model); });
+}
+
+}  // namespace
+
+TuningMethod rovira_method() {
+    TuningMethod method;
+    method.id = "rovira";
+    method.title = "Rovira, set-point optimum";
+    method.formula =
+        "Kp = a1 (L/T)^b1/K, Ti = T/(a2 + b2 L/T), Td = a3 T (L/T)^b3. PID, ITAE: 0.965, -0.850, 0.796, -0.1465, "
+        "0.308, 0.929; IAE: 1.086, -0.869, 0.740, -0.130, 0.348, 0.914. PI, ITAE: 0.586, -0.916, 1.030, -0.165; IAE: "
+        "0.758, -0.861, 1.020, -0.323";
+    method.source = "Rovira, Murrill and Smith, Instruments & Control Systems 42 (1969) 67-69";
+    method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
+    method.validity = "L/T from 0.1 to 1; made for set-point steps";
+    OptionSet<RoviraOptions> options;
+    add_controller(options, {PI, PID});
+    add_criterion(options, {itae, iae});
+    options.embed(&RoviraOptions::model, first_order_options());
+    method.serve(options, tune_rovira);
+    return method;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,58 @@
+#include "engine/tuning/robust/design.h"
+
+#include <algorithm>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace tunewright::robust {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kBeyondCorners = 100;  // the phase is followed so many times beyond the outer corners
+constexpr int kLagPointsPerDecade = 60;
+
+}  // namespace
+
+double reference_frequency(const DesignProblem& problem) {
+    if (problem.measured) return problem.measured->phase_crossover().value_or(problem.measured->high() / 3);
+    const LinearPlant& plant = *problem.plant;
+    const double L = plant.dead_time();
+    double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
+    const auto note = [&](double corner) {
+        if (!(corner > 0)) return;
+        slowest = std::min(slowest, corner);
+        fastest = std::max(fastest, corner);
+    };
+    for (const auto pole : plant.poles()) note(std::abs(pole));
+    for (const auto zero : plant.zeros()) note(std::abs(zero));
+    if (L > 0) note(1 / L);
+    const double Tf = problem.filter.Tf.value_or(0);
+    if (Tf > 0) note(1 / Tf);
+    if (fastest == 0) return 1;
+    // Right-half-plane poles are mirrored: what counts is where the lag of the loop's other parts has used up half a
+    // turn.
+    const auto lagging = [&](double w) {
+        const Complex s(0, w);
+        Complex value = 1.0 / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
+        for (const auto zero : plant.zeros()) value *= (s - zero) / (-zero);
+        for (const auto pole : plant.poles()) value /= s - Complex(-std::abs(pole.real()), pole.imag());
+        return value;
+    };
+    double w = slowest / kBeyondCorners, before = std::arg(lagging(w)), unwrapped = -0.5 * std::numbers::pi * plant.integrators();
+    double total_before = unwrapped - w * L;
+    const double ratio = std::pow(10, 1.0 / kLagPointsPerDecade);
+    for (; w < fastest * kBeyondCorners; w *= ratio) {
+        const double wrapped = std::arg(lagging(w));
+        unwrapped += std::remainder(wrapped - before, 2 * std::numbers::pi);
+        before = wrapped;
+        const double total = unwrapped - w * L;
+        if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;
+        total_before = total;
+    }
+    if (L > 0) return 1 / L;
+    return Tf > 0 ? 1 / Tf : slowest;
+}
+
+}  // namespace tunewright::robust

@@ -6,7 +6,6 @@
 
 #include "engine/evaluation/evaluate_linear.h"
 #include "engine/evaluation/evaluation_start.h"
-#include "engine/evaluation/nonlinear_figures.h"
 #include "engine/evaluation/performance_figures.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"

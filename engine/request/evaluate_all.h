@@ -19,6 +19,9 @@ struct EvaluationResult {
     std::vector<TuningEntry> controllers;           ///< without a method, in the order sent
 };
 
+/// Each controller is judged alone, in the order sent; a stop is seen between two of them. Without controllers the
+/// result has none. `options` are the same for all: steps, actuator, horizon, traces.
+///
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const RunControl& control);

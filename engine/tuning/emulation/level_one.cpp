@@ -10,7 +10,7 @@
 #include "engine/plant/plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/tuning/emulation/emulation.h"
-#include "engine/tuning/emulation/target.h"
+#include "engine/tuning/emulation/problem.h"
 #include "engine/tuning/model_based/imc.h"
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 

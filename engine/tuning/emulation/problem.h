@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/nonlinear/lie_derivatives.h"
 #include "engine/simulation/nonlinear/linearising_response.h"
 #include "engine/tuning/emulation/options.h"
@@ -79,5 +80,19 @@ Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
 SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid);
 
 SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
+
+/// The response that the nonlinear controller is to give, by the option `target`: as asked for, or from the
+/// linearisation. Errors: invalid_argument, `where` = "target/...", where it does not suit the relative
+/// degree, which the sentence names, or is not stable.
+Expected<TargetResponse> chosen_target(const LinearPlant& plant, int relative_degree, const TargetOptions& options);
+
+/// beta_1: the lags' sum, the area under 1 - y of a unit step.
+double target_time(const TargetResponse& target);
+
+/// 1/|Re p| of the slowest pole of the target.
+double slowest_time(const TargetResponse& target);
+
+/// 1/|p| of the slowest pole p != 0 of a plant; without one ten dead times, or 1.
+double plant_time(const LinearPlant& plant);
 
 }  // namespace tunewright::emulation

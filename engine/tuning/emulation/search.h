@@ -9,14 +9,16 @@
 
 namespace tunewright::emulation {
 
+/// Where the search ended.
 struct Optimum {
     SettingsPoint point;
-    Cost cost;
+    Cost cost;             ///< simulated to kFineTolerance
     bool stopped = false;  ///< the best design so far
 };
 
-/// The least J: DIRECT over the box (NLopt) and `starts`, the best of them polished by bounded Levenberg-Marquardt
-/// steps, then by NLopt's subplex where those leave off before J is flat. Empty: stopped before anything was tried.
+/// The least J within `bounds`: DIRECT over the box (NLopt) and `starts`, the best of them polished by bounded
+/// Levenberg-Marquardt steps, then by NLopt's subplex where those leave off before J is flat. Empty: stopped before
+/// anything was tried.
 std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
                                     const std::vector<SettingsPoint>& starts, const RunControl& control);
 

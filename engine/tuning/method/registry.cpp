@@ -18,8 +18,6 @@
 #include "engine/tuning/reaction_curve/kappa_tau.h"
 #include "engine/tuning/reaction_curve/t_sum.h"
 #include "engine/tuning/reaction_curve/tavakoli.h"
-#include "engine/tuning/reaction_curve/wang_juang_chan.h"
-#include "engine/tuning/reaction_curve/zhuang_atherton.h"
 #include "engine/tuning/reaction_curve/ziegler_nichols_step.h"
 #include "engine/tuning/rimc/rimc.h"
 #include "engine/tuning/robust/robust.h"

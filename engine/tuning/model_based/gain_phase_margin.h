@@ -7,7 +7,7 @@ namespace tunewright {
 
 struct GainPhaseMarginOptions {
     ControllerKind controller = ControllerKind::PID;
-    double gain_margin = 3;
+    double gain_margin = 3;  ///< Am > 1, a factor
     double phase_margin_deg = 60;
     ReductionOptions reduction = {};
     FilterOptions filter = {};
@@ -22,6 +22,9 @@ struct GainPhaseMarginOptions {
 ///     Td = T2
 ///
 /// The arctangents of the margins' equations are taken as straight lines, so that both are met within some percent.
+///
+/// Errors: those of half_rule_model(); unsupported for a model without lag or dead time; invalid_argument for margins
+/// that contradict each other (a negative Ti), with the phase margin that goes with the gain margin.
 ///
 /// Source: Ho, Hang & Cao, Automatica 31 (1995) 497-502.
 TuningMethod gain_phase_margin_method();

@@ -6,7 +6,7 @@
 namespace tunewright {
 
 struct HaalmanOptions {
-    ControllerKind controller = ControllerKind::PID;
+    ControllerKind controller = ControllerKind::PID;  ///< PI or PID
     ReductionOptions reduction = {};
     FilterOptions filter = {};
 };
@@ -18,6 +18,11 @@ struct HaalmanOptions {
 ///
 /// On such a plant the loop is 2/(3 L s) e^(-Ls) whatever the lags: Ms = 1.9 (without the derivative's filter).
 /// Cancelled lags come back in the answer to loads, so it is slow where they are long against the dead time.
+///
+/// Filter of the PID: derivative, Tf = Td/10 (the source has none).
+///
+/// Errors: those of half_rule_model(); unsupported for a model without lag or dead time and for integrating plants.
+/// Warns `outside-validity` for L/T below 0.1, and `no-derivative` where a PID is asked for and the model has one lag.
 ///
 /// Source: Haalman, Control Engineering 12 (1965) 71-73.
 TuningMethod haalman_method();

@@ -19,6 +19,11 @@ struct ImprovedSimcOptions {
 ///     PID, series  Kp = T/(K (tau_c + L))           Ti = min(T, 4 (tau_c + L))        Td = L/3
 ///     integrating  Kp = 1/(K (tau_c + L))           Ti = 4 (tau_c + L)
 ///
+/// Filter of the PID: derivative, Tf = Td/10 (the source has none).
+///
+/// Errors: those of rule_model(); unsupported for a model without dead time. Warns `outside-validity` for tau_c below
+/// its default.
+///
 /// Sources: Grimholt & Skogestad, IFAC Conf. Advances in PID Control (2012) for PI; J. Process Control 70 (2018) 36-46
 /// for PID.
 TuningMethod improved_simc_method();

@@ -23,6 +23,9 @@ struct SimcOptions {
 /// itself for two lags far above the dead time. A pure dead time gets pure integral action, which the ideal form cannot
 /// carry: unsupported.
 ///
+/// Errors: those of half_rule_model(); unsupported for L = 0 without tau_c. Warns `outside-validity` for tau_c < L and
+/// for a second lag below L, `no-derivative` where there is no second lag.
+///
 /// Source: Skogestad, J. Process Control 13 (2003) 291-309, Table 1, Eqs. 23-29.
 TuningMethod simc_method();
 

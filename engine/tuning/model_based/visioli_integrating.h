@@ -7,7 +7,7 @@
 namespace tunewright {
 
 struct VisioliIntegratingOptions {
-    FittedCriterion criterion = FittedCriterion::istse;
+    FittedCriterion criterion = FittedCriterion::istse;  ///< ise, itse or istse
     ReductionOptions reduction = {};
     FilterOptions filter = {};
 };
@@ -19,6 +19,10 @@ struct VisioliIntegratingOptions {
 ///     ise     Kp = 1.37/(K L)   Ti = 1.49 L   Td = 0.59 L
 ///
 /// Robustness plays no part in it.
+///
+/// Filter of the PID: derivative, Tf = Td/10 (the source has none).
+///
+/// Errors: those of rule_model(); unsupported for a plant that does not integrate once and for L = 0.
 ///
 /// Source: Visioli, IEE Proc. Control Theory Appl. 148 (2001) 180-184.
 TuningMethod visioli_integrating_method();

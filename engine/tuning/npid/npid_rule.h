@@ -15,6 +15,12 @@ struct NpidOptions {
 /// step on an FOPDT model, 0.01 <= q <= 3. The source's Table 2 holds up to q = 0.9, Table 3 from 1; in between, which
 /// the source leaves open, Table 3 costs less. No filter, as in the source; the derivative does not act on the set
 /// point. With "optimise": true the plant's own optimum (npid_optimum.h).
+/// The source's models are fitted by min_iae, which is the default of `reduction` here.
+///
+/// Errors: those of rule_model(); unsupported for integrating plants, L = 0 and T = 0, unless `optimise` is true, which
+/// needs no model; those of npid_optimum() with it. Warns `outside-validity` beyond the range and `rule-table` where
+/// Table 3 is taken.
+///
 /// Source: Jin & Son, Studies in Informatics and Control 28 (2019) 157-166, Tables 2 and 3.
 TuningMethod npid_ise_method();
 TuningMethod npid_iae_method();

@@ -6,7 +6,7 @@
 namespace tunewright {
 
 struct CohenCoonOptions {
-    ControllerKind controller = ControllerKind::PID;
+    ControllerKind controller = ControllerKind::PID;  ///< P, PI or PID
     FirstOrderOptions model = {};
 };
 
@@ -18,6 +18,11 @@ struct CohenCoonOptions {
 ///
 /// The loop is oscillatory: Ms is typically above 2. T of a plant of other form is static gain over steepest slope, as
 /// on the reaction curve of the source.
+///
+/// Filter of the PID: derivative, Tf = Td/10 (the source has none).
+///
+/// Errors: those of tune_first_order(): a model without lag or dead time, and an integrating plant, are unsupported.
+/// Warns `outside-validity` for L/T outside 0.1 to 1.
 ///
 /// Source: Cohen & Coon, Trans. ASME 75 (1953) 827-834.
 TuningMethod cohen_coon_method();

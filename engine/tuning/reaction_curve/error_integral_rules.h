@@ -1,5 +1,6 @@
 // Settings fitted to optima of an error integral over L/T: one shape, many tables. The tables for load steps (Lopez,
-// Miller, Smith and Murrill) and for set-point steps (Rovira, Murrill and Smith) are here.
+// Miller, Smith and Murrill), for set-point steps (Rovira, Murrill and Smith; Wang, Juang and Chan) and for both
+// (Zhuang and Atherton) are here.
 
 #pragma once
 
@@ -8,6 +9,7 @@
 #include "engine/controller/pid.h"
 #include "engine/reduction/reduction.h"
 #include "engine/tuning/method/first_order_rule.h"
+#include "engine/tuning/method/method.h"
 #include "engine/tuning/method/option_set.h"
 
 namespace tunewright {
@@ -77,5 +79,31 @@ struct RoviraOptions {
 /// Source: Rovira, Murrill & Smith, Instruments & Control Systems 42 (1969) 67-69, known to us from the textbooks that
 /// carry its table.
 TuningMethod rovira_method();
+
+/// Kp = (0.7303 + 0.5307 T/L) (T + L/2)/(K (T + L)), Ti = T + L/2, Td = L T/(2 T + L): PID with the least ITAE of a
+/// set-point step on a first-order model with dead time, Ti and Td those of an internal model controller; for L/T from
+/// 0.05 to 6. Source: Wang, Juang & Chan, Chem. Eng. Communications 132 (1995) 15-34.
+TuningMethod wang_juang_chan_method();
+
+struct ZhuangAthertonOptions {
+    ControllerKind controller = ControllerKind::PID;
+    FittedCriterion criterion = FittedCriterion::iste;
+    Mode mode = Mode::servo;
+    FirstOrderOptions model = {};
+};
+
+/// PI and PID with the least integral of (t^n e)^2, n = 0 (ise) or 1 (iste), of a set-point (`mode` servo) or load step
+/// (regulation) on a first-order model with dead time:
+///
+///     Kp = a1 (L/T)^b1/K
+///     Ti = T/(a2 + b2 L/T) (servo), T (L/T)^b2/a2 (regulation)
+///     Td = a3 T (L/T)^b3
+///
+/// Two tables, for L/T from 0.1 to 1 and from 1.1 to 2; between them the first is taken up to 1, the second above. The
+/// set-point PID was fitted with the derivative on the error; here it acts on the measurement.
+///
+/// Source: Zhuang & Atherton, IEE Proc. D 140 (1993) 216-224, Tables 1 to 4, known to us from the textbooks that carry
+/// them.
+TuningMethod zhuang_atherton_method();
 
 }  // namespace tunewright

@@ -21,6 +21,8 @@ struct KappaTauOptions {
 /// with a0, a1, a2 of each from a table. A b above 1 is answered as 1. The ranges of L/T are ours: on a plain
 /// first-order plant the PID loses stability below about 0.2.
 ///
+/// Errors: those of tune_first_order(). Warns `outside-validity` for L/T outside 0.1 to 4, with PID outside 0.4 to 4.
+///
 /// Source: Astrom & Hagglund, PID Controllers: Theory, Design, and Tuning (1995), section 5.3, tables for stable
 /// processes.
 TuningMethod kappa_tau_method();

@@ -14,6 +14,12 @@ namespace tunewright {
 /// In the only table that we know (Jin & Son 2019, Table 1) the columns headed Ti/tau and Td/tau hold Ti/L and Td/L:
 /// only so do its nine published settings follow. Those have a pure derivative: filter {"Tf_over_Td": 0}.
 ///
+/// The three have FirstOrderOptions: the reduction to the model (tangent first) and the derivative's filter, Tf =
+/// Td/10 if not given.
+///
+/// Errors: those of tune_first_order(): a model without lag or dead time, and an integrating plant, are unsupported.
+/// Warns `outside-validity` for L/T outside 0.1 to 2.
+///
 /// Source: Tavakoli & Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946.
 TuningMethod tavakoli_ise_method();
 TuningMethod tavakoli_iae_method();

@@ -6,8 +6,8 @@
 namespace tunewright {
 
 struct ZieglerNicholsStepOptions {
-    ControllerKind controller = ControllerKind::PID;
-    ReductionOptions reduction = {};
+    ControllerKind controller = ControllerKind::PID;  ///< P, PI or PID
+    ReductionOptions reduction = {};                  ///< tangent, with T by slope, if not given
     FilterOptions filter = {};
 };
 
@@ -20,6 +20,8 @@ struct ZieglerNicholsStepOptions {
 ///
 /// The rule aims at quarter-amplitude damping: Ms is typically above 2. PID filter: derivative, Tf = Td/10 (the source
 /// has none).
+///
+/// Errors: those of rule_model(); unsupported for L = 0 and T = 0. Warns `outside-validity` for L/T outside 0.1 to 1.
 ///
 /// Source: Ziegler & Nichols, Trans. ASME 64 (1942) 759-768.
 TuningMethod ziegler_nichols_step_method();

@@ -40,7 +40,8 @@ double reference_frequency(const DesignProblem& problem) {
         for (const auto pole : plant.poles()) value /= s - Complex(-std::abs(pole.real()), pole.imag());
         return value;
     };
-    double w = slowest / kBeyondCorners, before = std::arg(lagging(w)), unwrapped = -0.5 * std::numbers::pi * plant.integrators();
+    double w = slowest / kBeyondCorners, before = std::arg(lagging(w)),
+           unwrapped = -0.5 * std::numbers::pi * plant.integrators();
     double total_before = unwrapped - w * L;
     const double ratio = std::pow(10, 1.0 / kLagPointsPerDecade);
     for (; w < fastest * kBeyondCorners; w *= ratio) {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/numerics/local_minimum.h"
-#include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {

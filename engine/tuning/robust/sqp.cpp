@@ -116,6 +116,11 @@ std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
     return std::nullopt;
 }
 
+std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& x) {
+    auto moved = restore(sweep, x);
+    return moved && is_stable(sweep.problem(), *moved) ? moved : std::nullopt;
+}
+
 SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& start,
                    const SqpOptions& options, const Report& report) {
     const int n = problem.dimension();

@@ -38,4 +38,7 @@ std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x);
 /// Is the loop at x stable, on every plant?
 bool is_stable(const DesignProblem& problem, const DesignPoint& x);
 
+/// `x` moved within the problem's limits, if that succeeds with a stable loop.
+std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& x);
+
 }  // namespace tunewright::robust

@@ -5,7 +5,6 @@
 
 #include "engine/loop/stability.h"
 #include "engine/tuning/robust/cost.h"
-#include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/sqp.h"
 
 namespace tunewright::robust {

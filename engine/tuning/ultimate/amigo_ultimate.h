@@ -6,7 +6,7 @@
 namespace tunewright {
 
 struct AmigoUltimateOptions {
-    ControllerKind controller = ControllerKind::PID;
+    ControllerKind controller = ControllerKind::PID;  ///< PI or PID
     UltimateOptions point = {};
     FilterOptions filter = {};
 };
@@ -18,6 +18,10 @@ struct AmigoUltimateOptions {
 ///           Td = 0.15 Pu (1 - kappa)/(1 - 0.95 kappa)
 ///
 /// Filter: second order on the measurement.
+///
+/// Errors: those of chosen_ultimate_point(); unsupported for unstable plants and where kappa is not from 0 to 1. Warns
+/// `outside-validity` for a PID with kappa below 0.1: for plants with so little dead time the ultimate point says too
+/// little.
 ///
 /// Source: Astrom & Hagglund, J. Process Control 14 (2004) 635-650, and Advanced PID Control (2006), chapter 7.
 TuningMethod amigo_ultimate_method();

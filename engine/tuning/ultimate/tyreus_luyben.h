@@ -6,7 +6,7 @@
 namespace tunewright {
 
 struct TyreusLuybenOptions {
-    ControllerKind controller = ControllerKind::PID;
+    ControllerKind controller = ControllerKind::PID;  ///< PI or PID
     UltimateOptions point = {};
     FilterOptions filter = {};
 };
@@ -18,6 +18,9 @@ struct TyreusLuybenOptions {
 ///     PID   Kp = Ku/2.2   Ti = 2.2 Pu   Td = Pu/6.3
 ///
 /// Filter of the PID: derivative, Tf = Td/10 (the sources have none).
+///
+/// Errors: those of chosen_ultimate_point(). Warns `outside-validity` for 1/(K Ku) above 0.5 (much dead time, for which
+/// the integral time is far too long), and as ultimate_warnings() says.
 ///
 /// Sources: Tyreus & Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben, Essentials of Process
 /// Control (1997) (PID).

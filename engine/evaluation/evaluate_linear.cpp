@@ -67,9 +67,7 @@ void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const 
                     const char* step) {
     for (const auto& node : response.nodes) {
         if (node.u < limits.max && node.u > limits.min) continue;
-        evaluation.warnings.push_back(
-            {"actuator-limited", std::string("The actuator reaches its limit after the ") + step +
-                                     " step; Ms, Mt and the margins hold for the unlimited loop."});
+        warn_of_limit(evaluation, step);
         return;
     }
 }

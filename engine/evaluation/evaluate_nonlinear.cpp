@@ -55,10 +55,7 @@ void warn_of_runs(Evaluation& evaluation, const Runs& runs) {
     for (const auto& [run, step] : {std::pair(&runs.setpoint, "set-point"), std::pair(&runs.load, "load")}) {
         if (run->escaped)
             evaluation.warnings.push_back({"left-domain", std::string("After the ") + step + " step: " + run->ended});
-        if (run->limited)
-            evaluation.warnings.push_back(
-                {"actuator-limited", std::string("The input reaches its limit after the ") + step +
-                                         " step; Ms, Mt and the margins hold for the unlimited loop."});
+        if (run->limited) warn_of_limit(evaluation, step);
         settles = settles && (run->escaped || run->loop.settles);
     }
     if (!settles) warn_of_no_rest(evaluation);

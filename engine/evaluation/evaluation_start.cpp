@@ -98,6 +98,12 @@ void mark_unstable(Evaluation& evaluation, const StabilityCount& count) {
                               "; do not use it."});
 }
 
+void warn_of_limit(Evaluation& evaluation, const std::string& step) {
+    evaluation.warnings.push_back(
+        {"actuator-limited", "The controller's output reaches its limit after the " + step +
+                                 " step; Ms, Mt and the margins hold for the loop without limits."});
+}
+
 void warn_of_no_rest(Evaluation& evaluation) {
     evaluation.warnings.push_back(
         {"does-not-settle", "The response does not settle within the time computed; figures that need it are empty."});

@@ -25,6 +25,9 @@ Error of_controller(Error error);
 /// An unstable loop's figures and warning.
 void mark_unstable(Evaluation& evaluation, const StabilityCount& count);
 
+/// Adds that u reaches a limit after the `step` ("set-point" or "load") step.
+void warn_of_limit(Evaluation& evaluation, const std::string& step);
+
 /// Adds that a response does not come to rest within the time computed.
 void warn_of_no_rest(Evaluation& evaluation);
 

@@ -4,9 +4,10 @@
 #include "api/contract/record.h"
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
+#include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
 #include "api/json/digest.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {

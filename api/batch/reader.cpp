@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "api/batch/jobs_array.h"
-#include "api/batch/lines.h"
-#include "api/json/parse.h"
+#include "api/batch/pieces.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
@@ -31,13 +31,6 @@ std::string name_in(const std::string& text) {
 }
 
 }  // namespace
-
-Problem too_long(std::size_t bytes, std::size_t most) {
-    Problem problem{413, "too-large", "The request is too large", {}, {}, {}};
-    problem.detail =
-        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(most) + " are accepted of one request.";
-    return problem;
-}
 
 /// Cuts a body into requests.
 class BatchReader::Cutter {

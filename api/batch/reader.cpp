@@ -251,7 +251,7 @@ std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<
             continue;
         }
         if (made.name.empty() && !entry.fault) made.name = name_in(entry.text);
-        Problem& problem = std::get<Problem>(made.job);
+        auto& problem = std::get<Problem>(made.job);
         problem.detail =
             "Request " + std::to_string(count_) + ", line " + std::to_string(entry.line) + ": " + problem.detail;
     }

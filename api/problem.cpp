@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/json/parse.h"
+#include "api/json/json.h"
 #include "api/json/writer.h"
 
 namespace tunewright::api {

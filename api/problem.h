@@ -1,4 +1,4 @@
-// application/problem+json (RFC 9457): what a client is told when something cannot be done.
+// application/problem+json (RFC 9457): what a client gets when something cannot be done.
 #pragma once
 
 #include <optional>

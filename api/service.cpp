@@ -4,9 +4,10 @@
 #include "api/contract/record.h"
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
+#include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
 #include "api/json/digest.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
@@ -159,7 +160,7 @@ std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobL
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
     auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    Json& value = std::get<Json>(parsed);
+    auto& value = std::get<Json>(parsed);
     ask_for_no_traces(value);
     auto job = prepared(value, limits, [&] { return value.dump(); });
     // Entries wait for the store in groups, as text alone.

@@ -1,4 +1,5 @@
-// The commands that answer one request without a server: `tunewright tune` and `tunewright identify`.
+// The commands that need no service of their own: `tunewright tune` and `tunewright identify` answer one request, and
+// `tunewright health` asks a running service.
 #pragma once
 
 #include <string>
@@ -20,5 +21,12 @@ struct IdentifyCommand {
 /// goes to standard output and 0 is returned; a problem goes to standard error as problem JSON and 1 is returned. The
 /// only limit on the file's size is that of a record, 2,000,000 samples.
 int identify(const IdentifyCommand& command);
+
+/// GET `url` (http://HOST:PORT/PATH, HOST an address or a name), answered within three seconds. Returns 0 where the
+/// status is 200; else 1, and standard error says why. 2 where the url cannot be used.
+int check_health(const std::string& url);
+
+/// http://HOST:PORT/healthz for what --listen says; loopback where it says every address.
+std::string health_url(const std::string& listen);
 
 }  // namespace tunewright::server

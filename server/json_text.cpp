@@ -1,8 +1,10 @@
 #include "server/json_text.h"
 
+#include <fmt/format.h>
+
 #include <array>
-#include <cstdio>
 #include <ctime>
+#include <iterator>
 
 namespace tunewright::server {
 
@@ -13,9 +15,7 @@ std::string json_string(std::string_view text) {
             out.push_back('\\');
             out.push_back(c);
         } else if (static_cast<unsigned char>(c) < 0x20) {
-            std::array<char, 8> code{};
-            std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-            out.append(code.data());
+            fmt::format_to(std::back_inserter(out), "\\u{:04x}", static_cast<unsigned char>(c));
         } else {
             out.push_back(c);
         }
@@ -36,9 +36,7 @@ std::string iso_time(std::int64_t unix_ms) {
     gmtime_r(&seconds, &utc);
     std::array<char, 32> date{};
     std::strftime(date.data(), date.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%s.%03dZ", date.data(), static_cast<int>(unix_ms % 1000));
-    return text.data();
+    return fmt::format("{}.{:03}Z", date.data(), unix_ms % 1000);
 }
 
 }  // namespace tunewright::server

@@ -1,5 +1,6 @@
 // One line for each request and each job, on standard error, as text or as JSON; written by a thread of its own, so
-// that a slow reader of the log never holds up an answer (the oldest lines are dropped instead).
+// that a slow reader of the log never holds up an answer (the oldest of 8192 waiting lines are dropped instead). Every
+// function may be called from any thread.
 #pragma once
 
 #include <string>
@@ -17,9 +18,12 @@ void start_log(const std::string& format, const std::string& level);
 /// Writes the lines that still wait, and ends the thread.
 void stop_log();
 
+/// What happens to the service itself, in one line; the line breaks of a text log are not escaped.
 void log_info(std::string_view message);
+/// The same for what its operator has to look after.
 void log_error(std::string_view message);
-/// One answered request.
+/// One answered request: at the level warn where the status is 500 or more, debug for probes (/healthz, /readyz,
+/// /metrics), info otherwise.
 void log_exchange(const http::Exchange& exchange);
 /// One job that a worker has ended, after so many seconds of computing.
 void log_job(const JobEnd& job, double seconds);

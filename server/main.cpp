@@ -9,7 +9,6 @@
 #include "server/access/keys.h"
 #include "server/commands.h"
 #include "server/config.h"
-#include "server/health_command.h"
 #include "server/serve.h"
 
 namespace {

@@ -20,7 +20,6 @@
 #include "server/log.h"
 #include "server/metrics.h"
 #include "server/routes/routes.h"
-#include "server/store/metered_store.h"
 #include "server/store/open_store.h"
 
 namespace tunewright::server {

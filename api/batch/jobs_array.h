@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/batch/entry.h"
+#include "api/batch/pieces.h"
 
 namespace tunewright::api {
 

@@ -5,7 +5,7 @@
 #include "api/csv/columns/heading.h"
 #include "api/csv/table.h"
 #include "api/describe/suggest.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 #include "api/json/writer.h"
 #include "api/service.h"
 #include "engine/request/plan.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/batch/entry.h"
+#include "api/batch/pieces.h"
 #include "api/csv/cell.h"
 #include "api/json/json.h"
 

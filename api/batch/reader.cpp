@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "api/batch/jobs_array.h"
-#include "api/batch/lines.h"
-#include "api/json/parse.h"
+#include "api/batch/pieces.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
@@ -31,13 +31,6 @@ std::string name_in(const std::string& text) {
 }
 
 }  // namespace
-
-Problem too_long(std::size_t bytes, std::size_t most) {
-    Problem problem{413, "too-large", "The request is too large", {}, {}, {}};
-    problem.detail =
-        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(most) + " are accepted of one request.";
-    return problem;
-}
 
 /// Cuts a body into requests.
 class BatchReader::Cutter {
@@ -258,7 +251,7 @@ std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<
             continue;
         }
         if (made.name.empty() && !entry.fault) made.name = name_in(entry.text);
-        Problem& problem = std::get<Problem>(made.job);
+        auto& problem = std::get<Problem>(made.job);
         problem.detail =
             "Request " + std::to_string(count_) + ", line " + std::to_string(entry.line) + ": " + problem.detail;
     }

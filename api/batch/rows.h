@@ -7,17 +7,20 @@
 
 namespace tunewright::api {
 
-/// One job of a batch as it stands.
+/// One job of a batch as it stands. `index` is its place in the batch, from 0; the texts must outlive the call that
+/// appends them.
 struct ResultRow {
     std::int64_t index = 0;
     std::string_view id, name, status;  ///< "" where it has no name
     std::string_view result, error;     ///< JSON; "" if none
 };
 
-/// One line: {index, id, name, status, result or error} and \n. A job without a name has null.
+/// One line: {index, id, name, status, result or error} and \n. A job without a name has null. The JSON of result and
+/// error is copied as it is.
 void append_ndjson(const ResultRow& row, std::string& out);
 
-/// The line of the CSV's headings, with its end of line.
+/// The line of the CSV's headings, with its end of line: index, id, name, status, method, form, then the controller's
+/// settings and its figures, warnings and error.
 std::string csv_headings();
 
 /// One line for each controller of the result; one where there is none: an error, or a job that has not ended. What

@@ -20,10 +20,11 @@ void read_options(const Json& value, const std::vector<OptionDescription>& descr
 /// "x is not an option of simc; did you mean ...?"
 std::string unknown_option(const std::string& name, const std::string& owner, const std::vector<std::string>& names);
 
-/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array.
+/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array, whose elements before it are
+/// null until they are placed.
 void place_option(Json& object, const std::string& path, const OptionValue& value);
 
-/// The options of a method as a JSON Schema.
+/// The options of a method as a JSON Schema: an object that allows no other members.
 Json options_schema(const std::vector<OptionDescription>& options);
 
 }  // namespace tunewright::api

@@ -21,7 +21,11 @@ void split_pairs(std::string_view line, std::vector<Pair>& out);
 /// be. Lines between them that hold fewer than half of the usual keys count for nothing.
 std::vector<std::string> pair_keys(std::string_view text);
 
-/// Whether a line belongs to the log: it holds at least half of the keys.
+/// Whether a line belongs to the log: it holds at least half of the keys. `pairs` are those of the line, `keys` those
+/// of the whole log:
+///
+///     std::vector<Pair> pairs;
+///     split_pairs("T:200.1 /200.0 @:64", pairs);  // T.temp 200.1, T.target 200.0, T.pwm 64
 bool is_pair_line(const std::vector<Pair>& pairs, const std::vector<std::string>& keys);
 
 }  // namespace tunewright::api

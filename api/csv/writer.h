@@ -6,8 +6,11 @@
 
 namespace tunewright::api {
 
-/// Cells are set side by side with commas; a cell is quoted where it must be. A text that a spreadsheet would take for
-/// a formula (it begins with = + - @ or a tab) gets an apostrophe in front.
+/// Cells are set side by side with commas; a cell is quoted where it must be, and \r\n ends a line. A text that a
+/// spreadsheet would take for a formula (it begins with = + - @, a tab or \r) gets an apostrophe in front:
+///
+///     CsvWriter out;
+///     out.text("Kp, Ti").text("=1").number(0.25).end_line();  // "Kp, Ti","'=1",0.25
 class CsvWriter {
 public:
     CsvWriter& text(std::string_view value);  ///< UTF-8

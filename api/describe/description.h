@@ -14,7 +14,7 @@ struct FieldOptions {
     bool required = false;
     std::string unit = {};     ///< "time", "1/time", "u/y", ... in the user's units
     bool answer_only = false;  ///< accepted and ignored in requests, so that an answer can be sent back
-    bool no_default = false;   ///< the default is told by the sentence, not by the member's initial value
+    bool no_default = false;   ///< the sentence states the default; the member's initial value is not it
 };
 
 /// `T` default-constructed holds the contract's defaults.

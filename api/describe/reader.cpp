@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/json/parse.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 

@@ -1,10 +1,32 @@
-// The one JSON type of the codecs: members keep the order in which they were written.
+// The one JSON type of the codecs, and strict reading of JSON text: what the grammar allows but a request must not
+// contain is refused here.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <variant>
+
+#include "api/problem.h"
 
 namespace tunewright::api {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxDepth = 32;      ///< of nested objects and arrays; the contract needs 6
+constexpr std::size_t kMaxMembers = 1000;  ///< of one object; the contract needs about 20
+
+/// The value that `text` spells; how long it may be is the transport's business. Problems: 400 not JSON (with line and
+/// column); 422 a member written twice, a number beyond double, nested deeper than kMaxDepth, more than kMaxMembers in
+/// one object.
+std::variant<Json, Problem> parse(std::string_view text);
+
+/// `text` without the white space between its tokens. `text` must be JSON.
+std::string compact(std::string_view text);
+
+/// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
+std::string canonical(const Json& value);
+
+/// `name` as a segment of a JSON Pointer (RFC 6901): ~ becomes ~0 and / becomes ~1.
+std::string pointer_segment(std::string_view name);
 
 }  // namespace tunewright::api

@@ -1,5 +1,6 @@
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
+#include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
 #include "api/embed/files.h"
 #include "api/service.h"

@@ -1,9 +1,9 @@
 #include "server/access/gate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "server/http/problems.h"
@@ -90,9 +90,7 @@ void Gate::name(Request& request) {
     if (is_key_name(given)) {
         request.request_id = given;
     } else {
-        std::array<char, 32> id{};
-        std::snprintf(id.data(), id.size(), "%s-%08llx", process_.c_str(), static_cast<unsigned long long>(++count_));
-        request.request_id = id.data();
+        request.request_id = fmt::format("{}-{:08x}", process_, ++count_);
     }
     request.answer_headers.emplace_back("X-Request-Id", request.request_id);
     const std::string_view client = settings_.behind_proxy ? forwarded(request) : std::string_view{};

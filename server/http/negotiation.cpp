@@ -1,10 +1,10 @@
 #include "server/http/negotiation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <vector>
 
 namespace tunewright::server::http {
@@ -116,9 +116,7 @@ std::string entity_tag(std::string_view body) {
     // FNV-1a, 64 bits: the same text gives the same tag in every process.
     std::uint64_t hash = 14695981039346656037ULL;
     for (const unsigned char c : body) hash = (hash ^ c) * 1099511628211ULL;
-    std::array<char, 24> text{};
-    std::snprintf(text.data(), text.size(), "\"%016llx\"", static_cast<unsigned long long>(hash));
-    return text.data();
+    return fmt::format("\"{:016x}\"", hash);
 }
 
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {

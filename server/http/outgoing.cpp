@@ -1,12 +1,13 @@
 #include "server/http/outgoing.h"
 
+#include <fmt/format.h>
+
 #include <sys/socket.h>
 #include <sys/uio.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <utility>
 
 namespace tunewright::server::http {
@@ -22,10 +23,7 @@ bool is_event_stream(const Response& response) {
     });
 }
 
-std::string size_line(std::size_t size) {
-    std::array<char, 24> text{};
-    return {text.data(), static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%zx\r\n", size))};
-}
+std::string size_line(std::size_t size) { return fmt::format("{:x}\r\n", size); }
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "server/jobs/problems.h"
+#include "server/jobs/running/ends.h"
 #include "server/log.h"
 
 namespace tunewright::server {

@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "api/csv/text.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 #include "server/http/body/body_source.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"

@@ -1,9 +1,9 @@
-#include <array>
 #include <cstdint>
-#include <cstdio>
 #include <list>
 #include <memory>
 #include <mutex>
+
+#include <fmt/format.h>
 
 #include "server/http/body/body_stream.h"
 #include "server/http/negotiation.h"
@@ -29,9 +29,7 @@ constexpr const char* kRetry = "retry: 2000\n\n";
 std::string state_id(int attempts, std::string_view progress) {
     std::uint64_t sum = 14695981039346656037U;
     for (const char c : progress) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211U;
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "%d-%016llx", attempts, static_cast<unsigned long long>(sum));
-    return text.data();
+    return fmt::format("{}-{:016x}", attempts, sum);
 }
 
 std::string event(std::string_view name, const std::string& id, const std::string& data) {

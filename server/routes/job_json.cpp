@@ -1,7 +1,9 @@
 #include "server/routes/job_json.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
-#include <cstdio>
+#include <iterator>
 
 #include "api/service.h"
 #include "server/json_text.h"
@@ -44,9 +46,11 @@ std::string percent_encode(const std::string& text) {
     for (const char c : text) {
         const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
                            c == '_' || c == '.' || c == '~';
-        char code[4] = {c, 0, 0, 0};
-        if (!plain) std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-        out.append(code);
+        if (plain) {
+            out.push_back(c);
+        } else {
+            fmt::format_to(std::back_inserter(out), "%{:02X}", static_cast<unsigned char>(c));
+        }
     }
     return out;
 }
@@ -71,9 +75,7 @@ std::string counts_of(const BatchSummary& batch) {
 std::string progress_of(const BatchSummary& batch) {
     const std::size_t ended = batch.succeeded + batch.failed + batch.cancelled;
     const double fraction = batch.total == 0 ? 0 : static_cast<double>(ended) / static_cast<double>(batch.total);
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", fraction);
-    return std::move(JsonObject().raw("fraction", text)).str();
+    return std::move(JsonObject().raw("fraction", fmt::format("{:.6g}", fraction))).str();
 }
 
 std::string links_of(const BatchSummary& batch) {

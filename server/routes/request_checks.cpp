@@ -1,7 +1,7 @@
 #include "server/routes/request_checks.h"
 
 #include "api/csv/text.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 

@@ -1,8 +1,8 @@
-#include <array>
 #include <atomic>
-#include <cstdio>
 #include <memory>
 #include <stop_token>
+
+#include <fmt/format.h>
 
 #include "api/service.h"
 #include "server/http/problems.h"
@@ -63,10 +63,8 @@ Response compute(SyncCall work, const std::string& body, std::chrono::seconds li
     Response response;
     response.status = answer.status;
     response.body = std::move(answer.body);
-    std::array<char, 48> timing{};
-    std::snprintf(timing.data(), timing.size(), "compute;dur=%.2f", monotonic_ms() - start);
     response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
-    return response.set("Server-Timing", timing.data());
+    return response.set("Server-Timing", fmt::format("compute;dur={:.2f}", monotonic_ms() - start));
 }
 
 http::AsyncHandler synchronous(SyncCall work, std::chrono::seconds limit, Executor& lane, Timer& timer,

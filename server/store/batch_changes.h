@@ -9,7 +9,8 @@
 
 namespace tunewright::server {
 
-/// Entries that one slice of a change touches: some milliseconds.
+/// Entries that one slice of a change touches: some milliseconds of the one thread that writes, so that other changes
+/// never wait longer for a large batch.
 constexpr std::size_t kSlice = 250;
 
 /// The end of a batch's upload. `leaving` is the seq of the batch that has to be deleted: the one that was sent, where

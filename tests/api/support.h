@@ -9,7 +9,6 @@
 
 #include "api/describe/union.h"
 #include "api/json/json.h"
-#include "api/json/parse.h"
 #include "api/service.h"
 
 namespace tunewright::api {

@@ -12,7 +12,7 @@
 #include "api/batch/reader.h"
 #include "api/csv/record.h"
 #include "api/csv/text.h"
-#include "api/json/parse.h"
+#include "api/json/json.h"
 
 namespace tunewright::api {
 

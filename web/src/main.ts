@@ -1,23 +1,22 @@
 // Starts the page: header, routes, the job that is followed, and what happens when something unforeseen goes wrong.
 import { getExamples, getJob, getMethods, getRecentJobs, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { askForKeyWith } from "./api/key.ts";
 import { isFinal } from "./api/types.ts";
 import type { FieldError, IdentifyRequest, Job, TuningRequest } from "./api/types.ts";
-import { askForKeyWith } from "./api/key.ts";
 import { h } from "./dom.ts";
-import { byAllMethods } from "./form/retune.ts";
-import type { TuneSubject } from "./form/tune_subject.ts";
+import { byAllMethods } from "./form/tuning_request.ts";
+import type { TuneSubject } from "./form/tuning_request.ts";
 import { formatRoute, parseRoute } from "./routes.ts";
 import type { Route } from "./routes.ts";
 import { createStore } from "./store.ts";
 import { applyTheme, themeButton } from "./theme.ts";
 import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
+import { identifyView, noRecordView } from "./views/identify.ts";
+import { askInDialog } from "./views/key_dialog.ts";
+import { methodsView } from "./views/methods.ts";
 import { relayView } from "./views/relay.ts";
 import type { RelayView } from "./views/relay.ts";
-import { askInDialog } from "./views/key_dialog.ts";
-import { identifyView } from "./views/identify.ts";
-import { methodsView } from "./views/methods.ts";
-import { noRecordView } from "./views/no_record.ts";
 import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
 

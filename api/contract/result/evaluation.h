@@ -6,17 +6,24 @@
 
 namespace tunewright::api {
 
+// Figures of the loop. One without a value is null, with the reason under its name in `why_null`.
 const Description<Robustness>& robustness_contract();
 const Description<Performance>& performance_contract();
 const Description<LoadPerformance>& load_contract();
+/// Of a controller of the form npid.
+const Description<NonlinearFigures>& nonlinear_contract();
+/// Of a nonlinear plant's linearisation, beside the figures of the plant itself.
+const Description<LinearisedResponse>& linear_contract();
+/// The worst figures over the plants that the controller must serve.
+const Description<RegionFigures>& region_contract();
+
+// Traces for plots, with six significant digits.
 const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
-const Description<NonlinearFigures>& nonlinear_contract();
-const Description<LinearisedResponse>& linear_contract();
+
+// How the figures were checked.
 const Description<IndexErrors>& index_errors_contract();
 const Description<Verification>& verification_contract();
-
-const Description<RegionFigures>& region_contract();
 
 /// {"code", "detail"}.
 const Description<Warning>& warning_contract();

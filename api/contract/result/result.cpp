@@ -1,14 +1,13 @@
 #include "api/contract/result/result.h"
 
+#include <functional>
+
 #include "api/contract/controller.h"
-#include "api/contract/data_quality.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
-#include "api/contract/result/limit_cycle.h"
-#include "api/contract/result/operating_point.h"
-#include "api/contract/result/optimum_at_ms.h"
+#include "api/contract/result/identified_model.h"
 
 namespace tunewright::api {
 namespace {
@@ -42,6 +41,62 @@ void report_field(Description<TuningEntry>& d, const ReportContract& contract) {
 void add_reports(Description<TuningEntry>& d, bool last) {
     for (const ReportContract& report : report_contracts())
         if (report.last == last) report_field(d, report);
+}
+
+const Description<OptimumAtMs>& optimum_contract() {
+    static const auto description = [] {
+        using O = OptimumAtMs;
+        Description<O> d("OptimumAtMs", "The least load IAE that a robust PID reaches with this entry's Ms as limit.");
+        d.field("IAE", &O::IAE, figure(), "Load IAE of the method robust with both Ms and Mt limited to this Ms.",
+                {.unit = "y time"})
+            .field("excess_percent", &O::excess_percent, figure(),
+                   "How far this entry's load IAE lies above it; below 0 where its filter or its Mt lets it.",
+                   {.unit = "%"})
+            .why_null("Not known for this entry.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<OperatingPoint>& operating_point_contract() {
+    static const auto description = [] {
+        Description<OperatingPoint> d("OperatingPoint",
+                                      "The true steady state nearest to the values given; absolute values.");
+        d.field(
+             "states", {},
+             [](const OperatingPoint& point, Writer& out) {
+                 out.begin_object();
+                 for (const NamedValue& state : point.states) {
+                     out.key(state.name);
+                     out.number(state.value);
+                 }
+                 out.end_object();
+             },
+             [](SchemaBook&) {
+                 return Json{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+             },
+             "By name.")
+            .field("u", &OperatingPoint::u, only_answered(number()), "The nominal input.", {.unit = "u"})
+            .field("y", &OperatingPoint::y, only_answered(number()), "The output.", {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+// The fields operating_point and linear_model of an answer; left out where `of` gives null.
+template <class Answer>
+void add_operating_point(Description<Answer>& d, std::function<const OperatingPoint*(const Answer&)> of) {
+    const auto none = [of](const Answer& answer) { return of(answer) == nullptr; };
+    d.field(
+         "operating_point", {},
+         [of](const Answer& answer, Writer& out) { operating_point_contract().write(*of(answer), out); },
+         [](SchemaBook& book) { return operating_point_contract().schema(book); },
+         "Of a nonlinear plant: the steady state that everything is a deviation from.", {}, none)
+        .field(
+            "linear_model", {},
+            [of](const Answer& answer, Writer& out) { plant_contract().write(of(answer)->linear_model, out); },
+            [](SchemaBook& book) { return plant_contract().schema(book); },
+            "Of a nonlinear plant: the linearisation there, on which methods and robustness rest.", {}, none);
 }
 
 Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
@@ -117,110 +172,6 @@ const Description<TuningEntry>& entry_contract() {
     return description;
 }
 
-Codec<std::map<std::string, double>> standard_errors() { return numbers_by_name("Symbol of the parameter."); }
-
-const Description<Candidate>& candidate_contract() {
-    static const auto description = [] {
-        Description<Candidate> d("Candidate", "A structure that was tried.");
-        d.field("plant", &Candidate::plant, only_answered(one_of(plant_contract())), "The model.")
-            .field("fit_percent", &Candidate::fit_percent, only_answered(number()),
-                   "100 (1 - |y - yhat|/|y - mean(y)|), free run.")
-            .field("criterion", &Candidate::criterion, only_answered(number()),
-                   "Information criterion; smaller is better.")
-            .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
-            .field("y_model", &Candidate::y_model,
-                   unless<std::vector<double>>(trace(), [](const auto& y_model) { return y_model.empty(); }),
-                   "Simulated, at the times of the model's fit; with identify.traces.", {.unit = "y"});
-        return d;
-    }();
-    return description;
-}
-
-const Description<ParameterCovariance>& covariance_contract() {
-    static const auto description = [] {
-        Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
-        d.field("names", &ParameterCovariance::names, list_of(words()), "Order of rows and columns.")
-            .field(
-                "matrix", {},
-                [](const ParameterCovariance& covariance, Writer& out) {
-                    out.begin_array();
-                    for (const auto& row : covariance.matrix) {
-                        out.begin_array();
-                        for (const double value : row) out.number(value);
-                        out.end_array();
-                    }
-                    out.end_array();
-                },
-                [](SchemaBook&) {
-                    return Json{{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
-                },
-                "Symmetric.");
-        return d;
-    }();
-    return description;
-}
-
-const Description<ExcitedBand>& band_contract() {
-    static const auto description = [] {
-        Description<ExcitedBand> d("ExcitedBand",
-                                   "Where the answer to u stands out of the noise: the record's own estimate of "
-                                   "P(j omega) has a relative standard error below 100 %.");
-        d.field("omega_low", &ExcitedBand::omega_low, only_answered(number()), "2 pi over the record's length.",
-                {.unit = "rad/time"})
-            .field("omega_high", &ExcitedBand::omega_high, only_answered(number()), "Upper end.", {.unit = "rad/time"});
-        return d;
-    }();
-    return description;
-}
-
-const Description<FitTrace>& fit_contract() {
-    static const auto description = [] {
-        Description<FitTrace> d(
-            "Fit", "The model beside the record, six significant digits; times that need more to differ have more.");
-        d.field("t", &FitTrace::t, times_trace(), "Time.", {.unit = "time"})
-            .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
-            .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
-            .field("y_model", &FitTrace::y_model, trace(), "Simulated.", {.unit = "y"});
-        return d;
-    }();
-    return description;
-}
-
-const Description<IdentifiedModel>& model_contract() {
-    static const auto description = [] {
-        using M = IdentifiedModel;
-        Description<M> d("Model", "The plant that was found in the record.");
-        d.field("plant", &M::plant, only_answered(one_of(plant_contract())), "The model.")
-            .field("fit_percent", &M::fit_percent, only_answered(number()),
-                   "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
-            .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
-            .field("covariance", &M::covariance,
-                   unless<ParameterCovariance>(answer(covariance_contract()),
-                                               [](const auto& covariance) { return covariance.names.empty(); }),
-                   "Of the parameters.")
-            .field("limit_cycle", &M::limit_cycle, maybe(answer(limit_cycle_contract())), "Of a relay test.")
-            .field("frequency_points", &M::frequency_points,
-                   unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),
-                                                       [](const auto& points) { return points.empty(); }),
-                   "Of the plant, from the record alone.")
-            .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
-                   "Of the model; left out where no gain makes it oscillate.")
-            .field("excited_band", &M::excited_band, maybe(answer(band_contract())),
-                   "The frequencies that the record tells something about.")
-            .field("region", &M::region, maybe(answer(region_contract())),
-                   "The best-ranked controller on the 95 % confidence region; each entry has its own.")
-            .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
-            .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
-            .field("fit", &M::fit,
-                   unless<FitTrace>(answer(fit_contract()), [](const auto& fit) { return fit.t.empty(); }),
-                   "The model beside the record; with identify.traces.")
-            .field("data_quality", &M::data_quality, answer(quality_contract()), "What was found in the record.")
-            .field("warnings", &M::warnings, list_of(answer(warning_contract())), "Remarks.");
-        return d;
-    }();
-    return description;
-}
-
 }  // namespace
 
 const Description<ResultAnswer>& result_contract() {
@@ -278,15 +229,6 @@ const Description<EvaluationResult>& evaluate_answer_contract() {
         add_operating_point<EvaluationResult>(d, [](const EvaluationResult& a) { return pointer(a.operating_point); });
         d.field("controllers", &EvaluationResult::controllers, list_of(answer(entry_contract())),
                 "One entry a controller.");
-        return d;
-    }();
-    return description;
-}
-
-const Description<IdentifyAnswer>& identify_answer_contract() {
-    static const auto description = [] {
-        Description<IdentifyAnswer> d("IdentifyAnswer", "The model that was found in the record.");
-        d.field("model", &IdentifyAnswer::model, answer(model_contract()), "The model.");
         return d;
     }();
     return description;

@@ -1,4 +1,5 @@
-// Answers of the contract: a tuning result, evaluated controllers, an identified model.
+// Answers of the contract about controllers: a tuning result, and the figures of controllers that were sent. Answers
+// are only written; their descriptions read nothing.
 #pragma once
 
 #include <string>
@@ -9,19 +10,19 @@
 
 namespace tunewright::api {
 
-/// A tuning result with what only the request knew.
+/// A tuning result with what only the request knew. Its times, gains and figures are in the units of the request:
+/// `units` holds their labels and nothing is converted.
 struct ResultAnswer {
     TuningResult result;
-    std::optional<Units> units;
-    std::string request_hash;
+    std::optional<Units> units;  ///< as sent; left out of the answer where none were sent
+    std::string request_hash;    ///< SHA-256 of the request in its canonical spelling, 64 hexadecimal digits
 };
 
-struct IdentifyAnswer {
-    IdentifiedModel model;
-};
-
+/// The result of a job. An entry whose method found no controller has its `error` in place of the evaluation's members;
+/// `model` is left out where the request had a plant, `operating_point` and `linear_model` where the plant is linear.
 const Description<ResultAnswer>& result_contract();
+
+/// The answer of POST /v1/evaluate: the same entries, without the members of a method.
 const Description<EvaluationResult>& evaluate_answer_contract();
-const Description<IdentifyAnswer>& identify_answer_contract();
 
 }  // namespace tunewright::api

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
-#include "api/csv/columns/chosen_column.h"
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/column_pairs.h"
 #include "api/csv/columns/column_refusals.h"
-#include "api/csv/columns/name_fits.h"
+#include "api/csv/columns/named_columns.h"
 
 namespace tunewright::api {
 namespace {

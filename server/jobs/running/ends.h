@@ -1,5 +1,6 @@
 // What came out of computations, on its way into the store. Where the store cannot take it, it is kept here and
-// offered again until it does; how much is kept is bounded, because workers claim nothing meanwhile (claims.h).
+// offered again until it does; how much is kept is bounded, because workers claim nothing meanwhile (claims.h). The
+// reasons for which a job fails without a result stand here, too.
 #pragma once
 
 #include <functional>
@@ -51,5 +52,13 @@ private:
     std::vector<std::shared_ptr<const Ended>> refused_;
     std::size_t bytes_ = 0;
 };
+
+// Problem objects as JSON, ready for the store.
+/// The job's time, `timeout_s` seconds, was over.
+std::string timeout_problem(double timeout_s);
+/// The process that computed it died or was stopped `attempts` times.
+std::string given_up_problem(int attempts);
+/// A fault of the service itself. `detail` is for the client and shows nothing of the program's inside.
+std::string fault_problem(const std::string& detail);
 
 }  // namespace tunewright::server

@@ -1,7 +1,7 @@
 #include "server/jobs/running/workers.h"
 
 #include "server/executor.h"
-#include "server/jobs/problems.h"
+#include "server/jobs/running/ends.h"
 #include "server/log.h"
 
 namespace tunewright::server {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "server/store/postgres/changes.h"
-#include "server/store/postgres/rows.h"
+#include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
 
 namespace tunewright::server::postgres {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "server/store/postgres/address.h"
+#include "server/store/postgres/session.h"
 #include "server/store/store.h"
 
 namespace tunewright::server::postgres {

@@ -219,7 +219,7 @@ void PostgresStore::drop_batch(std::string batch, Done<bool> done) {
     const auto work = [batch = std::move(batch)](Session& session, Notices&) { return leave_batch(session, batch); };
     write<Found>(kBulky, work, [this, done = std::move(done)](const Outcome<Found>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const Found found = std::get<Found>(outcome);
+        const auto found = std::get<Found>(outcome);
         if (!found) return done(false);
         delete_batch(*found, [done](const std::optional<StoreFault>& fault) { fault ? done(*fault) : done(true); });
     });
@@ -229,7 +229,7 @@ void PostgresStore::remove_batch(std::string id, Done<RemoveEffect> done) {
     const auto work = [id = std::move(id)](Session& session, Notices&) { return postgres::remove_batch(session, id); };
     write<RemovedBatch>(kBulky, work, [this, done = std::move(done)](const Outcome<RemovedBatch>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const RemovedBatch& removed = std::get<RemovedBatch>(outcome);
+        const auto& removed = std::get<RemovedBatch>(outcome);
         if (removed.effect != RemoveEffect::removed) return done(removed.effect);
         delete_batch(removed.leaving, [done](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(RemoveEffect::removed);
@@ -242,7 +242,7 @@ void PostgresStore::cancel_batch(std::string id, UnixMs now, Done<std::optional<
     const auto work = [id = std::move(id)](Session& session, Notices&) { return begin_cancel(session, id); };
     write<Found>(kBulky, work, [this, now, done = std::move(done)](const Outcome<Found>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const Found found = std::get<Found>(outcome);
+        const auto found = std::get<Found>(outcome);
         if (!found) return done(std::nullopt);
         cancel_slices(*found, 0, now, [done](Outcome<Ids> ids) {
             if (const auto* fault = std::get_if<StoreFault>(&ids)) return done(*fault);
@@ -256,7 +256,7 @@ void PostgresStore::cancel_slices(std::int64_t batch, std::int64_t from, UnixMs 
     const auto work = [=](Session& session, Notices&) { return cancel_entries(session, batch, from, now); };
     write<Next>(kBulky, work, [this, batch, now, done = std::move(done)](const Outcome<Next>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        if (const Next next = std::get<Next>(outcome)) return cancel_slices(batch, *next, now, done);
+        if (const auto next = std::get<Next>(outcome)) return cancel_slices(batch, *next, now, done);
         const auto end = [batch](Session& session, Notices& notices) {
             Ids ids = end_cancel(session, batch);
             for (const std::string& id : ids) notices.cancel(id);

@@ -1,6 +1,8 @@
-// What is read from the database, one statement each.
+// What is read from the database: jobs and batches as rows of the tables, in the one place that knows the order of the
+// columns, and the questions that the store answers, one statement each.
 #pragma once
 
+#include <pqxx/row>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,27 @@
 #include "server/store/store.h"
 
 namespace tunewright::server::postgres {
+
+/// Columns of a summary and of a state, with the tables they come from: "SELECT " + columns + tables.
+extern const std::string kSummaryColumns;
+extern const std::string kTables;
+/// The same of a record, from the same tables.
+extern const std::string kRecordColumns;
+/// True for jobs that can be seen: those of a batch that is being deleted cannot.
+extern const std::string kVisible;
+
+JobSummary read_summary(const pqxx::row& row);
+JobState read_state(const pqxx::row& row);
+JobRecord read_record(const pqxx::row& row);
+
+/// "SELECT " + these + conditions on `b` + kBatchGroups.
+extern const std::string kBatchColumns;
+extern const std::string kBatchTables;
+extern const std::string kBatchGroups;
+BatchSummary read_batch(const pqxx::row& row);
+
+/// "" where it is null.
+std::string text_of(const pqxx::field& field);
 
 /// The job with request, result and progress; nothing where there is none, or its batch is being deleted.
 std::optional<JobRecord> find_record(Session& session, const std::string& id);

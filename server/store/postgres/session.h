@@ -1,4 +1,5 @@
-// A connection to PostgreSQL with its prepared statements and settings; errors say what is to be done.
+// A connection to PostgreSQL: the address that it goes to, postgresql://user:password@host:port/database?option=value,
+// its prepared statements and settings, and errors that say what is to be done.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,27 @@
 #include <string>
 #include <vector>
 
-#include "server/store/postgres/address.h"
 #include "server/store/store.h"
 
 namespace tunewright::server::postgres {
+
+/// The parts of the address that libpq and people need.
+class Address {
+public:
+    /// Throws StoreError with a sentence where `uri` cannot be read; the sentence does not repeat it, since it may
+    /// hold a password.
+    explicit Address(const std::string& uri);
+
+    /// For libpq, with time limits for what the address leaves open: no call waits without end for a machine that is
+    /// gone.
+    const std::string& settings() const { return settings_; }
+    /// Host, port and database, for logs and errors: never user or password.
+    const std::string& shown() const { return shown_; }
+
+private:
+    std::string settings_;
+    std::string shown_;
+};
 
 class Failure : public std::runtime_error {
 public:

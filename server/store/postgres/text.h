@@ -13,7 +13,8 @@ std::string to_column(std::string_view text);
 /// The bytes that to_column() made `column` of.
 std::string from_column(std::string_view column);
 
-/// The literal of a text[] of these texts, each as to_column() makes it.
+/// The literal of a text[] of these texts, each as to_column() makes it: {} of none, {"a","b \"c\""} of two. One
+/// parameter of a statement then carries any number of texts.
 class TextArray {
 public:
     /// Any bytes.

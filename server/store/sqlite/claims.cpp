@@ -1,6 +1,6 @@
 // Turns, claims and leases.
 #include "server/store/sqlite/jobs.h"
-#include "server/store/sqlite/rows.h"
+#include "server/store/sqlite/reading.h"
 
 namespace tunewright::server {
 

@@ -1,4 +1,5 @@
-// What is read from the file, one statement each. Every function runs on a connection that only reads.
+// What is read from the file: jobs and batches as rows of the tables, in the one place that knows the order of the
+// columns, and the questions that the store answers, one statement each.
 #pragma once
 
 #include <string>
@@ -8,6 +9,25 @@
 
 namespace tunewright::server {
 
+/// Columns of a summary and of a state, with the tables they come from: "SELECT " + columns + tables.
+extern const std::string kSummaryColumns;
+extern const std::string kSummaryTables;
+/// The same of a record.
+extern const std::string kRecordColumns;
+extern const std::string kRecordTables;
+/// True for jobs that can be seen: those of a batch that is being deleted cannot.
+extern const std::string kVisible;
+
+/// From the current row of a query that selects the columns of the same name.
+JobSummary read_summary(const Connection::Use& row);
+JobState read_state(const Connection::Use& row);
+JobRecord read_record(const Connection::Use& row);
+
+/// Columns of a batch, of `batches b`.
+extern const std::string kBatchColumns;
+BatchSummary read_batch(const Connection::Use& row);
+
+// The questions. Each runs on a connection that only reads.
 /// The job with request, result and progress; nothing where there is none, or its batch is being deleted.
 std::optional<JobRecord> find_record(Connection& store, const std::string& id);
 /// The states of those of the jobs that there are, in no particular order.

@@ -266,7 +266,7 @@ void SqliteStore::drop_batch(std::string batch, Done<bool> done) {
     using Found = std::optional<std::int64_t>;
     write<Found>(kBulky, work, [this, done = std::move(done)](const Outcome<Found>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const Found found = std::get<Found>(outcome);
+        const auto found = std::get<Found>(outcome);
         if (!found) return done(false);
         delete_batch(*found, [done](const std::optional<StoreFault>& fault) { fault ? done(*fault) : done(true); });
     });
@@ -276,7 +276,7 @@ void SqliteStore::remove_batch(std::string id, Done<RemoveEffect> done) {
     const auto work = [id = std::move(id)](Connection& store) { return server::remove_batch(store, id); };
     write<RemovedBatch>(kBulky, work, [this, done = std::move(done)](const Outcome<RemovedBatch>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const RemovedBatch& removed = std::get<RemovedBatch>(outcome);
+        const auto& removed = std::get<RemovedBatch>(outcome);
         if (removed.effect != RemoveEffect::removed) return done(removed.effect);
         delete_batch(removed.leaving, [done](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(RemoveEffect::removed);
@@ -289,7 +289,7 @@ void SqliteStore::cancel_batch(std::string id, UnixMs now, Done<std::optional<st
     using Found = std::optional<std::int64_t>;
     write<Found>(kBulky, work, [this, now, done = std::move(done)](const Outcome<Found>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const Found found = std::get<Found>(outcome);
+        const auto found = std::get<Found>(outcome);
         if (!found) return done(std::nullopt);
         cancel_slices(*found, now, [done](Outcome<std::vector<std::string>> ids) {
             if (const auto* fault = std::get_if<StoreFault>(&ids)) return done(*fault);

@@ -21,7 +21,7 @@ StoreFault fault_of(const std::exception& error, int system_error) {
     StoreFault fault{StoreFault::Kind::unavailable, error.what()};
     const auto* sqlite = dynamic_cast<const SQLite::Exception*>(&error);
     if (sqlite == nullptr) return fault;
-    // A file that cannot grow is told in several ways: SQLite says "full" of some limits, "I/O error" of others.
+    // SQLite reports a file that cannot grow in several ways: "full" of some limits, "I/O error" of others.
     const int code = sqlite->getErrorCode() & 0xff;
     const bool cannot_grow = system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
     if (code == SQLITE_FULL || (code == SQLITE_IOERR && cannot_grow))

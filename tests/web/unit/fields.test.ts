@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Schema } from "../../../web/src/api/types.ts";
+import { pick, place } from "../../../web/src/form/cases.ts";
 import { matchPointer } from "../../../web/src/form/errors.ts";
 import { fieldsOf, readField, typedText } from "../../../web/src/form/fields.ts";
-import { pick, place } from "../../../web/src/form/place.ts";
 import { formOf, PLANT_FORMS, readPlant } from "../../../web/src/form/plant.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 

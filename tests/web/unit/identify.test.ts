@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
+import { withTraces } from "../../../web/src/api/experiments.ts";
 import { latest } from "../../../web/src/api/latest.ts";
-import { withTraces } from "../../../web/src/api/traces.ts";
 import type { Candidate, IdentifyRequest, Model, TuningRequest } from "../../../web/src/api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../../../web/src/charts/identified.ts";
 import { held } from "../../../web/src/charts/record.ts";
 import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
-import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tune_subject.ts";
+import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tuning_request.ts";
 import { parameterTexts } from "../../../web/src/views/cards/candidates_card.ts";
 import { cycleRows } from "../../../web/src/words/cycle.ts";
 import { formatUncertain, unitNames } from "../../../web/src/words/numbers.ts";

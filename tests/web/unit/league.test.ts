@@ -2,10 +2,11 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Entry, Result } from "../../../web/src/api/types.ts";
 import { defaultOverlay, entryNames } from "../../../web/src/charts/drawn.ts";
-import { byAllMethods, withLambda } from "../../../web/src/form/retune.ts";
+import { byAllMethods, withLambda } from "../../../web/src/form/tuning_request.ts";
 import { csvText } from "../../../web/src/plot/export.ts";
 import { spark } from "../../../web/src/plot/spark.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
   excessText,
   leagueColumns,
@@ -17,7 +18,6 @@ import {
   sortRows,
   sortText,
 } from "../../../web/src/words/league.ts";
-import { unitNames } from "../../../web/src/words/numbers.ts";
 
 const robustness = { stable: true, omega_Ms: 1, Mt: 1, omega_Mt: 1, Mks: 2, gain_margin: 3, gain_margin_low: 0 };
 const make = (method: string, Ms: number | null, IAE: number | null, extra: Partial<Entry> = {}): Entry =>

@@ -3,7 +3,7 @@ import test from "node:test";
 import type { Rimc } from "../../../web/src/api/reports.ts";
 import type { Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../web/src/charts/rimc.ts";
-import { withLambda } from "../../../web/src/form/retune.ts";
+import { withLambda } from "../../../web/src/form/tuning_request.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 
 const units = unitNames({ time: "min", u: "%", y: "degC" });

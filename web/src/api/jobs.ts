@@ -1,6 +1,6 @@
 // Starting, following and cancelling a job.
 import { ApiError, call } from "./client.ts";
-import { withTraces } from "./traces.ts";
+import { withTraces } from "./experiments.ts";
 import { isFinal } from "./types.ts";
 import type { Example, Job, Method, TuningRequest } from "./types.ts";
 

@@ -1,7 +1,6 @@
 // A list of cases on one line: "10; -5 initial.T 380; 10 parameters.k0 5e8" is three objects, a number in front of each.
 import { parseNumber } from "./number.ts";
 import type { Parsed } from "./number.ts";
-import { place } from "./place.ts";
 
 type Case = Record<string, unknown>;
 
@@ -43,4 +42,23 @@ function pairsOf(entry: Case, lead: string, above = ""): string[] {
     if (typeof value === "object" && value !== null) return pairsOf(value as Case, lead, `${above}${name}.`);
     return value === undefined || value === null ? [] : [`${above}${name} ${String(value)}`];
   });
+}
+
+/** Puts a value at its path; undefined puts nothing. */
+export function place(target: Record<string, unknown>, path: string[], value: unknown): void {
+  if (value === undefined) return;
+  let at = target;
+  for (const key of path.slice(0, -1)) {
+    if (typeof at[key] !== "object" || at[key] === null) at[key] = {};
+    at = at[key] as Record<string, unknown>;
+  }
+  at[path[path.length - 1]!] = value;
+}
+
+/** The value at a path, or undefined. */
+export function pick(source: unknown, path: string[]): unknown {
+  return path.reduce<unknown>(
+    (at, key) => (typeof at === "object" && at !== null ? (at as Record<string, unknown>)[key] : undefined),
+    source,
+  );
 }

@@ -1,4 +1,4 @@
-// Ranges, scales and ticks, linear and logarithmic. Every function returns for every input: no data, one value, or nonsense.
+// Ranges, scales, ticks and their texts, linear and logarithmic. Every function returns for every input: no data, one value, or nonsense.
 
 export type ScaleKind = "linear" | "log";
 export type Range = readonly [number, number];
@@ -120,4 +120,15 @@ function logTicks(lo: number, hi: number, wanted: number): number[] {
     if (list.length >= 3) return list;
   }
   return inside([1, 2, 5], 1);
+}
+
+const MINUS = "−";
+
+/** A tick's text: no dust, true minus, powers of ten where plain digits would be long. */
+export function tickText(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  const text =
+    size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
+  return text.replaceAll("-", MINUS);
 }

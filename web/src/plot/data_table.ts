@@ -1,7 +1,7 @@
 // A plot's data as a table to read: every sample of short traces, evenly chosen rows of long ones (exports have them all).
 import { h } from "../dom.ts";
+import { tickText } from "./axis.ts";
 import type { Frame } from "./frame.ts";
-import { tickText } from "./tick_text.ts";
 
 const MOST_ROWS = 60;
 

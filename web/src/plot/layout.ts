@@ -1,8 +1,7 @@
 // From a frame and a size to rectangles and scales. Pure: the page and the exports share it.
-import { extent, makeScale, ticks, usableRange } from "./axis.ts";
+import { extent, makeScale, ticks, tickText, usableRange } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import type { Frame, Pane } from "./frame.ts";
-import { tickText } from "./tick_text.ts";
 
 export interface PaneBox {
   pane: Pane;

@@ -1,9 +1,8 @@
 // From a layout to SVG nodes. Looks are presentation attributes over colour tokens, var(--name): no class and no style,
 // so the same nodes serve the page (which follows the theme) and the exports (which put the colours in).
-import { node } from "../dom.ts";
+import { node, svgElement } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
-import { ticks } from "./axis.ts";
-import { tickText } from "./tick_text.ts";
+import { ticks, tickText } from "./axis.ts";
 import { columnExtremes, drawableRuns } from "./dense.ts";
 import type { Frame, Look, Mark, Trace } from "./frame.ts";
 import { TICK_PX } from "./layout.ts";
@@ -229,4 +228,12 @@ function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
       }
     }
   });
+}
+
+/** A short piece of a series' line, for legends and table headings. */
+export function swatch(look: Look, thin = false): Element {
+  const line = node("path", { d: "M1 5H27", fill: "none", ...lineOf(look, thin) });
+  return svgElement(
+    node("svg", { width: 28, height: 10, viewBox: "0 0 28 10", "aria-hidden": "true", focusable: "false" }, line),
+  );
 }

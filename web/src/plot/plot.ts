@@ -7,9 +7,8 @@ import { download, exportHeight, frameToCsv, frameToSvg, lightPalette, svgToPng 
 import type { Frame } from "./frame.ts";
 import { layoutFrame, wholeView } from "./layout.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
-import { drawLayout } from "./marks.ts";
+import { drawLayout, swatch } from "./marks.ts";
 import { cursorNodes, cursorRange, cursorScale, readings, valueAt } from "./readout.ts";
-import { paneLegend } from "./swatch.ts";
 import { zoomAbout, zoomToRectangle } from "./zoom.ts";
 
 export interface Plot {
@@ -299,4 +298,14 @@ export function createPlot(first: Frame, announce: Announce): Plot {
       observer.disconnect();
     },
   };
+}
+
+/** The names of a frame's first pane with their lines; for plots whose traces stand in no other legend. */
+function paneLegend(frame: Frame): HTMLElement {
+  const traces = frame.panes[0]?.traces ?? [];
+  return h(
+    "p",
+    { class: "pane-legend" },
+    traces.map((trace) => h("span", {}, swatch(trace.look, trace.thin), trace.name)),
+  );
 }

@@ -1,13 +1,12 @@
 // What a cursor shows: where it may stand, its line and dots, and the figures beside it.
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
-import { extent } from "./axis.ts";
+import { extent, tickText } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import { nearestIndex } from "./cursor.ts";
 import type { Frame, Trace } from "./frame.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 import { lineOf } from "./marks.ts";
-import { tickText } from "./tick_text.ts";
 
 /** The cursor's range: what is in view for plain plots, the whole parameter for curves in a plane. */
 export function cursorRange(frame: Frame, layout: Layout): Range {

@@ -1,6 +1,6 @@
 // Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
 import { ApiError } from "../api/client.ts";
-import { identify } from "../api/identify.ts";
+import { identify } from "../api/experiments.ts";
 import { latest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
@@ -9,8 +9,8 @@ import { h } from "../dom.ts";
 import { areaField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
 import { csvOf, recordFields, samplesOf } from "../form/record_fields.ts";
-import { tuneSubject } from "../form/tune_subject.ts";
-import type { TuneSubject } from "../form/tune_subject.ts";
+import { tuneSubject } from "../form/tuning_request.ts";
+import type { TuneSubject } from "../form/tuning_request.ts";
 import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
@@ -245,4 +245,23 @@ export function identifyView(
       plot?.dispose();
     },
   };
+}
+
+/** Identify without a record: where to get one. */
+export function noRecordView(trouble = ""): View {
+  const heading = h("h1", { tabindex: -1 }, "Identify");
+  const element = h(
+    "main",
+    { class: "identify", id: "main" },
+    heading,
+    trouble ? h("p", { class: "trouble", role: "status" }, trouble) : null,
+    h(
+      "p",
+      {},
+      "There is no recorded test here yet. ",
+      h("a", { href: "#/" }, "Drop one on Start"),
+      ": a step, a relay test, or any movement of the controller's output.",
+    ),
+  );
+  return { element, heading, dispose: () => undefined };
 }

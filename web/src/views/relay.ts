@@ -1,8 +1,8 @@
 // Relay test: what one would show on a plant, how to make it, and its record for Identify.
 import { ApiError } from "../api/client.ts";
+import { simulateRelay } from "../api/experiments.ts";
+import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/experiments.ts";
 import { latest } from "../api/latest.ts";
-import { simulateRelay } from "../api/relay.ts";
-import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/relay.ts";
 import type { FieldError, IdentifyRequest, Units } from "../api/types.ts";
 import { relayFrame } from "../charts/relay.ts";
 import { h, uniqueId } from "../dom.ts";

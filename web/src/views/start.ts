@@ -5,8 +5,8 @@ import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningReq
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import type { PlantReading } from "../form/plant.ts";
-import { byAllMethods, EVERY_METHOD } from "../form/retune.ts";
-import type { TuneSubject } from "../form/tune_subject.ts";
+import { byAllMethods, EVERY_METHOD } from "../form/tuning_request.ts";
+import type { TuneSubject } from "../form/tuning_request.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";

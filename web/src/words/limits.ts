@@ -10,7 +10,7 @@ export interface Limits {
 const above = (value: unknown, floor: number): number | null =>
   typeof value === "number" && Number.isFinite(value) && value > floor ? value : null;
 
-/** What the entry's method was asked to hold; `robust` holds 1.4 unless told otherwise. */
+/** What the entry's method was asked to hold; `robust` holds 1.4 by default. */
 export function limitsOf(entry: Entry | undefined): Limits {
   const options = entry?.options ?? {};
   const standard = entry?.method === "robust" ? 1.4 : null;

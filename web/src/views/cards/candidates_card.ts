@@ -2,7 +2,7 @@
 import type { Candidate, Model } from "../../api/types.ts";
 import { h, mathElement, uniqueId } from "../../dom.ts";
 import { plantFormula } from "../../form/formula.ts";
-import { serviceChoice } from "../../form/tune_subject.ts";
+import { serviceChoice } from "../../form/tuning_request.ts";
 import { formatNumber, formatParameter, formatUncertain } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { parameterUnit, structureTitle } from "../../words/plant.ts";

@@ -1,13 +1,13 @@
 // The choice of methods with their options, built from what GET /v1/methods says.
 import type { FieldError, Method, TuneEntry } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
+import { pick, place } from "../../form/cases.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { Field } from "../../form/controls.ts";
 import type { Control, FormErrors } from "../../form/errors.ts";
-import { asksForAll } from "../../form/retune.ts";
 import { fieldsOf, readField, typedText } from "../../form/fields.ts";
 import type { FieldKind, FieldSpec } from "../../form/fields.ts";
-import { pick, place } from "../../form/place.ts";
+import { asksForAll } from "../../form/tuning_request.ts";
 import { formatRoute } from "../../routes.ts";
 import { mentions } from "../../words/methods.ts";
 import { namedUnit, unitNames } from "../../words/numbers.ts";

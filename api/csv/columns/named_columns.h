@@ -1,15 +1,24 @@
-// The columns whose headings name a role, and what narrows them down: whether they move, and whose names go together.
+// Columns by their names: the one that a request names for a role, and those whose headings name a role. Whether they
+// move, and whose names go together, narrows the latter down.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/heading.h"
+#include "api/csv/record.h"
 
 namespace tunewright::api {
+
+/// The column that a request names, by its heading or its number from 1. A heading is found as it is written, else
+/// without regard to letter case, unit and blanks. Where the file has no such column, or several, the result is empty
+/// and a fault is added that says so.
+std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, const ColumnChoice& choice,
+                                         std::vector<CsvFault>& faults);
 
 struct NameFits {
     std::vector<std::size_t> best;    ///< columns that name the role most plainly, all equally so

@@ -1,4 +1,8 @@
-#include "api/contract/data_quality.h"
+#include "api/contract/result/identified_model.h"
+
+#include "api/contract/plant/plant.h"
+#include "api/contract/relay.h"
+#include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
 namespace {
@@ -82,8 +86,6 @@ const Description<ClosedLoop>& closed_loop_contract() {
     return description;
 }
 
-}  // namespace
-
 const Description<DataQuality>& quality_contract() {
     static const auto description = [] {
         using Q = DataQuality;
@@ -122,6 +124,121 @@ const Description<DataQuality>& quality_contract() {
             .field("closed_loop", &Q::closed_loop, maybe(answer(closed_loop_contract())),
                    "Whether a controller moved u in answer to y, and what was done about it.")
             .field("notes", &Q::notes, list_of(sentence()), "Sentences.");
+        return d;
+    }();
+    return description;
+}
+
+Codec<std::map<std::string, double>> standard_errors() { return numbers_by_name("Symbol of the parameter."); }
+
+const Description<Candidate>& candidate_contract() {
+    static const auto description = [] {
+        Description<Candidate> d("Candidate", "A structure that was tried.");
+        d.field("plant", &Candidate::plant, only_answered(one_of(plant_contract())), "The model.")
+            .field("fit_percent", &Candidate::fit_percent, only_answered(number()),
+                   "100 (1 - |y - yhat|/|y - mean(y)|), free run.")
+            .field("criterion", &Candidate::criterion, only_answered(number()),
+                   "Information criterion; smaller is better.")
+            .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
+            .field("y_model", &Candidate::y_model,
+                   unless<std::vector<double>>(trace(), [](const auto& y_model) { return y_model.empty(); }),
+                   "Simulated, at the times of the model's fit; with identify.traces.", {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<ParameterCovariance>& covariance_contract() {
+    static const auto description = [] {
+        Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
+        d.field("names", &ParameterCovariance::names, list_of(words()), "Order of rows and columns.")
+            .field(
+                "matrix", {},
+                [](const ParameterCovariance& covariance, Writer& out) {
+                    out.begin_array();
+                    for (const auto& row : covariance.matrix) {
+                        out.begin_array();
+                        for (const double value : row) out.number(value);
+                        out.end_array();
+                    }
+                    out.end_array();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+                },
+                "Symmetric.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<ExcitedBand>& band_contract() {
+    static const auto description = [] {
+        Description<ExcitedBand> d("ExcitedBand",
+                                   "Where the answer to u stands out of the noise: the record's own estimate of "
+                                   "P(j omega) has a relative standard error below 100 %.");
+        d.field("omega_low", &ExcitedBand::omega_low, only_answered(number()), "2 pi over the record's length.",
+                {.unit = "rad/time"})
+            .field("omega_high", &ExcitedBand::omega_high, only_answered(number()), "Upper end.", {.unit = "rad/time"});
+        return d;
+    }();
+    return description;
+}
+
+const Description<FitTrace>& fit_contract() {
+    static const auto description = [] {
+        Description<FitTrace> d(
+            "Fit", "The model beside the record, six significant digits; times that need more to differ have more.");
+        d.field("t", &FitTrace::t, times_trace(), "Time.", {.unit = "time"})
+            .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
+            .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
+            .field("y_model", &FitTrace::y_model, trace(), "Simulated.", {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace
+
+const Description<IdentifiedModel>& model_contract() {
+    static const auto description = [] {
+        using M = IdentifiedModel;
+        Description<M> d("Model", "The plant that was found in the record.");
+        d.field("plant", &M::plant, only_answered(one_of(plant_contract())), "The model.")
+            .field("fit_percent", &M::fit_percent, only_answered(number()),
+                   "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
+            .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
+            .field("covariance", &M::covariance,
+                   unless<ParameterCovariance>(answer(covariance_contract()),
+                                               [](const auto& covariance) { return covariance.names.empty(); }),
+                   "Of the parameters.")
+            .field("limit_cycle", &M::limit_cycle, maybe(answer(limit_cycle_contract())), "Of a relay test.")
+            .field("frequency_points", &M::frequency_points,
+                   unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),
+                                                       [](const auto& points) { return points.empty(); }),
+                   "Of the plant, from the record alone.")
+            .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
+                   "Of the model; left out where no gain makes it oscillate.")
+            .field("excited_band", &M::excited_band, maybe(answer(band_contract())),
+                   "The frequencies that the record tells something about.")
+            .field("region", &M::region, maybe(answer(region_contract())),
+                   "The best-ranked controller on the 95 % confidence region; each entry has its own.")
+            .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
+            .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
+            .field("fit", &M::fit,
+                   unless<FitTrace>(answer(fit_contract()), [](const auto& fit) { return fit.t.empty(); }),
+                   "The model beside the record; with identify.traces.")
+            .field("data_quality", &M::data_quality, answer(quality_contract()), "What was found in the record.")
+            .field("warnings", &M::warnings, list_of(answer(warning_contract())), "Remarks.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<IdentifyAnswer>& identify_answer_contract() {
+    static const auto description = [] {
+        Description<IdentifyAnswer> d("IdentifyAnswer", "The model that was found in the record.");
+        d.field("model", &IdentifyAnswer::model, answer(model_contract()), "The model.");
         return d;
     }();
     return description;

@@ -1,12 +1,28 @@
-// Lines of a text that arrives piece by piece, in any usual encoding.
+// The pieces that the body of a batch is cut into while it arrives: lines of text in any usual encoding, and the raw
+// requests in them.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "api/problem.h"
+
 namespace tunewright::api {
 
+/// One request of a batch, cut out of what was sent.
+struct RawEntry {
+    long line = 0;                 ///< of the body, from 1, where it begins
+    std::string text;              ///< a tuning request, if it is one
+    std::optional<Problem> fault;  ///< why it is none, known before it is read
+    std::string name;              ///< of one with a fault, where it is known
+};
+
+/// The fault of a request that has `bytes` bytes where `most` are accepted.
+Problem too_long(std::size_t bytes, std::size_t most);
+
+/// Lines of a text that arrives piece by piece.
 class Lines {
 public:
     enum class Ends {
@@ -21,7 +37,7 @@ public:
     Lines(Ends ends, std::size_t longest) : ends_(ends), longest_(longest) {}
 
     /// The next bytes; `take` gets each line that ends in them. A byte order mark at the start means UTF-16, and is no
-    /// part of the first line; lines that are not UTF-8 are taken for Windows-1252 (encoding.h) with Ends::any.
+    /// part of the first line; lines that are not UTF-8 are taken for Windows-1252 (api/csv/text.h) with Ends::any.
     bool feed(std::string_view bytes, const Take& take);
     /// The line that no line end follows, if there is one.
     bool finish(const Take& take);

@@ -1,4 +1,4 @@
-#include "api/json/parse.h"
+#include "api/json/json.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
-// What a relay test on a plant would show.
+// Tests of a plant: what a relay test on it would show, and the model that a recorded test gives. Both are answered at once.
 import { call } from "./client.ts";
-import type { LimitCycle, Notice, Plant, RecordedTest, Units } from "./types.ts";
+import type { IdentifyRequest, LimitCycle, Model, Notice, Plant, RecordedTest, Units } from "./types.ts";
 
 export interface RelaySettings {
   u_plus?: number;
@@ -43,4 +43,19 @@ export interface RelayAnswer {
 
 export async function simulateRelay(request: RelayRequest): Promise<RelayAnswer> {
   return (await call("POST", "v1/experiments/relay", request)).data as RelayAnswer;
+}
+
+interface AboutRecord {
+  record?: RecordedTest;
+  identify?: Record<string, unknown>;
+}
+
+/** The request, with the traces of the models if it is about a record: the page draws the record beside its models. */
+export function withTraces<Request extends AboutRecord>(request: Request): Request {
+  return request.record ? { ...request, identify: { ...request.identify, traces: true } } : request;
+}
+
+/** The model that the service finds in the record, with its traces. */
+export async function identify(request: IdentifyRequest): Promise<Model> {
+  return ((await call("POST", "v1/identify", withTraces(request))).data as { model: Model }).model;
 }

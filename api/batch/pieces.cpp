@@ -1,4 +1,4 @@
-#include "api/batch/lines.h"
+#include "api/batch/pieces.h"
 
 #include <algorithm>
 
@@ -10,6 +10,13 @@ namespace {
 constexpr std::string_view kLittle = "\xFF\xFE", kBig = "\xFE\xFF", kUtf8 = "\xEF\xBB\xBF";
 
 }  // namespace
+
+Problem too_long(std::size_t bytes, std::size_t most) {
+    Problem problem{413, "too-large", "The request is too large", {}, {}, {}};
+    problem.detail =
+        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(most) + " are accepted of one request.";
+    return problem;
+}
 
 bool Lines::feed(std::string_view bytes, const Take& take) {
     if (code_ != Code::unknown) return feed_known(bytes, take);

@@ -1,10 +1,15 @@
 // The legend above the plots: which controllers are drawn, and whose settings and verdict are shown.
-import type { Entry } from "../api/types.ts";
+import type { Entry, TuningRequest } from "../api/types.ts";
 import { MOST_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
+import { nyquistFrame } from "../charts/nyquist.ts";
+import { responseFrame } from "../charts/responses.ts";
+import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h } from "../dom.ts";
-import { swatch } from "../plot/swatch.ts";
+import type { PlotGrid } from "../plot/grid.ts";
+import { swatch } from "../plot/marks.ts";
 import type { Store } from "../store.ts";
+import { commonLimits } from "../words/limits.ts";
 
 export interface Legend {
   element: HTMLElement;
@@ -75,4 +80,20 @@ export function createLegend(store: Store): Legend {
       if (focused >= 0) controls()[focused]?.focus();
     },
   };
+}
+
+/** The plots of the drawn entries, one trace each. `selected`: the entry whose linearised response is drawn too where there are many. */
+export function showEntryPlots(
+  plots: PlotGrid,
+  drawn: Drawn[],
+  request: TuningRequest | undefined,
+  selected?: number,
+): void {
+  const responses = drawn.some((item) => item.entry.responses);
+  const frequency = drawn.some((item) => item.entry.frequency);
+  const limits = commonLimits(drawn.map((item) => item.entry));
+  plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
+  plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
+  plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
+  plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
 }

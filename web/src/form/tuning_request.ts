@@ -1,0 +1,62 @@
+// Tuning requests that the page makes from answers: a candidate of Identify as what is to be tuned, the same request with
+// another lambda for one of its entries, and the same subject by every method.
+import type { Candidate, IdentifyRequest, Model, Plant, Result, TuneEntry, TuningRequest } from "../api/types.ts";
+
+/** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
+export type TuneSubject =
+  /** `uncertainty` "identified": limits hold on all that the record leaves possible. */
+  (Pick<IdentifyRequest, "record" | "identify"> & { uncertainty?: "identified" | undefined }) | { plant: Plant };
+
+const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
+
+/** Index of the candidate that the service chose; -1 if it lists none. */
+export function serviceChoice(model: Model): number {
+  return (model.candidates ?? []).findIndex((candidate) => same(candidate.plant, model.plant));
+}
+
+/** The name in `identify.model` that asks for this structure. */
+export function structureOf(plant: Plant): string {
+  if (plant.type === "ipdt") return typeof plant["T"] === "number" && plant["T"] !== 0 ? "ipdt_lag" : "ipdt";
+  return plant.type === "transfer_function" ? "sopdt_zero" : plant.type;
+}
+
+export function tuneSubject(request: IdentifyRequest, model: Model, chosen: Candidate | null): TuneSubject {
+  const { record, identify } = request;
+  if (!chosen || same(chosen.plant, model.plant)) return { record, ...(identify ? { identify } : {}) };
+  const structure = structureOf(chosen.plant);
+  const alone = (model.candidates ?? []).filter((item) => structureOf(item.plant) === structure).length === 1;
+  return alone ? { record, identify: { ...identify, model: structure } } : { plant: chosen.plant };
+}
+
+/** Options that say the same as lambda in another way. */
+const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];
+
+/** `index`: of the entry in the result, whose order is that of `tune`. */
+export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number): TuningRequest {
+  const given =
+    request.tune === undefined || asksForAll(request.tune) ? everyMethod(result) : (request.tune as TuneEntry[]);
+  const tune = given.map((entry, at): TuneEntry => {
+    if (at !== index) return entry;
+    const kept = Object.entries(entry).filter(([name]) => !IN_PLACE_OF_LAMBDA.includes(name));
+    return { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true };
+  });
+  return { ...request, tune };
+}
+
+/** "all" as the list that it stood for, each variant with its options. */
+const everyMethod = (result: Result): TuneEntry[] =>
+  result.controllers
+    .filter((entry) => entry.method !== "baseline")
+    .map((entry) => ({
+      method: entry.method,
+      ...Object.fromEntries(Object.entries(entry.options ?? {}).filter(([, value]) => value !== null)),
+    }));
+
+/** Whether every method was asked for, in a word or as a method among others. */
+export const asksForAll = (tune: TuningRequest["tune"]): boolean =>
+  typeof tune === "string" || (tune ?? []).some((entry) => entry.method === "all");
+
+export const EVERY_METHOD: TuneEntry[] = [{ method: "all" }];
+
+/** The same subject, tuned by every method there is. */
+export const byAllMethods = (request: TuningRequest): TuningRequest => ({ ...request, tune: EVERY_METHOD });

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 
 namespace tunewright {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/controller/error_scaling.h"
+#include "engine/controller/pid.h"
 #include "engine/loop/integral_sector.h"
 #include "engine/number_text.h"
 #include "engine/simulation/linear/indices.h"

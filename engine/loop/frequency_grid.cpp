@@ -15,7 +15,7 @@ constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
 constexpr double kFarBelow = 1e-2, kFarAbove = 1e2;          // of the corners: where the asymptotes are read
-constexpr double kFlat = 0.1;             // slope of |L| in decades a decade: a flatter one tells no crossing
+constexpr double kFlat = 0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
 constexpr double kFarthestCrossing = 30;  // of ln omega from where the asymptote is read
 constexpr double kLightDamping = 0.3;     // below it a pole or zero shows as a resonance
 constexpr double kLeastWidth = 1e-6;      // of a resonance, relative: an undamped one has none

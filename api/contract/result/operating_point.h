@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "api/contract/plant/plant.h"
-#include "engine/evaluation/operating_point.h"
+#include "engine/plant/nonlinear/linearisation.h"
 
 namespace tunewright::api {
 

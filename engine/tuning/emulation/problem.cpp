@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/tuning/emulation/emulation.h"
 #include "engine/tuning/emulation/target.h"
 #include "engine/tuning/model_based/imc.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 
 namespace tunewright::emulation {
 namespace {

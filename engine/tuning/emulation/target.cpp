@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/polynomial_roots.h"
 
 namespace tunewright::emulation {
 namespace {

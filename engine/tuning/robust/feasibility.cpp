@@ -6,7 +6,7 @@
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/scan.h"
 #include "engine/tuning/robust/sqp.h"
 

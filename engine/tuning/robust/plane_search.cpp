@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/scan.h"
 
 namespace tunewright::robust {

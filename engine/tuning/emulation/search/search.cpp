@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/global_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/emulation/search/best_so_far.h"
 #include "engine/tuning/emulation/search/box_step.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluate_nonlinear.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"

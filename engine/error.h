@@ -19,7 +19,20 @@ enum class ErrorKind {
 };
 
 /// The kind as the contract spells it in a problem's `type`, e.g. "no-feasible-controller".
-const char* to_string(ErrorKind kind);
+inline const char* to_string(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::invalid_argument: return "invalid-argument";
+        case ErrorKind::unsupported: return "unsupported";
+        case ErrorKind::not_identifiable: return "not-identifiable";
+        case ErrorKind::unstable_plant: return "unstable-plant";
+        case ErrorKind::no_feasible_controller: return "no-feasible-controller";
+        case ErrorKind::unbounded_optimum: return "unbounded-optimum";
+        case ErrorKind::cancelled: return "cancelled";
+        case ErrorKind::timeout: return "timeout";
+        case ErrorKind::numerical_failure: return "numerical-failure";
+    }
+    return "numerical-failure";
+}
 
 struct Error {
     ErrorKind kind = ErrorKind::numerical_failure;

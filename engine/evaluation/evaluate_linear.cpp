@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/controller/error_scaling.h"
+#include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/measured_response.h"
 #include "engine/evaluation/performance_figures.h"

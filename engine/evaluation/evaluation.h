@@ -7,7 +7,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/figure.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 #include "engine/warning.h"
 
 namespace tunewright {

@@ -9,7 +9,7 @@
 #include "engine/expected.h"
 #include "engine/identification/fit/excited_band.h"
 #include "engine/identification/record/record.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/simulation/relay/limit_cycle.h"
 #include "engine/warning.h"

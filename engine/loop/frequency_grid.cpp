@@ -13,6 +13,13 @@ constexpr std::size_t kMaxPoints = 20000;
 constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are followed one by one
 constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
 
+constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
+constexpr double kFarBelow = 1e-2, kFarAbove = 1e2;          // of the corners: where the asymptotes are read
+constexpr double kFlat = 0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
+constexpr double kFarthestCrossing = 30;  // of ln omega from where the asymptote is read
+constexpr double kLightDamping = 0.3;     // below it a pole or zero shows as a resonance
+constexpr double kLeastWidth = 1e-6;      // of a resonance, relative: an undamped one has none
+
 struct Range {
     double low, high;
 };
@@ -36,10 +43,10 @@ void add_asymptote_crossings(std::vector<double>& corners, const Loop& loop, dou
         const double here = magnitude(loop.open_loop({0, omega}));
         const double there = magnitude(loop.open_loop({0, omega * ratio}));
         const double slope = std::log(there / here) / std::log(ratio);
-        if (!std::isfinite(slope) || std::abs(slope) < 0.1) return 0.0;
-        return omega * std::exp(std::clamp(-std::log(here) / slope, -30.0, 30.0));
+        if (!std::isfinite(slope) || std::abs(slope) < kFlat) return 0.0;
+        return omega * std::exp(std::clamp(-std::log(here) / slope, -kFarthestCrossing, kFarthestCrossing));
     };
-    const double below = slope_crossing(low * 1e-2, 0.5), above = slope_crossing(high * 1e2, 2.0);
+    const double below = slope_crossing(low * kFarBelow, 0.5), above = slope_crossing(high * kFarAbove, 2.0);
     if (below < low) add_corner(corners, below);
     if (above > high) add_corner(corners, above);
 }
@@ -55,7 +62,7 @@ Range range_of(const Loop& loop) {
     const double lowest = *low, highest = *high;
     add_asymptote_crossings(corners, loop, lowest, highest);
     const auto [lower, higher] = std::minmax_element(corners.begin(), corners.end());
-    return {*lower * 1e-3, *higher * 1e2};
+    return {*lower * kBelowCorners, *higher * kAboveCorners};
 }
 
 std::vector<double> base_frequencies(const Loop& loop, const Range& range, int density) {
@@ -65,8 +72,8 @@ std::vector<double> base_frequencies(const Loop& loop, const Range& range, int d
     for (int i = 0; i <= n; ++i) omega.push_back(range.low * std::pow(10.0, decades * i / n));
     // A lightly damped pole or zero shows between two points of any grid only if one is put there.
     const auto add_resonance = [&](std::complex<double> root) {
-        if (root.imag() <= 0 || std::abs(root.real()) > 0.3 * std::abs(root)) return;
-        const double centre = std::abs(root), width = std::max(std::abs(root.real()), 1e-6 * centre);
+        if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
         for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0})
             if (centre + offset * width > 0) omega.push_back(centre + offset * width);
     };

@@ -1,4 +1,7 @@
 // Frequencies at which a loop is looked at: chosen by the loop itself.
+//
+//   const LoopGrid grid = make_loop_grid(loop);
+//   const Margins margins = find_margins(loop, grid);   // one grid serves peaks and margins alike
 #pragma once
 
 #include <functional>
@@ -9,14 +12,15 @@
 namespace tunewright {
 
 struct LoopGrid {
-    std::vector<double> omega;
+    std::vector<double> omega;     ///< > 0, ascending, at least two
     std::vector<LoopPoint> point;  ///< the loop at each omega
     double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
 };
 
 /// A logarithmic grid from far below to far above every corner of plant, controller and filter, refined until
 /// neighbours of S differ by less than `step` (absolute, or relative where |S| > 1). `density` is the number of points
-/// a decade to start with.
+/// a decade to start with. At most 20000 points; a few hundred evaluations of the loop for a plant with lags and a dead
+/// time, more for resonances. With dead time its first 60 turns are followed, which is where `resolved_to` ends.
 LoopGrid make_loop_grid(const Loop& loop, double step = 0.15, int density = 24);
 
 /// The same refinement of any loop's points from given frequencies (ascending, at least two) up to `resolved_to`.

@@ -12,9 +12,13 @@ using Complex = std::complex<double>;
 
 constexpr double kLargestTurn = 0.4;  // |D2 - D1| relative to the smaller: below it the argument cannot be mistaken
 constexpr int kMaxHalvings = 40;
-constexpr double kBoundary = 1e-9;
+constexpr double kBoundary = 1e-9;     // |D|: closer to 0 counts as on the axis
 constexpr double kTurnsResolved = 60;  // periods of the longer dead time that are followed one by one
 constexpr int kPointsPerDecade = 24;
+
+constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
+constexpr double kGridStep = 0.05;                           // of S between neighbours
+constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 
 using Function = std::function<Complex(double)>;
 
@@ -45,11 +49,11 @@ bool ImcLoop::stable() const {
     const Complex start = D(0);
     if (!(start.real() > kBoundary)) return false;  // an odd number of turns: P(0) and the model differ in sign
     const double ratio = std::pow(10.0, 1.0 / kPointsPerDecade);
-    double angle = 0, omega = lowest_corner() * 1e-3;
+    double angle = 0, omega = lowest_corner() * kBelowCorners;
     Complex last = D(omega);
     angle += std::arg(last / start);
     // P, G and Q have fallen below their corners from here on: D stays near 1.
-    const double end = 1e2 * highest_corner();
+    const double end = kAboveCorners * highest_corner();
     while (omega < end) {
         const Complex next = D(omega * ratio);
         if (std::abs(next) < kBoundary) return false;
@@ -79,19 +83,19 @@ double ImcLoop::highest_corner() const {
 }
 
 LoopGrid ImcLoop::grid() const {
-    const double low = lowest_corner() * 1e-3, high = highest_corner() * 1e2;
+    const double low = lowest_corner() * kBelowCorners, high = highest_corner() * kAboveCorners;
     const int n = static_cast<int>(std::ceil(kPointsPerDecade * std::log10(high / low)));
     std::vector<double> base;
     for (int i = 0; i <= n; ++i) base.push_back(low * std::pow(high / low, static_cast<double>(i) / n));
     const double longest = std::max(plant_.dead_time(), controller_.theta);
     const double resolved_to = longest > 0 ? kTurnsResolved * 2 * std::numbers::pi / longest : base.back();
-    return refined_grid([this](double omega) { return at(omega); }, base, resolved_to, 0.05);
+    return refined_grid([this](double omega) { return at(omega); }, base, resolved_to, kGridStep);
 }
 
 Peaks ImcLoop::peaks(const LoopGrid& grid) const {
     Peaks peaks = find_interior_peaks([this](double omega) { return at(omega); }, grid);
     const auto raise = [](Peak& peak, double value, double omega) {
-        if (value > peak.value * (1 + 1e-12) || (value >= peak.value && omega == 0)) peak = {value, omega};
+        if (value > peak.value * kHigher || (value >= peak.value && omega == 0)) peak = {value, omega};
     };
     const LoopPoint zero = at(0);
     raise(peaks.S, std::abs(zero.S), 0);

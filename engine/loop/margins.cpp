@@ -1,10 +1,13 @@
 #include "engine/loop/margins.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
 
+#include "engine/loop/stability.h"
+#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/sign_change.h"
 
@@ -14,6 +17,15 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 constexpr double kToRounding = 1e-13;  // of ln omega
+
+constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
+constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
+constexpr double kMaxTurn = 0.25;                                 // rad of d between two frequencies that are evaluated
+constexpr int kMaxParts = 200;            // between two points of the grid, for a d far beyond the loop's time scale
+constexpr double kNoGain = 0.5;           // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
+constexpr double kEdgeTolerance = 1e-13;  // relative, of the frequency at which |T| passes 1/2
+constexpr double kWorthRefining = 0.9;    // of the largest value so far: a grid point below it is no peak's top
+constexpr double kTooSmall = 0.45;        // of the largest value so far: 2 |T| cannot come near it
 
 /// L (real and negative) at some frequency: the factor 1/|L| brings it to -1.
 void note_real_crossing(Margins& margins, double real, double omega) {
@@ -87,6 +99,102 @@ Margins find_margins(const Loop& loop, const LoopGrid& grid) {
     Margins margins = find_interior_margins([&](double omega) { return loop.open_loop({0, omega}); }, grid);
     note_limits(margins, loop);
     return margins;
+}
+
+namespace {
+
+std::optional<UltimatePoint> from_stable_gain(const LinearPlant& plant, double Kp) {
+    ParallelPid gains;
+    gains.Kp = Kp;
+    const auto loop = Loop::make(plant, gains);
+    if (!loop || !count_unstable_poles(*loop).stable()) return std::nullopt;
+    const Margins margins = find_margins(*loop, make_loop_grid(*loop));
+    if (!std::isfinite(margins.gain_margin) || !(margins.phase_crossover > 0)) return std::nullopt;
+    return UltimatePoint{Kp * margins.gain_margin, 2 * std::numbers::pi / margins.phase_crossover};
+}
+
+}  // namespace
+
+std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
+    const double unit = 1 / plant.low_frequency_gain();
+    if (!std::isfinite(unit)) return std::nullopt;
+    if (plant.unstable_poles() > 0) {
+        // Both signs, from weak to strong: a plant with an unstable pole is stabilised between two gains, if at all.
+        for (const double sign : {-1.0, 1.0}) {
+            for (double factor = kFirstGain; factor < kLastGain; factor *= kGainRatio) {
+                if (auto point = from_stable_gain(plant, sign * factor * unit)) return point;
+            }
+        }
+        return std::nullopt;
+    }
+    // An integrating plant has no gain of its own to compare with: its slope over the time it needs is one.
+    const double time = plant.integrators() > 0 ? plant.dead_time() + plant.lag_sum() : 1;
+    if (!(time > 0)) return std::nullopt;
+    for (const double factor : kStartGains) {
+        if (auto point = from_stable_gain(plant, factor * unit / std::pow(time, plant.integrators()))) return point;
+    }
+    return std::nullopt;
+}
+
+namespace {
+
+/// 1/d at one frequency: 0 where |T| is too small to matter.
+double inverse_tolerance(double omega, double gain) { return gain < kNoGain ? 0 : omega / (2 * std::asin(0.5 / gain)); }
+
+/// The frequency at which |T| passes 1/2 between neighbouring points i and k of the grid.
+double band_edge(const Loop& loop, const LoopGrid& grid, std::size_t i, std::size_t k) {
+    const auto gain = [&](std::size_t at) { return std::abs(grid.point[at].T) - kNoGain; };
+    return log_root([&](double omega) { return std::abs(loop.at(omega).T) - kNoGain; }, grid.omega[i], grid.omega[k],
+                    gain(i), gain(k), kEdgeTolerance);
+}
+
+}  // namespace
+
+double small_gain_dead_time(const Loop& loop, const LoopGrid& grid) {
+    const double q = loop.high_frequency_gain();
+    if (q >= kNoGain * (1 - q)) return 0;
+    const auto f = [&](double omega) { return inverse_tolerance(omega, std::abs(loop.at(omega).T)); };
+    const auto value = [&](std::size_t i) { return inverse_tolerance(grid.omega[i], std::abs(grid.point[i].T)); };
+    double largest = 0;
+    for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
+        const double left = value(i - 1), here = value(i), right = value(i + 1);
+        if (here == 0) continue;
+        if (left == 0) largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid, i, i - 1));
+        if (right == 0) largest = std::max(largest, std::numbers::inv_pi * band_edge(loop, grid, i, i + 1));
+        if (left == 0 || right == 0) largest = std::max(largest, here);
+        if (here >= left && here >= right && left > 0 && right > 0)
+            largest =
+                std::max(largest, log_maximum(f, grid.omega[i - 1], {grid.omega[i], here}, grid.omega[i + 1]).value);
+    }
+    return largest > 0 ? 1 / largest : std::numeric_limits<double>::infinity();
+}
+
+double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d) {
+    const auto f = [&](double omega) { return 2 * std::abs(loop.at(omega).T) * std::abs(std::sin(0.5 * omega * d)); };
+    const double q = loop.high_frequency_gain();
+    double largest = 2 * q / (1 - q);
+    double before = 0, here = 0, at = 0, from = 0;  // the last two frequencies and their values
+    const auto visit = [&](double omega, double value) {
+        if (here >= before && here >= value && from > 0 && here > kWorthRefining * largest)
+            largest = std::max(largest, log_maximum(f, from, {at, here}, omega).value);
+        from = at;
+        before = here;
+        at = omega;
+        here = value;
+    };
+    for (std::size_t i = 0; i < grid.omega.size(); ++i) {
+        const double gain = std::abs(grid.point[i].T), omega = grid.omega[i];
+        const double last_gain = i > 0 ? std::abs(grid.point[i - 1].T) : 1;
+        if (std::max(gain, last_gain) < kTooSmall * largest) continue;
+        const double turn = i > 0 ? (omega - grid.omega[i - 1]) * d : 0;
+        const int parts = static_cast<int>(std::min<double>(kMaxParts, std::ceil(turn / kMaxTurn)));
+        for (int k = 1; k < parts; ++k) {
+            const double between = grid.omega[i - 1] + (omega - grid.omega[i - 1]) * k / parts;
+            visit(between, f(between));
+        }
+        visit(omega, 2 * gain * std::abs(std::sin(0.5 * omega * d)));
+    }
+    return std::max(largest, here);
 }
 
 }  // namespace tunewright

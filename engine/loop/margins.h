@@ -1,9 +1,12 @@
-// Gain, phase and delay margins over all crossings.
+// How far a loop is from instability: gain, phase and delay margin over all crossings, the gain at which a loop
+// oscillates, and how much the dead time may be off.
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "engine/loop/frequency_grid.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
 
@@ -23,5 +26,28 @@ Margins find_margins(const Loop& loop, const LoopGrid& grid);
 
 /// Of any loop, from its gain as a function of omega: crossings within the grid, without the limits at its ends.
 Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid);
+
+/// A gain and the period at which the loop oscillates with it.
+struct UltimatePoint {
+    double Ku = 0;  ///< of the sign of the feedback that oscillates
+    double Pu = 0;
+};
+
+/// The P gain at which the loop loses stability when it is raised (in size) from a stable one, and the period of the
+/// oscillation: Ziegler and Nichols (1942). Of a plant that is stable or integrating the sign is that of its
+/// low-frequency gain. Empty where no gain destabilises, or none stabilises.
+std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant);
+
+/// The largest d such that |T(jw)| |e^(-jwd') - 1| < 1 for every w and every 0 <= d' < d: the least of
+/// (2/w) asin(1/(2 |T|)) over the frequencies with |T| >= 1/2. Sufficient only: the loop may well stand more
+/// (`delay_margin` is exact for later, not for earlier dead times). 0 where |T| >= 1/2 for w -> infinity (a neutral
+/// loop with |L(infinity)| >= 1/3, in the limit taken analytically); infinite where |T| < 1/2 everywhere. The loop must
+/// be stable. Liu and Gao (2008), Eqs. 28-29.
+double small_gain_dead_time(const Loop& loop, const LoopGrid& grid);
+
+/// sup over w of |T(jw)| |e^(-jwd) - 1|: Eq. 29 holds for this d where it is below 1. At most 1e-6 too small
+/// (relative). It can be below 1 for a d beyond small_gain_dead_time, where a second peak of |T| lies at a whole turn
+/// of d.
+double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d);
 
 }  // namespace tunewright

@@ -15,7 +15,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kLargestStep = 0.06;  // between neighbours, of S
 constexpr double kLargestRatio = 1.2;  // of neighbouring frequencies
 constexpr std::size_t kMaxPoints = 20000;
-constexpr double kBoundary = 1e-9;
+constexpr double kClosestNeighbours = 1e-6;  // relative distance below which no point is added
+constexpr double kBoundary = 1e-9;           // |1 + L|: closer to 0 counts as on the axis
 
 }  // namespace
 
@@ -30,7 +31,7 @@ MeasuredLoop::MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains)
             const Complex a = at(left).S, b = at(right).S;
             const bool far = right > left * kLargestRatio ||
                              std::abs(a - b) > kLargestStep * std::max(1.0, std::min(std::abs(a), std::abs(b)));
-            if (far && right > left * (1 + 1e-6) && omega_.size() + pending.size() < kMaxPoints) {
+            if (far && right > left * (1 + kClosestNeighbours) && omega_.size() + pending.size() < kMaxPoints) {
                 pending.push_back(std::sqrt(left * right));
                 continue;
             }

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
-#include "engine/numerics/log_maximum.h"
 
 namespace tunewright {
 namespace {
@@ -19,6 +19,10 @@ double magnitude_T(const LoopPoint& p) { return magnitude(p.T); }
 double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
+
+constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
+constexpr double kLowRise = 0.3;       // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
+constexpr double kFinestStep = 5e-3, kUsualStep = 0.15;  // of S between neighbours
 
 Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magnitude) {
     const std::size_t n = grid.omega.size();
@@ -66,7 +70,7 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
 }
 
 void raise(Peak& peak, double value, double omega) {
-    if (value > peak.value * (1 + 1e-12) || (value >= peak.value && omega == 0)) peak = {value, omega};
+    if (value > peak.value * kHigher || (value >= peak.value && omega == 0)) peak = {value, omega};
 }
 
 void raise_by_limits(const Loop& loop, Peaks& peaks) {
@@ -90,7 +94,7 @@ LoopGrid make_peak_grid(const Loop& loop) {
     for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
     // Where S never rises far above one, its maximum is as flat: look closer.
     const double rise = largest - 1;
-    if (rise < 0.3) grid = make_loop_grid(loop, std::clamp(0.3 * rise, 5e-3, 0.15));
+    if (rise < kLowRise) grid = make_loop_grid(loop, std::clamp(kLowRise * rise, kFinestStep, kUsualStep));
     return grid;
 }
 

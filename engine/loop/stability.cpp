@@ -1,12 +1,15 @@
 #include "engine/loop/stability.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "engine/loop/delay_system.h"
 #include "engine/loop/frequency_grid.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {
@@ -16,6 +19,13 @@ using Complex = std::complex<double>;
 constexpr double kLargestTurn = 0.4;  // |g2 - g1| relative to the smaller: below it the argument cannot be mistaken
 constexpr int kMaxHalvings = 60;
 constexpr double kBoundary = 1e-9;  // |g| relative to its parts: closer to 0 counts as on the axis
+
+constexpr double kBelowOne = 0.99;    // of |L|: 1 + L stays in the right half-plane, with room for rounding
+constexpr double kGridStep = 0.5;     // of S between neighbours: coarse, since each step's turn is checked by itself
+constexpr int kGridDensity = 8;       // points a decade, for the same reason
+constexpr int kTurnsToSpare = 6;      // of the dead time beyond what the states can undo
+constexpr double kSmallEnough = 0.3;  // of |L|: beyond the grid the rest of the axis turns 1 + L no further
+constexpr double kFarthest = 1e18;    // of the loop's own frequency: the search for a small |L| ends
 
 /// g(jw) = (D + N e^(-jwL))/(jw + a)^n: bounded, never infinite, g -> 1 + L(infinity).
 class Characteristic {
@@ -64,7 +74,7 @@ Turn turn_between(const Characteristic& g, const Characteristic::Value& left, co
 
 /// Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
 bool dead_time_cannot_encircle(const Characteristic::Value& value) {
-    return magnitude(value.g - value.open) < 0.99 * magnitude(value.open);
+    return magnitude(value.g - value.open) < kBelowOne * magnitude(value.open);
 }
 
 Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right) {
@@ -84,9 +94,46 @@ int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
     for (std::size_t i = grid.omega.size(); L > 0 && i-- > 0;) {
         if (!(magnitude(grid.point[i].L) > 1)) continue;
         const double turns = grid.omega[i] * L / (2 * std::numbers::pi);
-        return turns > loop.denominator_degree() + 6 ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
+        return turns > loop.denominator_degree() + kTurnsToSpare ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
     }
     return 0;
+}
+
+/// Chebyshev differentiation matrix on theta_0 = 0 > ... > theta_N = -L (Trefethen 2000, ch. 6).
+std::vector<double> differentiation_matrix(int N, double L) {
+    std::vector<double> x, D(static_cast<std::size_t>((N + 1) * (N + 1)));
+    for (int i = 0; i <= N; ++i) x.push_back(0.5 * L * (std::cos(std::numbers::pi * i / N) - 1));
+    const auto weight = [N](int i) { return (i == 0 || i == N ? 2.0 : 1.0) * (i % 2 == 0 ? 1 : -1); };
+    for (int i = 0; i <= N; ++i) {
+        double diagonal = 0;
+        for (int j = 0; j <= N; ++j) {
+            if (i == j) continue;
+            const double d = weight(i) / weight(j) / (x[static_cast<std::size_t>(i)] - x[static_cast<std::size_t>(j)]);
+            D[static_cast<std::size_t>(i * (N + 1) + j)] = d;
+            diagonal -= d;
+        }
+        D[static_cast<std::size_t>(i * (N + 1) + i)] = diagonal;
+    }
+    return D;
+}
+
+/// States x and the history w_1..w_N of the delayed signal (w_0 = M x + N w_N is not free): x' = F x + G w_N, w_i' =
+/// sum D_ij w_j.
+std::vector<double> discretised(const DelaySystem& s, int nodes) {
+    const int size = s.n + nodes;
+    std::vector<double> A(static_cast<std::size_t>(size * size), 0.0);
+    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using Vector = Eigen::VectorXd;
+    const std::vector<double> differentiation = differentiation_matrix(nodes, s.L);
+    const Eigen::Map<const Matrix> D(differentiation.data(), nodes + 1, nodes + 1);
+    const auto d0 = D.col(0).tail(nodes);
+    Eigen::Map<Matrix> whole(A.data(), size, size);
+    whole.topLeftCorner(s.n, s.n) = Eigen::Map<const Matrix>(s.F.data(), s.n, s.n);
+    whole.col(size - 1).head(s.n) += Eigen::Map<const Vector>(s.G.data(), s.n);
+    whole.bottomLeftCorner(nodes, s.n).noalias() = d0 * Eigen::Map<const Vector>(s.M.data(), s.n).transpose();
+    whole.bottomRightCorner(nodes, nodes) = D.bottomRightCorner(nodes, nodes);
+    whole.col(size - 1).tail(nodes) += d0 * s.N;
+    return A;
 }
 
 }  // namespace
@@ -95,7 +142,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
     const double L = loop.plant().dead_time(), q = loop.signed_high_frequency_gain();
     if (L > 0 && std::abs(q) >= 1) return {.unstable_poles = -1};
 
-    const LoopGrid grid = make_loop_grid(loop, 0.5, 8);
+    const LoopGrid grid = make_loop_grid(loop, kGridStep, kGridDensity);
     if (const int many = turns_outside_unit_circle(loop, grid); many > 0) return {.unstable_poles = many};
     const double scale = std::sqrt(grid.omega.front() * grid.omega.back());
     const Characteristic g(loop, scale);
@@ -120,11 +167,27 @@ StabilityCount count_unstable_poles(const Loop& loop) {
         }
         // Past the grid |L| must be small (or q) before the rest of the axis is taken in one step.
         const double rest = std::abs(loop.open_loop({0, omega}));
-        if (rest < std::max(0.3, 0.5 * (1 + std::abs(q)) * (L > 0 ? 1 : 4)) || omega > 1e18 * scale) break;
+        if (rest < std::max(kSmallEnough, 0.5 * (1 + std::abs(q)) * (L > 0 ? 1 : 4)) || omega > kFarthest * scale)
+            break;
         omega *= 10;
     }
     angle += std::arg(limit / left.g);
     return {.unstable_poles = static_cast<int>(std::lround(-(angle - start) / std::numbers::pi))};
+}
+
+Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {
+    const DelaySystem system = make_delay_system(loop.plant(), loop.gains());
+    std::vector<std::complex<double>> poles;
+    if (system.L > 0) {
+        poles = eigenvalues(discretised(system, nodes), system.n + nodes);
+    } else {
+        const DelaySystem closed = close_without_delay(system);
+        poles = eigenvalues(closed.F, closed.n);
+    }
+    if (poles.empty())
+        return Error{ErrorKind::numerical_failure, "",
+                     "The loop has no poles that can be computed: it has no states, or its numbers are out of range."};
+    return *std::max_element(poles.begin(), poles.end(), [](auto a, auto b) { return a.real() < b.real(); });
 }
 
 }  // namespace tunewright

@@ -6,7 +6,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/uncertain/plant_region.h"
+#include "engine/plant/plant_family.h"
 
 namespace tunewright {
 

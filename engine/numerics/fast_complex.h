@@ -8,16 +8,21 @@
 
 namespace tunewright {
 
+/// Squares of numbers within these bounds neither over- nor underflow, with room for a sum of two of them.
+constexpr double kLeastSquare = 1e-280, kLargestSquare = 1e280;
+/// Reciprocals of numbers within these bounds are normal numbers.
+constexpr double kLeastDivisor = 1e-290, kLargestDivisor = 1e290;
+
 /// |z|, free of overflow.
 inline double magnitude(std::complex<double> z) {
     const double squared = std::norm(z);
-    return squared > 1e-280 && squared < 1e280 ? std::sqrt(squared) : std::abs(z);
+    return squared > kLeastSquare && squared < kLargestSquare ? std::sqrt(squared) : std::abs(z);
 }
 
 /// n/d, free of overflow in between; for d = 0 as the library says.
 inline std::complex<double> quotient(std::complex<double> n, std::complex<double> d) {
     const double size = std::max(std::abs(d.real()), std::abs(d.imag()));
-    if (!(size > 1e-290 && size < 1e290)) return n / d;
+    if (!(size > kLeastDivisor && size < kLargestDivisor)) return n / d;
     const double scale = 1 / size, re = d.real() * scale, im = d.imag() * scale;
     const double inverse = scale / (re * re + im * im);
     return {(n.real() * re + n.imag() * im) * inverse, (n.imag() * re - n.real() * im) * inverse};

@@ -5,17 +5,20 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
-
-#include "engine/numerics/matrix_scaling.h"
-#include "engine/numerics/multiple_roots.h"
 
 namespace tunewright {
 namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Complex = std::complex<double>;
+
+constexpr double kWorthScaling =
+    0.95;  // of the norms: balancing stops where it lowers them by less (Parlett and Reinsch)
+constexpr double kNoMarkovParameter = 1e-12;  // of the sum of its absolute terms: below it the parameter is rounding
+constexpr double kRealZero = 1e-14;           // of a zero's size: below it its imaginary part is rounding
 
 Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Matrix>(values.data(), n, n); }
 
@@ -36,7 +39,7 @@ void balance(Matrix& A) {
             double factor = 1;
             for (; column < row / 2; column *= 4) factor *= 2;
             for (; column >= row * 2; column /= 4) factor /= 2;
-            if ((column + row) / factor < 0.95 * sum && factor != 1) {
+            if ((column + row) / factor < kWorthScaling * sum && factor != 1) {
                 changed = true;
                 A.row(i) /= factor;
                 A.col(i) *= factor;
@@ -58,39 +61,6 @@ std::vector<Complex> paired(const Eigen::VectorXcd& values) {
         }
     }
     return result;
-}
-
-Complex horner(std::span<const double> coefficients, Complex x) {
-    Complex value = 0;
-    for (const double c : coefficients) value = value * x + c;
-    return value;
-}
-
-Complex horner_derivative(std::span<const double> coefficients, Complex x) {
-    Complex value = 0;
-    const auto degree = coefficients.size() - 1;
-    for (std::size_t i = 0; i < degree; ++i) value = value * x + coefficients[i] * static_cast<double>(degree - i);
-    return value;
-}
-
-void polish(std::span<const double> coefficients, std::vector<Complex>& roots) {
-    for (std::size_t i = 0; i < roots.size(); ++i) {
-        for (int iteration = 0; iteration < 3; ++iteration) {
-            const Complex value = horner(coefficients, roots[i]);
-            const Complex slope = horner_derivative(coefficients, roots[i]);
-            if (std::abs(slope) == 0) break;
-            Complex better = roots[i] - value / slope;
-            // A step far beyond rounding means a cluster, where Newton on one root spoils the product.
-            if (std::abs(better - roots[i]) > 1e-6 * std::abs(roots[i])) break;
-            if (roots[i].imag() == 0) better = better.real();
-            if (!(std::abs(horner(coefficients, better)) < std::abs(value))) break;
-            roots[i] = better;
-        }
-        if (roots[i].imag() > 0 && i + 1 < roots.size()) {
-            roots[i + 1] = std::conj(roots[i]);
-            ++i;
-        }
-    }
 }
 
 }  // namespace
@@ -124,25 +94,6 @@ std::vector<Complex> eigenvalues(std::span<const double> matrix, int n) {
     return paired(Eigen::EigenSolver<Matrix>(A, false).eigenvalues());
 }
 
-std::vector<Complex> polynomial_roots(std::span<const double> coefficients) {
-    const int n = static_cast<int>(coefficients.size()) - 1;
-    if (n <= 0) return {};
-    if (n == 1) return {Complex(-coefficients[1] / coefficients[0])};
-    // s = scale x makes first and last coefficient alike.
-    const double last = coefficients[static_cast<std::size_t>(n)];
-    const double scale = last == 0 ? 1 : std::pow(std::abs(last / coefficients[0]), 1.0 / n);
-    Matrix companion = Matrix::Zero(n, n);
-    for (int i = 0; i < n; ++i)
-        companion(0, i) = -coefficients[static_cast<std::size_t>(i) + 1] / coefficients[0] / std::pow(scale, i + 1);
-    for (int i = 1; i < n; ++i) companion(i, i - 1) = 1;
-    balance(companion);
-    std::vector<Complex> roots = paired(Eigen::EigenSolver<Matrix>(companion, false).eigenvalues());
-    for (auto& root : roots) root *= scale;
-    polish(coefficients, roots);
-    merge_multiple_roots(coefficients, roots);
-    return roots;
-}
-
 std::optional<std::vector<Complex>> transmission_zeros(std::span<const double> A, std::span<const double> B,
                                                        std::span<const double> C, double D, int n) {
     // The relative degree is that of the first Markov parameter that is not rounding.
@@ -153,7 +104,7 @@ std::optional<std::vector<Complex>> transmission_zeros(std::span<const double> A
     if (D == 0) {
         Eigen::VectorXd power = b, magnitude = b.cwiseAbs();
         for (relative_degree = 1; relative_degree <= n; ++relative_degree) {
-            if (std::abs(c.dot(power)) > 1e-12 * c.cwiseAbs().dot(magnitude)) break;
+            if (std::abs(c.dot(power)) > kNoMarkovParameter * c.cwiseAbs().dot(magnitude)) break;
             power = a * power;
             magnitude = a.cwiseAbs() * magnitude;
         }
@@ -180,7 +131,7 @@ std::optional<std::vector<Complex>> transmission_zeros(std::span<const double> A
         finite.resize(static_cast<std::size_t>(n - relative_degree));
     std::vector<Complex> result;
     for (const Complex zero : finite) {
-        if (std::abs(zero.imag()) <= 1e-14 * std::abs(zero)) {
+        if (std::abs(zero.imag()) <= kRealZero * std::abs(zero)) {
             result.emplace_back(zero.real());
         } else if (zero.imag() > 0) {
             result.push_back(zero);
@@ -256,6 +207,97 @@ std::vector<double> least_norm_solution(std::span<const double> matrix, std::spa
     svd.setThreshold(cutoff);
     const Eigen::VectorXd x = svd.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
     return {x.data(), x.data() + n};
+}
+
+namespace {
+
+using Index = std::size_t;
+
+constexpr double kNever = 1e9;  // the cost of a zero
+
+/// Rows join one by one along the shortest alternating path. Column n stands for "none yet".
+class Assignment {
+public:
+    Assignment(std::span<const double> matrix, Index n)
+        : n_(n), rows_(n, 0.0), columns_(n + 1, 0.0), row_of_(n + 1, n) {
+        for (const double entry : matrix) cost_.push_back(entry == 0 ? kNever : -std::log2(std::abs(entry)));
+    }
+
+    bool solve() {
+        for (Index row = 0; row < n_; ++row)
+            if (!join(row)) return false;
+        return true;
+    }
+
+    MatrixScaling scaling() const {
+        MatrixScaling scaling;
+        for (Index i = 0; i < n_; ++i) {
+            scaling.rows.push_back(std::ldexp(1.0, static_cast<int>(std::lround(rows_[i]))));
+            scaling.columns.push_back(std::ldexp(1.0, static_cast<int>(std::lround(columns_[i]))));
+        }
+        return scaling;
+    }
+
+private:
+    bool join(Index row) {
+        distance_.assign(n_, std::numeric_limits<double>::infinity());
+        before_.assign(n_, n_);
+        used_.assign(n_ + 1, false);
+        Index at = n_;
+        row_of_[n_] = row;
+        while (row_of_[at] < n_) {
+            used_[at] = true;
+            const Index next = nearest(at);
+            const double step = distance_[next];
+            if (step > kNever / 2) return false;
+            raise(step);
+            at = next;
+        }
+        for (; at < n_; at = before_[at]) row_of_[at] = row_of_[before_[at]];
+        row_of_[n_] = n_;
+        return true;
+    }
+
+    Index nearest(Index at) {
+        const Index i = row_of_[at];
+        Index next = n_;
+        for (Index j = 0; j < n_; ++j) {
+            if (used_[j]) continue;
+            const double reduced = cost_[i * n_ + j] - rows_[i] - columns_[j];
+            if (reduced < distance_[j]) {
+                distance_[j] = reduced;
+                before_[j] = at;
+            }
+            if (next == n_ || distance_[j] < distance_[next]) next = j;
+        }
+        return next;
+    }
+
+    void raise(double step) {
+        for (Index j = 0; j <= n_; ++j) {
+            if (used_[j]) {
+                rows_[row_of_[j]] += step;
+                columns_[j] -= step;
+            } else if (j < n_) {
+                distance_[j] -= step;
+            }
+        }
+    }
+
+    Index n_;
+    std::vector<double> cost_, rows_, columns_;  // costs; potentials, cost - row - column >= 0
+    std::vector<Index> row_of_;                  // of each column
+    std::vector<double> distance_;
+    std::vector<Index> before_;
+    std::vector<bool> used_;
+};
+
+}  // namespace
+
+std::optional<MatrixScaling> scaling_of(std::span<const double> matrix, int n) {
+    Assignment assignment(matrix, Index(n));
+    if (!assignment.solve()) return std::nullopt;
+    return assignment.scaling();
 }
 
 }  // namespace tunewright

@@ -1,5 +1,5 @@
-// Eigenvalues, roots, exponentials and solutions of small dense systems as plain functions: the decompositions of Eigen
-// are compiled once, behind this header. Matrices are n x n, row by row.
+// Eigenvalues, exponentials and solutions of small dense systems as plain functions: the decompositions of Eigen are
+// compiled once, behind this header. Matrices are n x n, row by row.
 #pragma once
 
 #include <complex>
@@ -44,11 +44,6 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
 
-/// Roots of a real polynomial (descending powers, leading coefficient non-zero), conjugate pairs as above, multiple
-/// ones on one point: eigenvalues of the scaled, balanced companion matrix, polished where Newton steps lower the
-/// residual.
-std::vector<std::complex<double>> polynomial_roots(std::span<const double> coefficients);
-
 /// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer
 /// function is 0.
 std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<const double> A,
@@ -73,5 +68,17 @@ std::optional<std::vector<double>> solve(std::span<const double> matrix, std::sp
 /// The shortest x with the smallest |M x - b|, singular values below `cutoff` times the largest taken as 0 (SVD).
 std::vector<double> least_norm_solution(std::span<const double> matrix, std::span<const double> b, int n,
                                         double cutoff);
+
+/// Factors of rows and columns, powers of two.
+struct MatrixScaling {
+    std::vector<double> rows, columns;
+};
+
+/// After scaling no entry is above about one in size, and those of the permutation with the largest product are about
+/// one: whatever units equations and unknowns had, the same matrix is left, and entries that are mere rounding do not
+/// matter. Empty: every permutation holds a zero, the matrix is singular. `matrix`: n x n, row by row.
+/// Source: Olschowka, Neumaier, Linear Algebra and its Applications 240 (1996) 131-151; the permutation is found as an
+/// assignment (Kuhn 1955), whose potentials are the logarithms of the factors.
+std::optional<MatrixScaling> scaling_of(std::span<const double> matrix, int n);
 
 }  // namespace tunewright

@@ -23,6 +23,12 @@ constexpr double kFirstStep = 0.02;          // in units of the fastest time con
 constexpr double kSafety = 0.9, kMaxGrowth = 5, kMaxShrinking = 0.2;
 constexpr double kExplicitPower = 1.0 / 5, kImplicitPower = 1.0 / 4;
 constexpr double kRounding = 20 * kEpsilon;      // of a state: errors below it are none
+constexpr double kTiny = 1e-290;                 // stands for 0 where something is divided by it
+constexpr double kLargestSize = 1e280;           // of a state (sizes may be infinite): steps from it are still finite
+constexpr double kLeastShift = 1e-6;             // of a state at 0 without a size, for differences
+constexpr double kLaterShare = 1e-3;             // of a step: over it f's derivative in time is taken
+constexpr double kUnknownStep = 1e-3;            // of the way to the stop, where no time constant is known
+constexpr double kLeastError = 1e-12;            // in tolerances: an exact step grows no more than this one
 constexpr double kExpected = 1e-2;               // of the movement expected: errors are relative to at least that
 constexpr int kStiffnessInterval = 20;           // steps between two looks at the spectrum
 constexpr double kStiff = 2.5, kNotStiff = 0.5;  // step times spectral radius; the explicit method is stable up to 3.3
@@ -53,7 +59,7 @@ struct OdeIntegrator::Work {
     }
 
     double size(Index i) const {
-        return std::max({least[i], expected[i], moved[i], kRounding / tolerance * std::abs(x[i]), 1e-290});
+        return std::max({least[i], expected[i], moved[i], kRounding / tolerance * std::abs(x[i]), kTiny});
     }
 
     /// f, remembered where it does not exist: the rest of the step is not worth its evaluations.
@@ -68,13 +74,14 @@ struct OdeIntegrator::Work {
         if (!system.rates(time, at, base)) return false;
         std::copy(at.begin(), at.end(), shifted.begin());
         for (Index j = 0; j < n; ++j) {
-            const double step = std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), 1e280), 1e-6});
+            const double step =
+                std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), kLargestSize), kLeastShift});
             shifted[j] = at[j] + step;
             if (!system.rates(time, shifted, rates_shifted)) return false;
             for (Index i = 0; i < n; ++i) jacobian[i * n + j] = (rates_shifted[i] - base[i]) / (shifted[j] - at[j]);
             shifted[j] = at[j];
         }
-        const double later = time + std::max(1e-3 * h, 64 * kEpsilon * std::abs(time));
+        const double later = time + std::max(kLaterShare * h, 64 * kEpsilon * std::abs(time));
         if (!system.rates(later, at, rates_shifted)) return false;
         for (Index i = 0; i < n; ++i) ft[i] = later > time ? (rates_shifted[i] - base[i]) / (later - time) : 0;
         return true;
@@ -180,7 +187,7 @@ struct OdeIntegrator::Work {
         while (true) {
             const double left = t_stop - t;
             if (!(h > 0)) h = kInfinity;
-            double length = std::isfinite(h) ? h : (std::isfinite(left) ? 1e-3 * left : 1.0);
+            double length = std::isfinite(h) ? h : (std::isfinite(left) ? kUnknownStep * left : 1.0);
             const bool onto_stop = length >= left;
             if (onto_stop)
                 length = left;
@@ -188,7 +195,8 @@ struct OdeIntegrator::Work {
                 length = 0.5 * left;  // two even steps rather than a long one and a sliver
             const double worst = attempt(length);
             const double power = implicit ? kImplicitPower : kExplicitPower;
-            double factor = std::isfinite(worst) ? kSafety * std::pow(std::max(worst, 1e-12), -power) : kMaxShrinking;
+            double factor =
+                std::isfinite(worst) ? kSafety * std::pow(std::max(worst, kLeastError), -power) : kMaxShrinking;
             if (!(factor >= kMaxShrinking)) factor = kMaxShrinking;
             if (worst <= 1) {
                 factor = std::min(factor, rejected ? 1.0 : kMaxGrowth);
@@ -200,7 +208,7 @@ struct OdeIntegrator::Work {
             }
             rejected = true;
             h = length * std::min(factor, kSafety);
-            if (h <= kShortest * std::max(std::abs(t), 1e-290)) return fault ? OdeStep::left_domain : OdeStep::stalled;
+            if (h <= kShortest * std::max(std::abs(t), kTiny)) return fault ? OdeStep::left_domain : OdeStep::stalled;
         }
     }
 

@@ -11,6 +11,10 @@ namespace {
 
 using Index = std::size_t;
 
+constexpr double kTaylorNorm = 0.5;    // of F h in the states' own units: up to it the series loses no digits
+constexpr int kMaxTerms = 40;          // of the series: 0.5^40/40! is far below rounding; stops numbers out of range
+constexpr double kNegligible = 1e-18;  // of a component's largest term: well below rounding
+
 /// sum_{m>=0} F^m h^(m+k)/(m+k)! x: k = 0 the exponential's action, k = j + 1 the moment of s^j/j!.
 std::vector<double> phi_action(const std::vector<double>& F, std::vector<double> x, double h, int k) {
     double factor = 1;
@@ -20,14 +24,14 @@ std::vector<double> phi_action(const std::vector<double>& F, std::vector<double>
     // Each component by itself: they may be in units far apart.
     for (Index i = 0; i < x.size(); ++i) largest[i] = std::abs(x[i]);
     bool adds = true;
-    for (int m = 1; adds && m < 40; ++m) {
+    for (int m = 1; adds && m < kMaxTerms; ++m) {
         multiply(F, x, next);
         adds = false;
         for (Index i = 0; i < x.size(); ++i) {
             x[i] = next[i] * h / (m + k);
             sum[i] += x[i];
             largest[i] = std::max(largest[i], std::abs(x[i]));
-            adds = adds || std::abs(x[i]) > 1e-18 * largest[i];
+            adds = adds || std::abs(x[i]) > kNegligible * largest[i];
         }
     }
     return sum;
@@ -41,7 +45,8 @@ Propagator::Propagator(int n, std::vector<double> F, std::vector<double> G, std:
 ExactStep Propagator::step(double h) const {
     // Taylor series on a step short enough for it (norm <= 1/2 in the states' own units), then doubling up to h.
     const int halvings = std::max(
-        0, static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / 0.5))));
+        0,
+        static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / kTaylorNorm))));
     ExactStep step;
     step.h = std::ldexp(h, -halvings);
     step.Phi.resize(Index(n_ * n_));

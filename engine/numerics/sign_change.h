@@ -2,6 +2,9 @@
 // bracketing root finder, algorithm 748 (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327-344): four to
 // six evaluations a smooth root, and never more than a bisection would take by a small factor.
 //
+//   const auto f = [](double x) { return x * x - 2; };
+//   const double root = root_between(f, 1, 2, f(1), f(2), 1e-12);   // 1.414213562373
+//
 // A value that is not finite counts as a very large one of its sign (NaN as positive), so the interval is halved there.
 #pragma once
 

@@ -27,8 +27,8 @@ class MeasuredPlant {
 public:
     /// Errors: points_fault(); unsupported where the points lie so far apart that
     /// the phase cannot be followed (2 rad or more between neighbours) before it has fallen through -180 degrees, or
-    /// where the lowest frequency is too high to tell the sign of the static gain (phase nearer to 90 than to 0 or 180
-    /// degrees, integrators taken off).
+    /// where the lowest frequency is too high to tell the sign of the static gain (phase more than 60 degrees from 0
+    /// and from 180, integrators taken off).
     static Expected<MeasuredPlant> make(const FrequencyResponse& points);
 
     /// Within [low, high]; beyond them the end's value.

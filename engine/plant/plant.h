@@ -1,12 +1,15 @@
-// What is controlled, as the user describes it. Every type is a linear SISO plant y = P(s) (u + d) with dead time L >=
-// 0 at its input; values are deviations from the operating point. Time is in the user's unit, omega in rad per that
-// unit.
+// What is controlled, as the user describes it. Values are deviations from the operating point, except those of a
+// nonlinear plant; time is in the user's unit, omega in rad per that unit. `Plant` is a linear SISO plant
+// y = P(s) (u + d) with dead time L >= 0 at its input; `PlantModel` is everything that a request may be about.
 #pragma once
 
 #include <complex>
 #include <optional>
 #include <variant>
 #include <vector>
+
+#include "engine/plant/frequency_response.h"
+#include "engine/plant/nonlinear/nonlinear_plant.h"
 
 namespace tunewright {
 
@@ -87,5 +90,14 @@ using Plant = std::variant<Fopdt, Sopdt, OscillatorySopdt, Ipdt, TransferFunctio
 
 /// The dead time of any plant.
 double dead_time(const Plant& plant);
+
+/// Several plants that one controller must serve. The first is nominal; at least one.
+struct PlantSet {
+    std::vector<Plant> plants;
+};
+
+/// What a request may be about: one linear plant (perhaps with uncertain parameters), several, measured points of one,
+/// or differential equations.
+using PlantModel = std::variant<Plant, PlantSet, FrequencyResponse, NonlinearPlant>;
 
 }  // namespace tunewright

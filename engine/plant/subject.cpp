@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "engine/plant/linear/plant_rules.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/plant/linear/factor.h"
+#include "engine/plant/nonlinear/linearisation.h"
 
 namespace tunewright {
 namespace {

@@ -9,8 +9,8 @@
 #include "engine/plant/frequency_response.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
-#include "engine/plant/plant_model.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant.h"
+#include "engine/plant/plant_family.h"
 
 namespace tunewright {
 
@@ -28,7 +28,7 @@ struct NonlinearSubject {
 
 class Subject {
 public:
-    /// Every fault at once, `where` = "plant/...": plant_rules.h, MeasuredPlant::make, NonlinearSystem::make,
+    /// Every fault at once, `where` = "plant/...": plant_faults, MeasuredPlant::make, NonlinearSystem::make,
     /// linearised_plant, and unsupported for modes that input or output cannot reach.
     static std::variant<Subject, std::vector<Error>> make(const PlantModel& plant);
 

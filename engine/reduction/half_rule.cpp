@@ -16,6 +16,10 @@ constexpr double kMinDamping = 0.5;      // below it a pair rings: no lags stand
 constexpr double kCloseTo = 1.6 - 1e-9;  // the source's own example has a ratio of 1.6 and does not count it
 constexpr double kNearlyReal = 0.99;     // repeated real poles of a polynomial come out as such pairs
 
+constexpr double kOfDeadTime = 5;       // T2 and T3: lags and leads beyond 5 theta look alike to the loop
+constexpr int kMaxRounds = 20;          // of the fixed point; two or three do
+constexpr double kSameDeadTime = 1e-9;  // relative, of two rounds
+
 struct TimeConstants {
     std::vector<double> lags;   // falling
     std::vector<double> leads;  // of left-half-plane zeros, falling
@@ -71,8 +75,8 @@ Cancelled cancel(double lead, double lag, double theta) {
         if (lead >= theta) return {lead / theta, 0};  // T1a
         return {1, 0};                                // T1b
     }
-    if (lead >= 5 * theta) return {lead / lag, 0};  // T2
-    const double shortened = std::min(lag, 5 * theta);
+    if (lead >= kOfDeadTime * theta) return {lead / lag, 0};  // T2
+    const double shortened = std::min(lag, kOfDeadTime * theta);
     return {shortened / lag, shortened - lead};  // T3
 }
 
@@ -131,11 +135,11 @@ Expected<ReducedModel> half_rule(const LinearPlant& plant, ReducedOrder order) {
     // from that of the plant without its leads, since too small a guess cancels leads that the answer would keep.
     ReducedModel model = share_out(*found, {1, found->lags}, plant, order);
     double theta = model.L;
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
         const auto left = cancel_leads(*found, theta);
         if (!left) return reduction_fails("a zero in the left half-plane has no lag to be set against.");
         model = share_out(*found, *left, plant, order);
-        if (std::abs(model.L - theta) <= 1e-9 * model.L) break;
+        if (std::abs(model.L - theta) <= kSameDeadTime * model.L) break;
         theta = model.L;
     }
     model.exact = found->leads.empty() && found->warnings.empty() && model.L == plant.dead_time();

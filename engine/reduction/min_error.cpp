@@ -6,17 +6,121 @@
 #include <tuple>
 
 #include "engine/number_text.h"
-#include "engine/numerics/local_minimum.h"
-#include "engine/reduction/step_difference.h"
+#include "engine/numerics/cubic.h"
+#include "engine/numerics/extremum.h"
 #include "engine/reduction/step_reading.h"
-#include "engine/reduction/tangent.h"
-#include "engine/reduction/two_point_123c.h"
+#include "engine/simulation/linear/step_response.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kMinLag = 1e-6;     // of the time scale
-constexpr double kLargestLag = 1e4;  // of the time scale
+// Times after the model's dead time, in time constants: steps over which a cubic through e^-t errs by about 1e-6 in
+// area.
+const std::vector<double> kModelTimes = [] {
+    std::vector<double> times;
+    for (double t = 0.12; t < 20; t += 0.12 * std::exp(t / 5)) times.push_back(t);
+    return times;
+}();
+
+Signal response(const ReducedModel& model, double t) {
+    if (t < 0) return {};
+    const double left = model.T1 > 0 ? std::exp(-t / model.T1) : 0;
+    if (model.integrators == 1) return {model.K * (t - model.T1 * (1 - left)), model.K * (1 - left)};
+    return {model.K * (1 - left), model.T1 > 0 ? model.K * left / model.T1 : 0};
+}
+
+}  // namespace
+
+// What is left of the decaying modes at the end would add up in integrals weighted with time: it is cut off.
+StepDifference::TracePoint StepDifference::at_rest(const LinearPlant& plant, double t) {
+    const double K = plant.low_frequency_gain();
+    if (plant.integrators() == 0) return {t, K, 0};
+    const auto asymptote = ramp_delay(plant);
+    return {t, K * (t - asymptote), K};
+}
+
+StepDifference::StepDifference(const LinearPlant& plant, std::optional<double> horizon) {
+    const double L = plant.dead_time();
+    trace_.push_back({});
+    if (L > 0) trace_.push_back({L, 0, 0});
+    const auto samples = step_response(plant);
+    for (const auto& sample : samples) trace_.push_back({L + sample.t, sample.y, sample.slope});
+    if (!horizon) {
+        trace_.push_back(at_rest(plant, trace_.back().t));
+        return;
+    }
+    ends_at_horizon_ = true;
+    const double after = *horizon - L;
+    while (trace_.size() > 1 && trace_.back().t > *horizon) trace_.pop_back();
+    if (after > 0) {
+        const auto last = std::ranges::find_if(samples, [&](const StepSample& s) { return s.t > after; }) - 1;
+        const StepSample end = step_response_after(plant.realisation(), *last, after - last->t);
+        trace_.push_back({*horizon, end.y, end.slope});
+    } else {
+        trace_.push_back({*horizon, 0, 0});
+    }
+}
+
+// Before point `next` of the trace a cubic, after its last one a straight line.
+StepDifference::TracePoint StepDifference::plant_at(size_t next, double t) const {
+    const TracePoint& a = trace_[next - 1];
+    if (next == trace_.size()) return {t, a.y + a.slope * (t - a.t), a.slope};
+    const TracePoint& b = trace_[next];
+    const Cubic y = hermite_taylor(b.t - a.t, {a.y, a.slope}, {b.y, b.slope});
+    return {t, value_at(y, t - a.t), slope_at(y, t - a.t)};
+}
+
+// Rising; the dead time twice, for the jump of the slope (of y where there is no lag).
+std::vector<double> StepDifference::model_times(const ReducedModel& model) const {
+    std::vector<double> times;
+    const double first = trace_[1].t;  // the plant's dead time: before it the trace has no points
+    for (int k = 1; model.L < first && k < 8; ++k) times.push_back(model.L + (first - model.L) * k / 8);
+    for (const double factor : kModelTimes) times.push_back(model.L + factor * model.T1);
+    if (ends_at_horizon_) std::erase_if(times, [&](double t) { return t >= trace_.back().t; });
+    std::ranges::sort(times);
+    if (!(ends_at_horizon_ && model.L >= trace_.back().t)) times.insert(times.begin(), {model.L, model.L});
+    return times;
+}
+
+// The difference just before and just after the model's dead time are the nodes of the first two times.
+std::vector<ResponseNode> StepDifference::nodes(const ReducedModel& model) const {
+    const std::vector<double> times = model_times(model);
+    std::vector<ResponseNode> nodes;
+    nodes.reserve(trace_.size() + times.size());
+    const auto add = [&](const TracePoint& p, bool model_runs) {
+        const Signal of_model = model_runs ? response(model, p.t - model.L) : Signal{};
+        ResponseNode node{.t = p.t, .y = p.y - of_model.value, .y_slope = p.slope - of_model.slope};
+        if (!nodes.empty()) {
+            const ResponseNode& last = nodes.back();
+            node.error_integral =
+                last.error_integral - hermite_integral(node.t - last.t, {last.y, last.y_slope}, {node.y, node.y_slope});
+        }
+        nodes.push_back(node);
+    };
+    size_t i = 0;
+    for (size_t k = 0; k < times.size(); ++k) {
+        for (; i < trace_.size() && trace_[i].t <= times[k]; ++i) add(trace_[i], k > 0);
+        add(plant_at(i, times[k]), k > 0);
+    }
+    for (; i < trace_.size(); ++i) add(trace_[i], !times.empty());
+    return nodes;
+}
+
+ErrorIntegrals StepDifference::to(const ReducedModel& model) const {
+    return error_integrals(nodes(model), 0, std::nullopt);
+}
+
+double StepDifference::absolute(const ReducedModel& model) const {
+    return integral_of_absolute_error(nodes(model), 0, std::nullopt);
+}
+
+namespace {
+
+constexpr double kMinLag = 1e-6;      // of the time scale
+constexpr double kLeastScale = 1e-3;  // of the dead time, for a plant that is nearly nothing else
+constexpr double kMoved = 1e-6;       // of the static gain or slope: less is no response to fit
+constexpr int kMaxEvaluations = 150;  // of each search; most end by their tolerance before
+constexpr double kLargestLag = 1e4;   // of the time scale
 
 double criterion(ReductionMethod method, const StepDifference& difference, const ReducedModel& model) {
     if (method == ReductionMethod::min_iae) return difference.absolute(model);
@@ -84,7 +188,7 @@ ReducedModel ModelSearch::least(const ReducedModel& start) const {
     };
     for (const auto& [search, size, tolerance] :
          {std::tuple{LocalSearch::nelder_mead, 0.1, 1e-5}, {LocalSearch::subplex, 0.01, 1e-6}})
-        x = find_local_minimum(search, f, x, {std::vector<double>(x.size(), size), tolerance, 150}).x;
+        x = find_local_minimum(search, f, x, {std::vector<double>(x.size(), size), tolerance, kMaxEvaluations}).x;
     return model(x);
 }
 
@@ -101,7 +205,7 @@ std::vector<ReducedModel> starts(const LinearPlant& plant, double scale) {
 double time_scale(const LinearPlant& plant) {
     double slowest = 0;
     for (const auto pole : plant.poles()) slowest = std::max(slowest, 1 / std::abs(pole));
-    return std::max({plant.lag_sum(), slowest, 1e-3 * plant.dead_time()});
+    return std::max({plant.lag_sum(), slowest, kLeastScale * plant.dead_time()});
 }
 
 Error nothing_moved(double horizon, const LinearPlant& plant) {
@@ -118,7 +222,7 @@ Expected<ReducedModel> min_error(const LinearPlant& plant, const ReductionReques
         return ramp_asymptote(plant);
     const double scale = time_scale(plant);
     const ModelSearch search(plant, request, scale);
-    if (request.horizon && !(std::abs(search.moved()) > 1e-6 * std::abs(plant.low_frequency_gain())))
+    if (request.horizon && !(std::abs(search.moved()) > kMoved * std::abs(plant.low_frequency_gain())))
         return nothing_moved(*request.horizon, plant);
 
     auto models = starts(plant, scale);

@@ -6,8 +6,7 @@
 #include "engine/number_text.h"
 #include "engine/reduction/half_rule.h"
 #include "engine/reduction/min_error.h"
-#include "engine/reduction/tangent.h"
-#include "engine/reduction/two_point_123c.h"
+#include "engine/reduction/step_reading.h"
 
 namespace tunewright {
 namespace {

@@ -61,11 +61,8 @@ struct ReducedModel {
 /// The plant in the asked order. One integrator is kept, its lags become the model's dead time (the asymptote of the
 /// ramp) except the one that second order retains; two integrators are kept with second order only.
 ///
-/// half_rule: the largest neglected lag goes half to the smallest kept one, half to L, smaller ones and
-/// right-half-plane zeros to L entirely; left-half-plane zeros are first cancelled against neighbouring lags (rules T1
-/// to T3, which may change K). A complex pole pair with zeta >= 0.5 counts as two lags zeta T (same first moment), with
-/// a warning. tangent, two_point_123c: K static; stable plants get first order whatever is asked. They warn where the
-/// response is not essentially monotone.
+/// half_rule.h, step_reading.h and min_error.h state each construction. tangent, two_point_123c: K static; stable
+/// plants get first order whatever is asked. They warn where the response is not essentially monotone.
 ///
 /// Errors: unsupported (`where` "plant" or "reduction/method") for right-half-plane poles, undamped modes, zeros at the
 /// origin, too many integrators, and where the named method does not apply; the sentence names another.

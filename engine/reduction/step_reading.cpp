@@ -57,4 +57,80 @@ Expected<ReducedModel> ramp_asymptote(const LinearPlant& plant) {
 
 Error reduction_fails(const std::string& reason) { return {ErrorKind::unsupported, "reduction/method", reason}; }
 
+namespace {
+
+const double kReached = 1 - std::exp(-1.0);
+
+StepSample steepest(const LinearPlant& plant, const std::vector<StepSample>& samples, double sign) {
+    const auto best = std::ranges::max_element(samples, {}, [&](const StepSample& s) { return sign * s.slope; });
+    const auto before = best == samples.begin() ? best : best - 1;
+    const auto after = best + 1 == samples.end() ? best : best + 1;
+    const auto bend = [&](const StepSample& s) { return sign * s.curvature; };
+    if (!(bend(*before) > 0 && bend(*after) < 0)) return *best;  // steepest at t = 0+
+    const StepSample found = crossing(plant.realisation(), *before, *after, bend);
+    return sign * found.slope > sign * best->slope ? found : *best;
+}
+
+}  // namespace
+
+Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time) {
+    if (plant.integrators() == 1) return ramp_asymptote(plant);
+    if (plant.direct_term() != 0 && !plant.poles().empty())
+        return reduction_fails("the step response jumps at once (as many zeros as poles), it has no steepest point.");
+
+    ReducedModel model{.K = plant.low_frequency_gain(), .L = plant.dead_time()};
+    model.exact = plant.zeros().empty() && plant.poles().size() <= 1;
+    if (plant.poles().empty()) return model;
+
+    const double sign = model.K > 0 ? 1 : -1;
+    const std::vector<StepSample> samples = step_response(plant);
+    const StepSample at = steepest(plant, samples, sign);
+    const double foot = at.t - at.y / at.slope;
+    model.L += foot;
+    model.T1 = time == TangentTime::by_slope ? model.K / at.slope : time_at(plant, samples, kReached * model.K) - foot;
+    if (!(std::isfinite(model.T1) && std::isfinite(model.L) && model.T1 > 0 && foot >= 0))
+        return reduction_fails("the response passes 63 % of its change before the foot of its steepest tangent.");
+
+    model.warnings = monotonicity_warnings(samples, model.K);
+    return model;
+}
+
+namespace {
+
+// The plant without its integrator: its step response is the slope of the plant's own.
+Expected<LinearPlant> without_integrator(const LinearPlant& plant) {
+    return LinearPlant::make(Zpk{.K = plant.gain(),
+                                 .zeros = {plant.zeros().begin(), plant.zeros().end()},
+                                 .poles = {plant.poles().begin(), plant.poles().end()},
+                                 .L = plant.dead_time()});
+}
+
+Expected<ReducedModel> through_two_points(const LinearPlant& plant) {
+    ReducedModel model{.K = plant.low_frequency_gain()};
+    const auto samples = step_response(plant);
+    const double t25 = plant.dead_time() + time_at(plant, samples, 0.25 * model.K);
+    const double t75 = plant.dead_time() + time_at(plant, samples, 0.75 * model.K);
+    model.T1 = 0.9103 * (t75 - t25);
+    model.L = 1.2620 * t25 - 0.2620 * t75;
+    if (!(model.T1 > 0))
+        return reduction_fails("the step response jumps past 75 % of its change at once (t = " + text(t75) + ").");
+    if (model.L < 0)
+        return reduction_fails("the step response passes 25 % of its change at " + text(t25) + " and 75 % at " +
+                               text(t75) + ", which gives a negative dead time, " + text(model.L) + ".");
+    model.warnings = monotonicity_warnings(samples, model.K);
+    return model;
+}
+
+}  // namespace
+
+Expected<ReducedModel> two_point_123c(const LinearPlant& plant, ReducedOrder order) {
+    if (plant.integrators() == 0) return through_two_points(plant);
+    if (order == ReducedOrder::first) return ramp_asymptote(plant);
+    const auto slope = without_integrator(plant);
+    if (!slope) return slope.error();
+    auto model = through_two_points(*slope);
+    if (model) model->integrators = 1;
+    return model;
+}
+
 }  // namespace tunewright

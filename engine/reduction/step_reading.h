@@ -1,4 +1,5 @@
-// Level crossings and monotonicity of an exact step response, and where the ramp of an integrating plant starts.
+// What is read off an exact step response: level crossings, monotonicity, where the ramp of an integrating plant
+// starts; and the two reductions that need no more than that.
 #pragma once
 
 #include <functional>
@@ -29,5 +30,24 @@ Expected<ReducedModel> ramp_asymptote(const LinearPlant& plant);
 
 /// The bare reason why a method does not apply, which reduce() puts into its sentence.
 Error reduction_fails(const std::string& reason);
+
+/// The tangent at the steepest point of the response, as drawn since Ziegler and Nichols (1942). See reduction.h;
+/// integrating plants: the ramp's asymptote, exactly. Errors (the message is the bare reason, which
+/// reduce() puts into its sentence): unsupported, `where` "reduction/method", where the response jumps, where a lead
+/// leaves no dead time, or where no tangent model with T > 0 exists.
+Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time);
+
+/// Alfaro's reduction 123c, a first-order model through two points of the response:
+/// T = 0.9103 (t75 - t25), L = 1.2620 t25 - 0.2620 t75 with the times, dead time included, at which the response first
+/// reaches 25 % and 75 % of its static change; K static. The constants are the published, rounded ones (1/ln 3 and so
+/// on): published models are reproduced to their digits, and rules were fitted on such models.
+///
+/// Integrating plants: first order, the ramp's asymptote; second order, the two points on the response's slope, which
+/// goes from 0 to K with the lag T.
+///
+/// Errors (the message is the bare reason, which reduce() puts into its sentence): unsupported, `where`
+/// "reduction/method", where the construction gives T <= 0 or L < 0. Source: Alfaro, Ciencia y Tecnologia 24 (2006)
+/// 197-216.
+Expected<ReducedModel> two_point_123c(const LinearPlant& plant, ReducedOrder order);
 
 }  // namespace tunewright

@@ -6,8 +6,8 @@
 
 #include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
-#include "engine/evaluation/operating_point.h"
 #include "engine/expected.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/plant/subject.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"

@@ -6,7 +6,7 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 
 namespace tunewright {
 

@@ -5,8 +5,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/evaluation/evaluate_nonlinear.h"
-#include "engine/plant/nonlinear/linear_equations.h"
-#include "engine/plant/nonlinear/linearised_plant.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -7,7 +7,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/uncertain/plant_region.h"
+#include "engine/plant/plant_family.h"
 #include "tests/engine/plant/subject_of.h"
 
 namespace tunewright::records {

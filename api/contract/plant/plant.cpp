@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/plant/linear/plant_rules.h"
+#include "engine/plant/linear/factor.h"
 
 namespace tunewright::api {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "api/describe/union.h"
-#include "engine/plant/plant_model.h"
+#include "engine/plant/plant.h"
 
 namespace tunewright::api {
 

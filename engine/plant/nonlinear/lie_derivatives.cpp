@@ -2,32 +2,108 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
+#include "engine/error.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/expression/taylor.h"
-#include "engine/plant/nonlinear/input_degree.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
 
 namespace tunewright {
 namespace {
 
+enum class InputDegree { absent, affine, nonlinear };
+
+// How the input enters the equations, read off their structure: the degree of every register by abstract interpretation
+// of the operations alone, so that (u + 1)^2 - u^2 counts as nonlinear.
+class DegreeAnalysis {
+public:
+    explicit DegreeAnalysis(const Program& program)
+        : program_(program),
+          first_(program.registers() - static_cast<int>(program.instructions().size())),
+          degrees_(static_cast<std::size_t>(program.registers()), InputDegree::absent) {
+        degrees_[static_cast<std::size_t>(program.variables()) - 1] = InputDegree::affine;
+        auto next = degrees_.begin() + first_;
+        for (const Instruction& instruction : program.instructions()) *next++ = of(instruction);
+    }
+
+    InputDegree at(int where) const { return degrees_[static_cast<std::size_t>(where)]; }
+
+    // The instruction that makes this register nonlinear.
+    int culprit(int where) const {
+        for (;;) {
+            const Instruction& i = program_.instructions()[static_cast<std::size_t>(where - first_)];
+            int next = -1;
+            for (const int operand : {i.a, i.b, i.c})
+                if (at(operand) == InputDegree::nonlinear) next = operand;
+            if (next < 0) return where - first_;
+            where = next;
+        }
+    }
+
+private:
+    bool is_zero(int where) const {
+        const int index = where - program_.variables();
+        return index >= 0 && where < first_ && program_.constants()[static_cast<std::size_t>(index)] == 0;
+    }
+
+    InputDegree of(const Instruction& i) const {
+        const InputDegree a = at(i.a), b = at(i.b), c = at(i.c);
+        const InputDegree any = std::max({a, b, c});
+        switch (i.operation) {
+            case Operation::add:
+            case Operation::subtract:
+            case Operation::negate: return any;
+            case Operation::multiply:
+                if (is_zero(i.a) || is_zero(i.b)) return InputDegree::absent;
+                return a != InputDegree::absent && b != InputDegree::absent ? InputDegree::nonlinear : any;
+            case Operation::divide: return b == InputDegree::absent ? a : InputDegree::nonlinear;
+            case Operation::select: return a == InputDegree::absent ? std::max(b, c) : InputDegree::nonlinear;
+            default: return any == InputDegree::absent ? any : InputDegree::nonlinear;
+        }
+    }
+
+    const Program& program_;
+    int first_;
+    std::vector<InputDegree> degrees_;
+};
+
+/// Why x' = f(x) + g(x) u does not hold: unsupported, `where` = "plant/equations/T", with the operation and its place.
+/// Empty where it holds.
+std::optional<Error> not_affine(const NonlinearSystem& system) {
+    const Program& program = system.program();
+    const DegreeAnalysis analysis(program);
+    for (int i = 0; i < system.order(); ++i) {
+        const int at = program.output_register(i);
+        if (analysis.at(at) != InputDegree::nonlinear) continue;
+        const std::string& state = system.description().states[static_cast<std::size_t>(i)].name;
+        return Error{ErrorKind::unsupported, "plant/equations/" + state,
+                     program.place(analysis.culprit(at)) + ": the input " + system.description().input.name +
+                         " enters nonlinearly; this needs equations of the form f(x) + g(x) " +
+                         system.description().input.name + ". An actuator state makes them so."};
+    }
+    return std::nullopt;
+}
+
 // Values are compared with the sum of the terms' sizes that make them up, and with their values around.
-constexpr double kRounding = 1e-10, kVanishesThere = 1e-8, kNeighbourhood = 0.02;
+constexpr double kRounding = 1e-10;      // of the terms' sizes: no more than a derivative of order 20 loses
+constexpr double kVanishesThere = 1e-8;  // of the largest value around: 0 at the operating point
+constexpr double kNeighbourhood = 0.02;  // of the states: far enough to see a zero as one, near enough to be valid
 constexpr int kNeighbours = 12;
 
 // |C| |A|^(r-1) |B|: what L_g L_f^(r-1) h is made of at x, without cancellation. Below 0 outside the domain.
 std::vector<double> term_sizes(const NonlinearSystem& system, std::span<const double> x, int highest) {
     const auto n = x.size();
-    std::vector<double> A(n * n), B(n), C(n), next(n), sizes;
+    std::vector<double> A(n * n), B(n), C(n), sizes;
     if (!system.jacobian(x, system.u_nominal(), A, B) || !system.output_gradient(x, C)) return {};
+    for (auto* part : {&A, &B, &C})
+        for (double& value : *part) value = std::abs(value);
+    std::vector<double> next(n);
     for (int r = 1; r <= highest; ++r) {
-        double size = 0;
-        for (std::size_t i = 0; i < n; ++i) size += std::abs(C[i] * B[i]);
-        sizes.push_back(size);
-        for (std::size_t i = 0; i < n; ++i) {
-            next[i] = 0;
-            for (std::size_t j = 0; j < n; ++j) next[i] += std::abs(A[i * n + j] * B[j]);
-        }
-        B = next;
+        sizes.push_back(dot(C, B));
+        multiply(A, B, next);
+        B.swap(next);
     }
     return sizes;
 }

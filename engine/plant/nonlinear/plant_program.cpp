@@ -1,18 +1,100 @@
 #include "engine/plant/nonlinear/plant_program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "engine/expected.h"
 #include "engine/number_text.h"
 #include "engine/plant/expression/parser.h"
 #include "engine/plant/expression/program_builder.h"
 #include "engine/plant/expression/tokens.h"
-#include "engine/plant/nonlinear/parameter_values.h"
+#include "engine/plant/nonlinear/nonlinear_plant.h"
 
 namespace tunewright {
 namespace {
+
+/// Parameters as numbers: those given as expressions are worked out from the others.
+struct ParameterValues {
+    std::map<std::string, double> values;  // all finite
+    int nodes = 0;                         // numbers, names and operations of the expressions among them
+};
+
+class Resolution {
+public:
+    explicit Resolution(const std::vector<Parameter>& parameters) : parameters_(parameters) {}
+
+    Expected<ParameterValues> resolve() {
+        ExpressionLimits limits;
+        for (const auto& parameter : parameters_) {
+            if (const auto* text = std::get_if<std::string>(&parameter.value)) {
+                auto tree = parse_expression(*text, limits);
+                if (!tree) return failed(parameter.name, tree.error().message);
+                limits.used += static_cast<int>(tree->nodes.size());
+                trees_.emplace(parameter.name, std::move(*tree));
+            } else {
+                const double value = std::get<double>(parameter.value);
+                if (!std::isfinite(value))
+                    return Error{ErrorKind::invalid_argument, "plant/parameters/" + parameter.name,
+                                 "The parameter " + parameter.name + " must be a finite number or an expression."};
+                result_.values.emplace(parameter.name, value);
+            }
+        }
+        for (const auto& [name, tree] : trees_)
+            if (auto error = work_out(name)) return *error;
+        result_.nodes = limits.used;
+        return std::move(result_);
+    }
+
+private:
+    static Error failed(const std::string& name, const std::string& message) {
+        return {ErrorKind::invalid_argument, "plant/parameters/" + name, "parameter " + name + ", " + message};
+    }
+
+    // Depth first; the depth is at most the number of parameters.
+    std::optional<Error> work_out(const std::string& name) {
+        if (result_.values.count(name)) return std::nullopt;
+        if (const auto begin = std::find(path_.begin(), path_.end(), name); begin != path_.end()) {
+            std::string circle;
+            for (auto at = begin; at != path_.end(); ++at) circle += *at + " -> ";
+            return Error{ErrorKind::invalid_argument, "plant/parameters/" + name,
+                         "The parameters are defined in a circle: " + circle + name + "."};
+        }
+        path_.push_back(name);
+        const SyntaxTree& tree = trees_.at(name);
+        for (const auto& other : tree.names)
+            if (trees_.count(other))
+                if (auto error = work_out(other)) return error;
+        path_.pop_back();
+        return evaluate(name, tree);
+    }
+
+    std::optional<Error> evaluate(const std::string& name, const SyntaxTree& tree) {
+        ProgramBuilder builder({});
+        auto error = builder.add_output(tree, "parameter " + name, [this](const std::string& other) -> NameMeaning {
+            if (const auto found = result_.values.find(other); found != result_.values.end()) return found->second;
+            return UnknownName{quoted(other) +
+                               " is no parameter; parameters are made of numbers and other parameters."};
+        });
+        if (error) return failed(name, error->message);
+        const Program program = builder.finish();
+        double value = 0;
+        program.evaluate<double>({}, std::span(&value, 1));
+        if (!std::isfinite(value))
+            return Error{ErrorKind::invalid_argument, "plant/parameters/" + name, program.fault<double>({}, 1) + "."};
+        result_.values.emplace(name, value);
+        return std::nullopt;
+    }
+
+    const std::vector<Parameter>& parameters_;
+    std::map<std::string, SyntaxTree> trees_;
+    std::vector<std::string> path_;
+    ParameterValues result_;
+};
 
 constexpr std::size_t kMaxStates = 20, kMaxParameters = 200;
 
@@ -159,7 +241,7 @@ Expected<PlantProgram> compile_plant(const NonlinearPlant& plant) {
     if (auto error = check_numbers_and_names(plant)) return *error;
     const auto equations = equations_in_order(plant);
     if (!equations) return equations.error();
-    const auto parameters = parameter_values(plant.parameters);
+    const auto parameters = Resolution(plant.parameters).resolve();
     if (!parameters) return parameters.error();
     return Compilation(plant, *parameters).compile(*equations);
 }

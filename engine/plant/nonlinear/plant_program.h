@@ -8,12 +8,24 @@
 
 namespace tunewright {
 
+/// `joint` for rates and derivatives, `output` where the output is needed alone, which is quicker.
 struct PlantProgram {
     Program joint;   ///< outputs 0 to n - 1: d/dt of the states; output n: y. Variables: the states, then the input
     Program output;  ///< y alone, of the same variables
 };
 
-/// At most 20 states, 200 parameters, 5000 numbers, names and operations. Errors: see NonlinearSystem::make.
+/// At most 20 states, 200 parameters, and 5000 numbers, names and operations in all texts together. Parameters given as
+/// expressions are worked out first, in any order. The cost is linear in the lengths of the texts.
+///
+/// Errors, the first fault met, invalid_argument with `where` =
+///   "plant/states/T", "plant/parameters/k", "plant/input", "plant/input/nominal", "plant/input/min", "plant/L": a name
+///       that is none or is taken, a number that is not finite, an empty range of the input, no or too many states;
+///   "plant/parameters/k": a text that is no expression, a name that is no parameter, a circle (which the message
+///       names), a value that is not finite;
+///   "plant/equations", "plant/equations/T": a state without an equation or with two, an equation without a state, a
+///       text that is no expression (with its place), an unknown name;
+///   "plant/output": the same of the output; an output that contains the input, or no state.
+/// Whether the equations can be evaluated at the states is NonlinearSystem::make's to say.
 Expected<PlantProgram> compile_plant(const NonlinearPlant& plant);
 
 }  // namespace tunewright

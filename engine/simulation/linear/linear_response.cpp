@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/controller/error_scaling.h"
+#include "engine/controller/pid.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/propagator.h"
 #include "engine/simulation/linear/error_tail.h"

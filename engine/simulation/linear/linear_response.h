@@ -9,9 +9,9 @@
 // found implicitly (long_step.h). Without dead time the steps are exact whatever their length. Source of the method of
 // steps: Bellman and Cooke, Differential-Difference Equations (1963), chapter 3.
 //
-// The nonlinear PID adds phi(e) - e to its integral's input (controller/error_scaling.h). Within a step that is one
-// more cubic: known for steps up to the dead time (y does not depend on it there), found by repetition for longer ones
-// and without dead time.
+// The nonlinear PID adds phi(e) - e to its integral's input (ErrorScaling of controller/pid.h). Within a step that is
+// one more cubic: known for steps up to the dead time (y does not depend on it there), found by repetition for longer
+// ones and without dead time.
 //
 // Units: t in the plant's time; y, r in units of y; u, d in units of u; all deviations from the operating point.
 #pragma once

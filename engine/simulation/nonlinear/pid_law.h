@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "engine/controller/error_scaling.h"
 #include "engine/controller/pid.h"
 
 namespace tunewright {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "engine/loop/ultimate_point.h"
+#include "engine/loop/margins.h"
 
 namespace tunewright {
 

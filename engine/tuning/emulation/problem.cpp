@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/numerics/linear_algebra.h"
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/numerics/polynomial_roots.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/tuning/emulation/emulation.h"
 #include "engine/tuning/model_based/imc.h"
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"

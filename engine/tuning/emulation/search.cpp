@@ -7,7 +7,7 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/global_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/progress.h"

@@ -11,10 +11,10 @@
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
-#include "engine/loop/ultimate_point.h"
+#include "engine/loop/margins.h"
 #include "engine/plant/frequency_response.h"
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"

@@ -1,6 +1,6 @@
 #include "engine/tuning/method/ultimate_rule.h"
 
-#include "engine/loop/ultimate_point.h"
+#include "engine/loop/margins.h"
 
 namespace tunewright {
 namespace {

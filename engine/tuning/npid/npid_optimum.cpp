@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
+#include "engine/loop/margins.h"
 #include "engine/loop/stability.h"
-#include "engine/loop/ultimate_point.h"
 #include "engine/number_text.h"
-#include "engine/numerics/global_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <functional>
 
-#include "engine/loop/dead_time_tolerance.h"
+#include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/log_maximum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {

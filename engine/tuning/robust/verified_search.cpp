@@ -7,7 +7,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/search.h"
 #include "engine/tuning/robust/sqp.h"

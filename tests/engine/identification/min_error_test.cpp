@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 
-#include "engine/reduction/step_difference.h"
-
 namespace tunewright {
 namespace {
 

@@ -1,5 +1,5 @@
 // A linear plant written as equations is the same plant.
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearisation.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/identification/identify.h"
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/simulation/linear/step_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 

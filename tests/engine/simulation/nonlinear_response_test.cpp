@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearisation.h"
 #include "engine/simulation/linear/indices.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/test_data.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/controller/error_scaling.h"
+#include "engine/controller/pid.h"
 #include "engine/simulation/linear/indices.h"
 
 namespace tunewright {

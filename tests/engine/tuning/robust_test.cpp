@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluate.h"
-#include "engine/numerics/local_minimum.h"
+#include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep.h"
 

@@ -1,6 +1,6 @@
 // Rules made for a robustness: their formulas, and that the loops have it.
 #include "engine/evaluation/evaluate.h"
-#include "engine/plant/uncertain/plant_family.h"
+#include "engine/plant/plant_family.h"
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {

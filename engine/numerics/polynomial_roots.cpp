@@ -1,9 +1,11 @@
-#include "engine/numerics/multiple_roots.h"
+#include "engine/numerics/polynomial_roots.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {
@@ -12,7 +14,42 @@ using Complex = std::complex<double>;
 using Index = std::size_t;
 
 constexpr double kRounding = 4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
-constexpr double kSpread = 4;  // a torn root's distance from its centre, in eps^(1/m)
+constexpr double kSpread = 4;            // a torn root's distance from its centre, in eps^(1/m)
+constexpr int kNewtonSteps = 3;          // a simple root is good to half its digits: they double at each step
+constexpr double kLargestPolish = 1e-6;  // of the root: a longer step means a cluster, not rounding
+
+Complex horner(std::span<const double> coefficients, Complex x) {
+    Complex value = 0;
+    for (const double c : coefficients) value = value * x + c;
+    return value;
+}
+
+Complex horner_derivative(std::span<const double> coefficients, Complex x) {
+    Complex value = 0;
+    const auto degree = coefficients.size() - 1;
+    for (std::size_t i = 0; i < degree; ++i) value = value * x + coefficients[i] * static_cast<double>(degree - i);
+    return value;
+}
+
+void polish(std::span<const double> coefficients, std::vector<Complex>& roots) {
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        for (int iteration = 0; iteration < kNewtonSteps; ++iteration) {
+            const Complex value = horner(coefficients, roots[i]);
+            const Complex slope = horner_derivative(coefficients, roots[i]);
+            if (std::abs(slope) == 0) break;
+            Complex better = roots[i] - value / slope;
+            // Newton's method on one root of a cluster spoils the product.
+            if (std::abs(better - roots[i]) > kLargestPolish * std::abs(roots[i])) break;
+            if (roots[i].imag() == 0) better = better.real();
+            if (!(std::abs(horner(coefficients, better)) < std::abs(value))) break;
+            roots[i] = better;
+        }
+        if (roots[i].imag() > 0 && i + 1 < roots.size()) {
+            roots[i + 1] = std::conj(roots[i]);
+            ++i;
+        }
+    }
+}
 
 /// Of the monic polynomial with these roots, scaled so that the roots have size one; with the sums of absolute terms.
 struct Product {
@@ -105,7 +142,7 @@ private:
             for (Index i = 0; i < p.size(); ++i) p[i] *= static_cast<double>(p.size() - i);
         }
         Complex s = centre / scale_;
-        for (int step = 0; step < 3; ++step) {
+        for (int step = 0; step < kNewtonSteps; ++step) {
             Complex value = 0, slope = 0;
             for (const double c : p) {
                 slope = slope * s + value;
@@ -130,11 +167,35 @@ private:
     std::vector<double> given_;
 };
 
-}  // namespace
-
+/// Rounding of coefficients tears an m-fold root apart to about eps^(1/m) of itself, differently for every scale of s.
+/// Groups of roots that close are put on one point, their centre as a root of the (m - 1)th derivative, where the
+/// polynomial of the roots so changed is the given one to the rounding of its coefficients; others stay as they are.
+/// `roots`: conjugate pairs as neighbours.
 void merge_multiple_roots(std::span<const double> coefficients, std::vector<Complex>& roots) {
     if (roots.size() < 2 || roots.size() + 1 != coefficients.size()) return;
     Merger(coefficients, roots).run();
+}
+
+}  // namespace
+
+std::vector<Complex> polynomial_roots(std::span<const double> coefficients) {
+    const int n = static_cast<int>(coefficients.size()) - 1;
+    if (n <= 0) return {};
+    if (n == 1) return {Complex(-coefficients[1] / coefficients[0])};
+    // s = scale x makes first and last coefficient alike.
+    const double last = coefficients[static_cast<Index>(n)];
+    const double scale = last == 0 ? 1 : std::pow(std::abs(last / coefficients[0]), 1.0 / n);
+    const auto size = static_cast<Index>(n);
+    std::vector<double> companion(size * size, 0.0);
+    for (int i = 0; i < n; ++i)
+        companion[static_cast<Index>(i)] =
+            -coefficients[static_cast<Index>(i) + 1] / coefficients[0] / std::pow(scale, i + 1);
+    for (Index i = 1; i < size; ++i) companion[i * size + i - 1] = 1;
+    std::vector<Complex> roots = eigenvalues(companion, n);
+    for (auto& root : roots) root *= scale;
+    polish(coefficients, roots);
+    merge_multiple_roots(coefficients, roots);
+    return roots;
 }
 
 }  // namespace tunewright

@@ -1,11 +1,28 @@
-#include "engine/plant/nonlinear/linear_equations.h"
+#include "engine/plant/nonlinear/linearisation.h"
 
 #include <span>
 #include <string>
 
 #include "engine/number_text.h"
+#include "engine/plant/nonlinear/lie_derivatives.h"
 
 namespace tunewright {
+
+Expected<LinearPlant> linearised_plant(const NonlinearSystem& system) {
+    auto linear = LinearPlant::make(system.linearised());
+    if (linear) return linear;
+    const auto degree = relative_degree(system);
+    if (!degree && degree.error().where == "plant/output") return degree.error();
+    return Error{linear.error().kind, "plant/equations",
+                 "The linearisation at the operating point cannot be worked with. " + linear.error().message};
+}
+
+OperatingPoint operating_point(const NonlinearSystem& system) {
+    OperatingPoint point{system.description().states, system.u_nominal(), system.y_steady(), system.linearised()};
+    for (std::size_t i = 0; i < point.states.size(); ++i) point.states[i].value = system.x_steady()[i];
+    return point;
+}
+
 namespace {
 
 std::string coefficient(double x) { return "(" + exact_text(x) + ")"; }

@@ -1,4 +1,4 @@
-#include "engine/plant/uncertain/plant_region.h"
+#include "engine/plant/plant_family.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,9 @@ namespace {
 
 using Point = PlantRegion::Point;
 
-// The 95 % point of chi-square with 1 to 8 degrees of freedom (Abramowitz and Stegun 1964, table 26.8).
+// The 95 % point of chi-square with 1 to 8 degrees of freedom (Abramowitz and Stegun 1964, table 26.8). Boost.Math's
+// quantile has the same seven digits; its further ones would move the ends of every region by up to 1.2e-7 of their
+// distance from the centre, and with them answers that are kept and compared.
 constexpr std::array<double, 8> kChiSquare95 = {3.841459, 5.991465, 7.814728, 9.487729,
                                                 11.07050, 12.59159, 14.06714, 15.50731};
 constexpr double kMinShare = 0.05;  // of a time constant, before its sign would change
@@ -88,11 +90,7 @@ void set_value(T& plant, const std::string& name, double value) {
 
 bool keeps_sign(const std::string& name) { return name != "K" && name != "L" && name != "zeta" && name != "b"; }
 
-double length(const Point& z) {
-    double sum = 0;
-    for (const double x : z) sum += x * x;
-    return std::sqrt(sum);
-}
+double length(const Point& z) { return std::sqrt(dot(z, z)); }
 
 /// The i-th number of the van der Corput sequence in a base.
 double radical_inverse(int i, int base) {
@@ -231,6 +229,25 @@ std::vector<Point> PlantRegion::spread(int count) const {
         if (!ball_ || length(z) <= 1) points.push_back(std::move(z));
     }
     return points;
+}
+
+PlantFamily family_of(const Plant& plant) { return {{PlantRegion::of_ranges(plant)}}; }
+
+PlantFamily family_of(const PlantSet& set) {
+    PlantFamily family;
+    for (const auto& plant : set.plants) family.regions.push_back(PlantRegion::of_ranges(plant));
+    return family;
+}
+
+std::vector<Plant> members_beside_nominal(const PlantFamily& family) {
+    std::vector<Plant> members;
+    for (std::size_t i = 0; i < family.regions.size(); ++i) {
+        const PlantRegion& region = family.regions[i];
+        if (i > 0 && region.dimension() > 0) members.push_back(region.nominal());
+        if (i == 0 && region.dimension() == 0) continue;
+        for (const auto& end : region.ends()) members.push_back(region.at(end));
+    }
+    return members;
 }
 
 }  // namespace tunewright

@@ -1,12 +1,11 @@
 // Multiple roots on one point, and simple ones left alone.
-#include "engine/numerics/multiple_roots.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/polynomial_roots.h"
 
 namespace tunewright {
 namespace {

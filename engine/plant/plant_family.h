@@ -1,11 +1,14 @@
-// A continuous region of plants around one: what is known when parameters are known within ranges or with covariance.
+// Every plant that one controller must serve: a nominal one, others beside it, and around each the continuous region of
+// plants that ranges or a covariance of its parameters allow.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/expected.h"
+#include "engine/figure.h"
 #include "engine/plant/plant.h"
 
 namespace tunewright {
@@ -48,5 +51,27 @@ private:
 /// A parameter of a plant by its name, as PlantRegion names them; 0 for a name that the type does not have.
 double parameter(const Plant& plant, const std::string& name);
 void set_parameter(Plant& plant, const std::string& name, double value);
+
+/// One region for each plant, of dimension 0 where nothing about it is uncertain; the first is around the nominal
+/// plant.
+struct PlantFamily {
+    std::vector<PlantRegion> regions;
+
+    const Plant& nominal() const { return regions.front().nominal(); }
+    bool single() const { return regions.size() == 1 && regions.front().dimension() == 0; }
+};
+
+/// How one controller serves every plant of a family.
+struct RegionFigures {
+    double stable_fraction = 0;  ///< of the family, 0 to 1
+    Figure worst_Ms;             ///< empty where not every plant that was looked at is stable
+    Plant worst_plant;           ///< where Ms is largest, or the loop unstable
+};
+
+PlantFamily family_of(const Plant& plant);
+PlantFamily family_of(const PlantSet& set);
+
+/// The plants at the ends of every region, the nominal plant itself left out.
+std::vector<Plant> members_beside_nominal(const PlantFamily& family);
 
 }  // namespace tunewright

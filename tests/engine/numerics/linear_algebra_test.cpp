@@ -1,12 +1,10 @@
 // Linear systems in any units.
-#include "engine/numerics/matrix_scaling.h"
+#include "engine/numerics/linear_algebra.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
-
-#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -1,5 +1,5 @@
 // Regions of plants: what lies in them, and that it is the same every time.
-#include "engine/plant/uncertain/plant_region.h"
+#include "engine/plant/plant_family.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/uncertain/plant_family.h"
 
 namespace tunewright {
 namespace {

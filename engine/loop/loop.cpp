@@ -17,7 +17,7 @@ Error invalid(const std::string& message) { return {ErrorKind::invalid_argument,
 int filter_order(FilterType type) {
     switch (type) {
         case FilterType::none: return 0;
-        case FilterType::derivative: return 1;
+        case FilterType::derivative:
         case FilterType::measurement_first_order: return 1;
         case FilterType::measurement_second_order: return 2;
     }

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <string>
 
-#include "engine/identification/fit/gap_moves.h"
+#include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
 
 namespace tunewright {

@@ -249,6 +249,7 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     // Rounding that is the same over a plateau is no noise of which few samples are known.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
+    all.reserve(static_cast<std::size_t>(m));
     for (int k = 0; k < m; ++k)
         all.emplace_back(widened * std::sqrt(std::max(axes.eigenvalues()[k], 0.0)) * axes.eigenvectors().col(k));
     // Nor is it a drift, though it looks like one.

@@ -1,16 +1,21 @@
 #include "engine/simulation/limited/limited_loop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/numerics/linear_algebra.h"
+#include "engine/simulation/linear/response_system.h"
 
 namespace tunewright {
 namespace {
 
 using Index = std::size_t;
 
-constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
+constexpr double kOnTheLimit = 1e-12;   // relative distance at which the slope decides
+constexpr double kRestOnLimit = 1e-9;   // of u at rest: the linear solution's rounding; nearer to a limit it is at it
+constexpr double kLeastScale = 1e-200;  // of y: keeps what is divided by the scale finite in a loop that never moves
+constexpr double kOwnTime = 0.1;        // of a time without an integral time of its own: the tracking time
 
 }  // namespace
 
@@ -24,7 +29,7 @@ std::optional<double> tracking_time(const ParallelPid& controller) {
 double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
     if (const auto time = tracking_time(controller)) return *time;
     const double time = plant.time_scale();
-    return 0.1 * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
+    return kOwnTime * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
 }
 
 LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
@@ -119,6 +124,33 @@ Region LimitedLoop::region_after(Region before, bool at_max) const {
 ExactStep LimitedLoop::step(Region region, double h) const {
     const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
     return Propagator(states(), e.F, e.G, e.b, h).level(0);
+}
+
+LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+                      const ActuatorLimits& limits) {
+    LimitedRest rest;
+    rest.linear = steady_state(plant, controller, in);
+    if (!rest.linear.exists) return rest;
+    const double u = rest.linear.u, slack = kRestOnLimit * std::abs(u);
+    if (u <= limits.max + slack && u >= limits.min - slack) {
+        rest.exists = rest.within = true;
+        rest.y = rest.linear.y;
+        rest.u = std::clamp(u, limits.min, limits.max);
+        return rest;
+    }
+    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return rest;
+    rest.exists = true;
+    rest.u = u > limits.max ? limits.max : limits.min;
+    rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
+    return rest;
+}
+
+double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest) {
+    double u = std::abs(in.d);
+    for (const double limit : {limits.min, limits.max})
+        if (std::isfinite(limit)) u += std::abs(limit);
+    const double gain = std::abs(plant.rational({0, 1 / own_time(plant)}));
+    return std::max({std::abs(in.r), std::abs(y_rest), gain * u, kLeastScale});
 }
 
 }  // namespace tunewright

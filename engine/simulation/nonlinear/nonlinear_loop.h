@@ -1,4 +1,5 @@
-// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input.
+// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input, and where
+// it comes to rest.
 #pragma once
 
 #include <optional>
@@ -72,5 +73,17 @@ private:
     std::size_t n_;
     mutable std::vector<double> slope_, C_, A_, B_;  // scratch
 };
+
+struct NonlinearRest {
+    bool within = false;    ///< by the control law; false: at a limit
+    double y = 0, u = 0;    ///< deviations
+    std::vector<double> x;  ///< absolute
+};
+
+/// The rest nearest to these states, by Newton's method: under the control law if the limits admit it, else at the
+/// limit. Empty where none is found near. `sizes`: by how much the states, and last u, move in this loop; what is far
+/// below them is rounding.
+std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInputs& inputs, std::vector<double> x,
+                                       double u, const std::vector<double>& sizes);
 
 }  // namespace tunewright

@@ -1,4 +1,5 @@
-// A nonlinear plant from its operating point under an input that is constant between switches: open-loop experiments.
+// A nonlinear plant from its operating point under an input that is constant between switches (open-loop experiments),
+// and the operation of its equations that fails where it leaves its domain.
 #pragma once
 
 #include <deque>
@@ -55,5 +56,10 @@ private:
     StepPolynomial y_;
     std::string why_;
 };
+
+/// Which operation fails first when x goes on with the rates dx from time t (NonlinearSystem::domain_fault). u
+/// absolute.
+std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
+                        double t);
 
 }  // namespace tunewright

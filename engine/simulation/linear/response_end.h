@@ -1,4 +1,5 @@
-// Where a linear loop comes to rest under constant set point and load.
+// Where a linear loop comes to rest under constant set point and load, and what the end of a response leaves of the
+// integrals of its error.
 #pragma once
 
 #include <optional>
@@ -22,5 +23,21 @@ SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller
 /// What the integral of r - y from 0 to now is in the states x of a loop whose integral state saw r - y_f alone: that
 /// state, less the lag of a measurement filter. Differences of it are integrals of r - y. Needs integral action.
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x);
+
+/// Integrals of |e| and t |e| so far, by trapezoids: what is left is judged by them.
+class ErrorTail {
+public:
+    /// The piece between neighbouring nodes; e = r - y.
+    void add(const ResponseNode& a, const ResponseNode& b, double r);
+
+    double absolute_error() const { return absolute_error_; }
+
+    /// Whether less than `fraction` of the integral of t |e| is left at time t, where the error is e and its integral
+    /// from there on `rest`: the tail is taken as one exponential.
+    bool little_is_left(double rest, double e, double t, double fraction) const;
+
+private:
+    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // the last: of |y|
+};
 
 }  // namespace tunewright

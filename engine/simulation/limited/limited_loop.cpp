@@ -1,5 +1,6 @@
 #include "engine/simulation/limited/limited_loop.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@ namespace tunewright {
 namespace {
 
 using Index = std::size_t;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kOnTheLimit = 1e-12;   // relative distance at which the slope decides
 constexpr double kRestOnLimit = 1e-9;   // of u at rest: the linear solution's rounding; nearer to a limit it is at it
@@ -42,33 +44,32 @@ LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller
 }
 
 LimitedLoop::Equations LimitedLoop::equations(Region region) const {
-    const DelaySystem& s = system_;
-    const Index n = Index(s.n), wide = n + 1;
-    Equations e{std::vector<double>(wide * wide, 0.0), s.G, std::vector<double>(wide, 0.0)};
-    e.G.push_back(s.Z);
-    for (Index i = 0; i < n; ++i) {
-        for (Index j = 0; j < n; ++j) e.F[i * wide + j] = s.F[i * n + j];
-        e.F[n * wide + i] = s.Y[i];
-        e.b[i] = s.H[i] * in_.r;
-    }
-    e.b[n] = -in_.r;
     const double u = limit(region);
     if (region != Region::inside && !std::isfinite(u)) return {};
+    const DelaySystem& s = system_;
+    const Eigen::Index n = s.n, wide = n + 1;
+    Equations e{std::vector<double>(Index(wide * wide), 0.0), s.G, std::vector<double>(Index(wide), 0.0)};
+    e.G.push_back(s.Z);
+    Eigen::Map<Matrix> F(e.F.data(), wide, wide);
+    Eigen::Map<Eigen::VectorXd> G(e.G.data(), wide), b(e.b.data(), wide);
+    const Eigen::Map<const Eigen::RowVectorXd> M(s.M.data(), n);
+    F.topLeftCorner(n, n) = Eigen::Map<const Matrix>(s.F.data(), n, n);
+    F.row(n).head(n) = Eigen::Map<const Eigen::RowVectorXd>(s.Y.data(), n);
+    b.head(n) = in_.r * Eigen::Map<const Eigen::VectorXd>(s.H.data(), n);
+    b[n] = -in_.r;
     if (region != Region::inside && s.integral_state >= 0) {
-        const Index row = Index(s.integral_state);
-        for (Index j = 0; j < n; ++j) e.F[row * wide + j] -= tracking_gain_ * s.M[j];
-        e.G[row] -= tracking_gain_ * s.N;
-        e.b[row] += tracking_gain_ * (u - s.R * in_.r);
+        const Eigen::Index row = s.integral_state;
+        F.row(row).head(n) -= tracking_gain_ * M;
+        G[row] -= tracking_gain_ * s.N;
+        b[row] += tracking_gain_ * (u - s.R * in_.r);
     }
     if (delayed()) return e;
     // v = u + d at once: constant at a limit, (M x + R r + d)/(1 - N) within them.
     const double g = region == Region::inside ? 1 / (1 - s.N) : 0;
     const double v0 = region == Region::inside ? g * (s.R * in_.r + in_.d) : u + in_.d;
-    for (Index i = 0; i < wide; ++i) {
-        for (Index j = 0; j < n; ++j) e.F[i * wide + j] += e.G[i] * g * s.M[j];
-        e.b[i] += e.G[i] * v0;
-        e.G[i] = 0;
-    }
+    F.leftCols(n) += (g * G) * M;
+    b += v0 * G;
+    G.setZero();
     return e;
 }
 
@@ -78,12 +79,9 @@ double LimitedLoop::command(const std::vector<double>& x, double v) const {
 
 std::vector<double> LimitedLoop::rates(Region region, const std::vector<double>& x, double v) const {
     const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
-    const Index n = Index(system_.n), wide = n + 1;
-    std::vector<double> rate(n);
-    for (Index i = 0; i < n; ++i) {
-        rate[i] = e.b[i] + e.G[i] * v;
-        for (Index j = 0; j < n; ++j) rate[i] += e.F[i * wide + j] * x[j];
-    }
+    std::vector<double> rate(Index(system_.n));
+    multiply(e.F, x, rate);
+    for (Index i = 0; i < rate.size(); ++i) rate[i] += e.b[i] + e.G[i] * v;
     return rate;
 }
 

@@ -351,7 +351,7 @@ Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, co
     ModelSearch search = searched(clean, options.model, control);
     Fitted fitted{std::move(clean), std::move(search), record.u_limits};
     try_limits(record, options.model, control, fitted);
-    auto model = by_output_error(std::move(fitted.record), std::move(fitted.search), options, control);
+    auto model = by_output_error(fitted.record, std::move(fitted.search), options, control);
     if (!model) return model;
     model->data_quality.u_limits = fitted.u_limits;
     if (fitted.u_limits && !record.u_limits)

@@ -64,7 +64,7 @@ void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& 
                           "open. Record longer, or ask for model fopdt or sopdt."});
 }
 
-/// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
+/// What the beginning of a slow response cannot be distinguished from: after a test that ends before it has settled, an
 /// integrator's.
 void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& warnings) {
     constexpr double kStrong = 10, kPoint = 1;

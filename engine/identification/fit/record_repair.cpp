@@ -16,6 +16,7 @@ constexpr double kOfRange = 0.05;
 /// The size of a usual value of the series: its median magnitude, as a standard deviation.
 double usual_size(const std::vector<double>& values) {
     std::vector<double> sizes;
+    sizes.reserve(values.size());
     for (const double value : values) sizes.push_back(std::abs(value));
     return sizes.empty() ? 0 : median(std::move(sizes)) / kMedianOfNormal;
 }
@@ -62,6 +63,7 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     UnitResponse response, level;
     static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
     std::vector<double> times;
+    times.reserve(left_out.size());
     for (const std::size_t i : left_out) times.push_back(whole.t[i]);
     const ModelForm& form = there.form;
     const int derivatives = form.gains() - 1;

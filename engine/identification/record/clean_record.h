@@ -50,7 +50,7 @@ struct CleanRecord {
     RecordKind kind = RecordKind::automatic;  ///< as given
     RecordScale scale;
     Cleaning cleaning;
-    int dropped = 0;  ///< rows of which no y is used
+    int dropped = 0;  ///< rows whose y is not used
     int u_only = 0;   ///< of them, rows whose u counts
     bool moved_between_rows =
         false;             ///< each change of u was put midway between the row that shows it and the one before

@@ -58,9 +58,10 @@ private:
     Equations below_, inside_, above_;
 };
 
-/// Where the loop comes to rest, limits respected; nowhere where a limit holds an integrating or unstable plant.
+/// Where the loop comes to rest within its limits, or at one of them. It has no rest where a limit holds an integrating
+/// or unstable plant.
 struct LimitedRest {
-    bool exists = false, within = false;  // within: by the control law, not at a limit
+    bool exists = false, within = false;  ///< within: by the control law, not at a limit
     double y = 0, u = 0;
     SteadyState linear;
 };

@@ -301,7 +301,7 @@ private:
 
     /// Finds the end of a step whose y depends on the integral's own input by repetition: `try_end` goes to the end
     /// with the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is
-    /// taken as it comes.
+    /// accepted all the same.
     template <class TryEnd>
     bool settle(double h, bool shortest, ResponseNode& node, const TryEnd& try_end) {
         end_x_.resize(x_.size());

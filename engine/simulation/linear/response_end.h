@@ -20,11 +20,11 @@ struct SteadyState {
 
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
-/// What the integral of r - y from 0 to now is in the states x of a loop whose integral state saw r - y_f alone: that
-/// state, less the lag of a measurement filter. Differences of it are integrals of r - y. Needs integral action.
+/// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated r - y_f alone:
+/// that state less the lag of the measurement filter. Differences of it are integrals of r - y. Needs integral action.
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x);
 
-/// Integrals of |e| and t |e| so far, by trapezoids: what is left is judged by them.
+/// Integrals of |e| and t |e| so far, by trapezoids, as a measure for what is left of them.
 class ErrorTail {
 public:
     /// The piece between neighbouring nodes; e = r - y.
@@ -37,7 +37,7 @@ public:
     bool little_is_left(double rest, double e, double t, double fraction) const;
 
 private:
-    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // the last: of |y|
+    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // `largest_` is of |y|
 };
 
 }  // namespace tunewright

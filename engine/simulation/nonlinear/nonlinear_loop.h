@@ -23,8 +23,8 @@ double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& c
 /// The size of y to which a load d drives the linearisation over the plant's own time.
 double size_of_effect(const NonlinearSystem& system, double d);
 
-/// How often a jump of the plant's input counts that comes back after a dead time. With a pure derivative it comes back
-/// as a jump, smaller each time; else smoother each time.
+/// The number of passages through the loop for which a jump of the plant's input still counts. With a pure derivative
+/// it comes back after a dead time as a smaller jump, else as a smoother kink.
 int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance);
 
 /// States z: those of the plant (absolute), then those of the PidLaw. y, u, w = u + d are deviations.
@@ -45,7 +45,7 @@ public:
     const ActuatorLimits& limits() const { return limits_; }
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
-    /// `w_then`: the plant's input with a dead time; without, it is not looked at.
+    /// `w_then`: what the plant receives with a dead time, its input one dead time ago; not used without one.
     Output output(Region region, std::span<const double> z, double w_then) const;
     /// The region for these states: on a limit it is `inside`.
     Region region(std::span<const double> z, double w_then) const;
@@ -74,6 +74,7 @@ private:
     mutable std::vector<double> slope_, C_, A_, B_;  // scratch
 };
 
+/// A rest of the loop.
 struct NonlinearRest {
     bool within = false;    ///< by the control law; false: at a limit
     double y = 0, u = 0;    ///< deviations

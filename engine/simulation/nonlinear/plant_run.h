@@ -57,8 +57,8 @@ private:
     std::string why_;
 };
 
-/// Which operation fails first when x goes on with the rates dx from time t (NonlinearSystem::domain_fault). u
-/// absolute.
+/// The operation that fails first when x continues at the rates dx from time t, as a sentence for the user
+/// (NonlinearSystem::domain_fault). x and u are absolute. Cost: some tens of looks along that line.
 std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
                         double t);
 

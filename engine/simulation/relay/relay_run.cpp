@@ -79,9 +79,8 @@ bool RelayRun::settle_or_escape(bool quiet, double elapsed, double slope) {
     const int integrators = motion_->integrators();
     if (motion_->growth_rate() * elapsed > kGrowth) {
         end_ = RelayEnd::escaped;
-    } else if (quiet && (integrators <= 0 || (integrators == 1 && outward <= 0))) {
-        end_ = RelayEnd::latched;
-    } else if (elapsed > kPatience * motion_->shortest()) {
+    } else if ((quiet && (integrators <= 0 || (integrators == 1 && outward <= 0))) ||
+               elapsed > kPatience * motion_->shortest()) {
         end_ = RelayEnd::latched;
     }
     return end_ != RelayEnd::running;

@@ -7,10 +7,9 @@
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
-#include "engine/identification/fit/reading_check.h"
+#include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/record_kind.h"
-#include "engine/identification/record/saturation.h"
 #include "engine/identification/record/series.h"
 #include "engine/identification/relay_test/relay_fourier.h"
 #include "engine/identification/two_point.h"
@@ -276,7 +275,7 @@ ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& c
     return without_false_readings(std::move(search), record, model, control);
 }
 
-Expected<IdentifiedModel> by_output_error(CleanRecord record, ModelSearch search, const IdentifyOptions& options,
+Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch search, const IdentifyOptions& options,
                                           const RunControl& control) {
     constexpr double kUnexplained = 0.004;  // of y's variation: less is not worth another structure
     const RecordKind kind = kind_of(record);
@@ -352,7 +351,7 @@ Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, co
     ModelSearch search = searched(clean, options.model, control);
     Fitted fitted{std::move(clean), std::move(search), record.u_limits};
     try_limits(record, options.model, control, fitted);
-    auto model = by_output_error(std::move(fitted.record), std::move(fitted.search), options, control);
+    auto model = by_output_error(fitted.record, std::move(fitted.search), options, control);
     if (!model) return model;
     model->data_quality.u_limits = fitted.u_limits;
     if (fitted.u_limits && !record.u_limits)

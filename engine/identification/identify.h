@@ -92,7 +92,7 @@ struct DataQuality {
     int steps = 0;              ///< moves of u
     std::optional<int> cycles;  ///< of a relay test: complete periods of u
     bool settled = false;
-    int samples_dropped = 0;                        ///< rows of which no y is used
+    int samples_dropped = 0;                        ///< rows whose y is not used
     double u0 = 0, y0 = 0;                          ///< operating point: given, or before the first change of u
     std::optional<std::array<double, 2>> u_limits;  ///< to which u was cut: given, or found
     std::optional<PreTest> pretest;

@@ -48,7 +48,7 @@ CleanRecord beginning(const CleanRecord& record) {
                                           : first_part(record, record.t[static_cast<std::size_t>(kMaxFitted - 1)]);
 }
 
-/// A set point of which only the moves are known; `length` is that of the part of the record in which they were seen.
+/// A set point that is known only by its moves; `length` is that of the part of the record in which they were seen.
 std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, double length, const CleanRecord& record) {
     std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
     for (const OutsideMove& move : moves) {

@@ -79,8 +79,8 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
 constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
 
-/// The slope of an integrator at rest can be told from its response if the record shows y before u moves, or u moving
-/// again.
+/// The slope of an integrator at rest can be distinguished from its response if the record shows y before u moves, or u
+/// moving again.
 bool shows_rest(const CleanRecord& r) {
     constexpr int kEnoughBefore = 4;  // samples that tell a slope from their noise
     const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });

@@ -62,8 +62,8 @@ struct StructureChoice {
     std::string reason;
 };
 
-/// A lag of ten record lengths and more (two, where it is unstable) cannot be told from an integrator, nor its gain
-/// from any other.
+/// A lag of ten record lengths and more (two, where it is unstable) cannot be distinguished from an integrator, nor its
+/// gain from any other.
 bool looks_integrating(const Fit& fit);
 
 /// Among determined fits: the least criterion, unless a structure with fewer parameters comes within 5 of it (within 10

@@ -1,4 +1,4 @@
-// Which frequencies a recorded test tells something about.
+// The frequencies at which a recorded test determines the plant.
 #pragma once
 
 #include <optional>

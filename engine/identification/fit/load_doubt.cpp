@@ -75,12 +75,13 @@ Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) 
     const Eigen::VectorXd s = eigen.eigenvalues().tail(used);
     const Eigen::VectorXd z =
         (eigen.eigenvectors().rightCols(used).transpose() * (seen.transpose() * e)).array() / s.array().sqrt();
+    constexpr double kTiny = 1e-150;  // keeps the logarithm of what may be 0 finite
     constexpr double kLeast = 1e-12;  // of the squares: their difference is rounding below it
     const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kLeast * e.squaredNorm());
     Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
     best.a = a;
     best.unlikeliness -=
-        std::log(1 - a * a) - 2 * qr.matrixQR().diagonal().head(m).array().abs().max(1e-150).log().sum();
+        std::log(1 - a * a) - 2 * qr.matrixQR().diagonal().head(m).array().abs().max(kTiny).log().sum();
     return best;
 }
 

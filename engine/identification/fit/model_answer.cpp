@@ -20,6 +20,7 @@ constexpr int kTracePoints = 2000;
 std::vector<int> shown(int n) {
     const int points = std::min(n, kTracePoints);
     std::vector<int> rows;
+    rows.reserve(static_cast<std::size_t>(points));
     for (int k = 0; k < points; ++k)
         rows.push_back(points == 1 ? 0 : static_cast<int>(static_cast<long long>(k) * (n - 1) / (points - 1)));
     return rows;
@@ -63,7 +64,7 @@ void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& 
                           "open. Record longer, or ask for model fopdt or sopdt."});
 }
 
-/// What the beginning of a slow response cannot be told from: after a test that ends before it has settled, an
+/// What the beginning of a slow response cannot be distinguished from: after a test that ends before it has settled, an
 /// integrator's.
 void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& warnings) {
     constexpr double kStrong = 10, kPoint = 1;
@@ -229,7 +230,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
             " change(s) of u happened while rows are missing: each is placed where it explains y best.");
     }
     if (record.moved_between_rows) {
-        model.data_quality.notes.push_back(
+        model.data_quality.notes.emplace_back(
             "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "
             "spaced, and y follows earlier than the rows of u say.");
     }
@@ -291,9 +292,9 @@ void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& sh
 }
 
 void add_excited_band(const CleanRecord& record, IdentifiedModel& model) {
-    // No sensor is taken to resolve less than a thousandth of what y did.
+    constexpr double kResolution = 1e-3;  // of y's range: no sensor is taken to resolve less
     const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
-    const double noise = std::max({model.data_quality.noise_std, rounding, 1e-3 * record.scale.y_scale});
+    const double noise = std::max({model.data_quality.noise_std, rounding, kResolution * record.scale.y_scale});
     model.excited_band = excited_band(
         {model.fit.t, model.fit.u, record.scale.u_rest, model.data_quality.sample_time, noise}, model.plant);
 }

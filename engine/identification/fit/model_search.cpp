@@ -5,7 +5,7 @@
 #include <numeric>
 #include <string>
 
-#include "engine/identification/fit/gap_moves.h"
+#include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
 
 namespace tunewright {
@@ -176,7 +176,8 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     search = std::move(other);
 }
 
-/// A late load can be told from the response only where u moves again; a drift also by what y does before u moves.
+/// A late load can be distinguished from the response only where u moves again; a drift also by what y does before u
+/// moves.
 bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
 
 bool shows_drift(const CleanRecord& r) {

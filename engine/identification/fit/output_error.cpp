@@ -337,13 +337,16 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& star
               const std::stop_token& stop) {
     constexpr double kSmallestStep = 1e-9;    // digits beyond those that any noise leaves
     constexpr double kLargestDamping = 1e10;  // steps are then rounding
+    constexpr double kFirstDamping = 1e-3,
+                     kLeastDamping = 1e-9;     // of the diagonal; below it steps are Gauss and Newton's
+    constexpr double kEase = 8, kTighten = 6;  // unequal: no cycle between two dampings
     OutputError problem(data, form);
     const std::vector<int> places = form.searched();
     const ShapeBounds bounds = shape_bounds(*data.record, form.structure);
     ModelShape shape = clamped(start, bounds);
     Projection here, there;
     problem.project(shape, here);
-    double lambda = 1e-3;
+    double lambda = kFirstDamping;
     int iteration = 0;
     for (; iteration < effort.most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
          ++iteration) {
@@ -364,9 +367,9 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& star
                 converged |= here.sse - there.sse < effort.tolerance * here.sse;
                 shape = next;
                 std::swap(here, there);
-                lambda = std::max(1e-9, lambda / 8);
+                lambda = std::max(kLeastDamping, lambda / kEase);
             } else {
-                lambda *= 6;
+                lambda *= kTighten;
             }
         }
         if (converged) break;

@@ -64,7 +64,7 @@ struct Fit {
     bool determined = false;  ///< the gain's column is independent of the others
     int iterations = 0;
     /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
-    /// estimator than least squares knows it. Empty: J tells it.
+    /// estimator than least squares knows it. Empty: J determines it.
     std::vector<std::vector<double>> deviations;
 };
 

@@ -9,6 +9,12 @@ namespace {
 
 constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, few enough to be slow
 
+constexpr double kTiny = 1e-150;         ///< keeps the logarithm of what may be 0 finite
+constexpr std::size_t kLongest = 20;     ///< times the series: so far an answer near the unit circle is followed
+constexpr std::size_t kLeastAnswer = 8;  ///< steps of an impulse response before it may count as faded
+constexpr double kFaded = 1e-6;          ///< of the impulse: two values in a row below it end the answer
+constexpr double kNoMore = 1e-12;        ///< of the sum so far: rows that add less are left out
+
 /// Burg's estimates of the orders 0 to `highest`, or fewer where the series is short.
 std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
     const std::size_t n = e.size();
@@ -44,7 +50,7 @@ Autoregression autoregression(std::span<const double> e, std::size_t highest) {
     const auto n = static_cast<double>(e.size());
     const std::vector<Autoregression> orders = burg(e, highest);
     const auto criterion = [&](const Autoregression& model) {
-        return 2 * n * std::log(std::max(model.innovation, 1e-150)) + 2 * static_cast<double>(model.a.size());
+        return 2 * n * std::log(std::max(model.innovation, kTiny)) + 2 * static_cast<double>(model.a.size());
     };
     return *std::ranges::min_element(orders, {}, criterion);
 }
@@ -84,12 +90,12 @@ Autoregression::Gains Autoregression::gains(std::size_t n) const {
     Gains result;
     if (a.empty()) return result;
     std::vector<double> h = {1};
-    for (std::size_t k = 1; k < 20 * n; ++k) {
+    for (std::size_t k = 1; k < kLongest * n; ++k) {
         double value = 0;
         for (std::size_t i = 0; i < a.size() && i < k; ++i) value += a[i] * h[k - 1 - i];
         h.push_back(value);
         result.variance += value * value;
-        if (k > 8 && std::abs(value) < 1e-6 && std::abs(h[k - 1]) < 1e-6) break;
+        if (k > kLeastAnswer && std::abs(value) < kFaded && std::abs(h[k - 1]) < kFaded) break;
     }
     const double rest = 1 - std::accumulate(a.begin(), a.end(), 0.0);
     result.time = std::max(1.0, 1 / (rest * rest * result.variance));
@@ -112,9 +118,9 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     }
     Eigen::MatrixXd product = Z.transpose() * Z, next = Z.topRows(std::min(order, n));
     const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), next.rows());
-    const double enough = 1e-12 * product.diagonal().maxCoeff();
+    const double enough = kNoMore * product.diagonal().maxCoeff();
     Eigen::RowVectorXd row(X.cols());
-    for (Eigen::Index i = 0; i < 20 * n && next.row(0).squaredNorm() > enough; ++i) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kLongest) * n && next.row(0).squaredNorm() > enough; ++i) {
         row.noalias() = filter * next;
         for (Eigen::Index k = next.rows() - 1; k > 0; --k) next.row(k) = next.row(k - 1).eval();
         next.row(0) = row;

@@ -45,7 +45,9 @@ private:
 };
 
 /// The factor by which 1.96 standard errors of so many degrees of freedom must be widened to hold 95 %: Student's t
-/// over the normal quantile (Abramowitz and Stegun 1964, 26.7.5).
+/// over the normal quantile, by the first two terms of its expansion (Abramowitz and Stegun 1964, 26.7.5), at 2 degrees
+/// for fewer. The expansion is below the exact quantile by 10 % at 2 degrees of freedom, 0.9 % at 5 and 0.1 % at 10;
+/// the shares of intervals that hold the true plant (coverage_test.cpp, tests/records) were measured with it.
 double student_factor(double freedom);
 
 }  // namespace tunewright

@@ -297,8 +297,9 @@ std::complex<double> unit_transfer(const ModelShape& shape, std::complex<double>
 
 void unit_response(std::span<const double> t, const InputSteps& input, const ModelShape& shape, int derivatives,
                    UnitResponse& response) {
-    std::vector<double>* columns[] = {&response.x, &response.x1, &response.x2};
-    for (int k = 0; k <= derivatives; ++k) columns[k]->resize(t.size());
+    response.x.resize(t.size());
+    if (derivatives > 0) response.x1.resize(t.size());
+    if (derivatives > 1) response.x2.resize(t.size());
     if (derivatives == 0) return run<0>(t, input, shape, response);
     if (derivatives == 1) return run<1>(t, input, shape, response);
     return run<2>(t, input, shape, response);

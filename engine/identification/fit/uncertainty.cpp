@@ -246,12 +246,13 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     const Eigen::MatrixXd covariance =
         open_covariance(p, left, whole, times, load == LoadDoubt::counted && !on_plateaus);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
-    // Rounding that is the same over a plateau is no noise of which few samples are known.
+    // Rounding that is the same over a plateau is not noise that is estimated from few samples, so it is not widened.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
+    all.reserve(static_cast<std::size_t>(m));
     for (int k = 0; k < m; ++k)
         all.emplace_back(widened * std::sqrt(std::max(axes.eigenvalues()[k], 0.0)) * axes.eigenvectors().col(k));
-    // Nor is it a drift, though it looks like one.
+    // Such rounding is not a drift either, although it looks like one.
     if (on_plateaus) {
         for (const auto& [first, last] : plateaus(fit, grid))
             all.emplace_back(common * (p.inverse * p.J.middleRows(first, last - first).colwise().sum().transpose()));

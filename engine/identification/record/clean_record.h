@@ -50,11 +50,11 @@ struct CleanRecord {
     RecordKind kind = RecordKind::automatic;  ///< as given
     RecordScale scale;
     Cleaning cleaning;
-    int dropped = 0;  ///< rows of which no y is used
+    int dropped = 0;  ///< rows whose y is not used
     int u_only = 0;   ///< of them, rows whose u counts
     bool moved_between_rows =
         false;             ///< each change of u was put midway between the row that shows it and the one before
-    int moves_placed = 0;  ///< changes of u that were put at rows that are missing (gap_moves.h)
+    int moves_placed = 0;  ///< changes of u that were put at rows that are missing (fit/record_repair.h)
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

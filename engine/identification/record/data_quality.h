@@ -1,6 +1,7 @@
 // What can be said about a record before any model is fitted.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/identification/identify.h"
@@ -22,5 +23,20 @@ DataQuality describe_record(const CleanRecord& record);
 ///
 /// `quality` is the record's own, by describe_record().
 std::vector<Warning> record_warnings(const CleanRecord& record, const DataQuality& quality);
+
+/// Runs of at least five samples (and 1 % of all, over the record) in which y stands exactly at its greatest or least
+/// value though it came there at speed (a sixth of its fastest, for some samples) or is noisy elsewhere. A response
+/// that settles comes to rest slowly, or at once where the process is fast, and is no saturation. `noise` and `grid`
+/// are y's standard deviation from sample to sample and the step that it is rounded to, both dimensionless. The levels
+/// are in the record's units.
+std::vector<Saturation> flat_tops(const CleanRecord& record, double noise, double grid);
+
+/// Low and high end of u, in the record's units.
+using InputLimits = std::array<double, 2>;
+
+/// The usual ends (0 to 1, -1 to 1, 0 to 100, -100 to 100, 0 to 255, -255 to 255, 0 to 1023, 0 to 4095) that a record's
+/// u runs beyond by a twentieth of their span and more, in 2 % of the rows and more, while a tenth of the rows lies
+/// inside. What reaches the plant is then what lies inside.
+std::vector<InputLimits> plain_limits(const Record& record);
 
 }  // namespace tunewright

@@ -6,6 +6,7 @@
 #include "engine/numerics/sign_change.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
+#include "engine/simulation/linear/response_system.h"
 #include "engine/simulation/nonlinear/plant_run.h"
 #include "engine/simulation/relay/relay_cycle.h"
 #include "engine/simulation/relay/relay_refusal.h"
@@ -19,16 +20,13 @@ constexpr int kMinCycles = 6, kMaxCycles = 40, kSteadyCycles = 2;
 constexpr double kSteady = 1e-6;        // relative change of period and swing from one cycle to the next
 constexpr double kNearlySteady = 1e-2;  // after the most cycles
 constexpr int kRows = 1600;
+constexpr int kLooks = 16;                   // for the extremes of y within a step
 constexpr double kBeyondHysteresis = 1.001;  // of the hysteresis: swings that say something about the plant
 constexpr double kPatience = 100;            // of the plant's own time without a switch
+constexpr double kSameRow = 1e-9;            // of the rows' spacing: nearer instants are one row
 constexpr double kNoise = 1e-13;  // of the output's own size: crossings of the threshold below it are rounding
 
 Error unsupported(std::string message) { return {ErrorKind::unsupported, "plant", std::move(message)}; }
-
-double own_time(const LinearPlant& plant) {
-    const double time = plant.time_scale();
-    return time > 0 ? time : 1;
-}
 
 /// One test: the plant's run and the relay that looks at it.
 class RelayTest {
@@ -111,8 +109,8 @@ private:
     }
 
     void note_extremes(double from, double to) {
-        for (int i = 0; i <= 16; ++i) {
-            const double y = run_.last().at(from + (to - from) * i / 16);
+        for (int i = 0; i <= kLooks; ++i) {
+            const double y = run_.last().at(from + (to - from) * i / kLooks);
             top_ = std::max(top_, y);
             bottom_ = std::min(bottom_, y);
         }
@@ -167,10 +165,10 @@ private:
         for (int i = 0; i <= kRows; ++i) {
             const double t = i == kRows ? end : i * spacing;
             while (next < inputs_.size() && inputs_[next].t < t) {
-                if (inputs_[next].t > out.t.back() + 1e-9 * spacing) add(inputs_[next].t);
+                if (inputs_[next].t > out.t.back() + kSameRow * spacing) add(inputs_[next].t);
                 ++next;
             }
-            if (out.t.empty() || t > out.t.back() + 1e-9 * spacing) add(t);
+            if (out.t.empty() || t > out.t.back() + kSameRow * spacing) add(t);
         }
     }
 

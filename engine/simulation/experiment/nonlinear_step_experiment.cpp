@@ -50,7 +50,7 @@ double cut_to_limits(const NonlinearSystem& system, double du) {
     return std::clamp(du, system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal());
 }
 
-/// y as it came, until it has settled or for as long as the modes ask.
+/// y, recorded until it has settled or for as long as the modes ask.
 class Record {
 public:
     void add(const StepPolynomial& y) {

@@ -1,5 +1,6 @@
 #include "engine/simulation/imc/imc_response.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,13 +13,15 @@ namespace tunewright {
 namespace {
 
 using Index = std::size_t;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
 constexpr double kUsualTolerance = 1e-6;  // at which these hold
 constexpr double kStepsPerResonance = 4;  // per 1/|p| of a complex pole
+constexpr double kSameInstant = 1e-9;     // of a step: nearer instants, and parts of steps, are rounding
 constexpr int kCorrections = 6;           // of a step that is longer than a dead time and sees its own end
 
-/// What the loop would show without its dead times, kept to be looked at later.
+/// The outputs without their dead times, kept until the dead times have passed.
 struct Memory {
     double t = 0;
     Signal y, y_model;  ///< slopes just after t
@@ -43,6 +46,8 @@ struct ImcSystem {
     std::vector<double> output;       // of y without dead time
     std::vector<double> output_rate;  // of its slope, from x; and from e, and constant
     double output_rate_e = 0, output_rate_1 = 0;
+    std::vector<double> slope;  // of u's slope, likewise; N e' comes on top
+    double slope_e = 0, slope_1 = 0;
 };
 
 ImcSystem make_system(const LinearPlant& plant, const ImcController& c, double load) {
@@ -56,7 +61,12 @@ ImcSystem make_system(const LinearPlant& plant, const ImcController& c, double l
     s.b.assign(Index(s.n), 0);
     s.M.assign(Index(s.n), 0);
     s.output.assign(Index(s.n), 0);
-    const auto F = [&](int row, int column) -> double& { return s.F[Index(row * s.n + column)]; };
+    const int n = P.n;
+    Eigen::Map<Matrix> F(s.F.data(), s.n, s.n);
+    Eigen::Map<Eigen::VectorXd> G(s.G.data(), s.n);
+    Eigen::Map<Eigen::RowVectorXd> M(s.M.data(), s.n);
+    const Eigen::Map<const Eigen::VectorXd> B(P.B.data(), n);
+    const Eigen::Map<const Eigen::RowVectorXd> C(P.C.data(), n);
     // Q as two leads over lags: (beta s + 1)/(lambda s + 1), then (tau s + 1)/(lambda s + 1), then 1/kp.
     const double lambda = c.lambda, first = c.beta / lambda, second = c.tau / lambda;
     s.N = second * first / c.kp;
@@ -68,29 +78,25 @@ ImcSystem make_system(const LinearPlant& plant, const ImcController& c, double l
     F(z2, z2) = -1 / lambda;
     s.G[Index(z2)] = first / lambda;
     F(model, model) = -1 / c.tau;
-    for (int i = 0; i < P.n; ++i) {
-        for (int j = 0; j < P.n; ++j) F(i, j) = P.A[Index(i * P.n + j)];
-        s.output[Index(i)] = P.C[Index(i)];
-        F(integral, i) = P.C[Index(i)];
-        s.b[Index(i)] = P.B[Index(i)] * load;
-    }
+    F.topLeftCorner(n, n) = Eigen::Map<const Matrix>(P.A.data(), n, n);
+    F.row(integral).head(n) = C;
+    std::copy(P.C.begin(), P.C.end(), s.output.begin());
+    Eigen::Map<Eigen::VectorXd>(s.b.data(), n) = load * B;
     // u drives plant and model.
-    for (int i = 0; i <= P.n; ++i) {
-        const double gain = i < P.n ? P.B[Index(i)] : c.kp / c.tau;
-        for (int j = 0; j < s.n; ++j) F(i, j) += gain * s.M[Index(j)];
-        s.G[Index(i)] += gain * s.N;
-    }
+    F.topRows(n) += B * M;
+    F.row(model) += c.kp / c.tau * M;
+    G.head(n) += s.N * B;
+    G[model] += s.N * c.kp / c.tau;
     if (plant.dead_time() == 0) {
-        for (int i = 0; i < s.n; ++i)
-            for (int j = 0; j < P.n; ++j) F(i, j) -= s.G[Index(i)] * s.output[Index(j)];
-        for (int j = 0; j < P.n; ++j) s.M[Index(j)] -= s.N * s.output[Index(j)];
+        F.leftCols(n) -= G * C;
+        M.head(n) -= s.N * C;
     }
-    s.output_rate.assign(Index(s.n), 0);
-    for (int i = 0; i < P.n; ++i) {
-        for (int j = 0; j < s.n; ++j) s.output_rate[Index(j)] += s.output[Index(i)] * F(i, j);
-        s.output_rate_e += s.output[Index(i)] * s.G[Index(i)];
-        s.output_rate_1 += s.output[Index(i)] * s.b[Index(i)];
-    }
+    s.output_rate = row_times(s.output, s.F);
+    s.output_rate_e = dot(s.output, s.G);
+    s.output_rate_1 = dot(s.output, s.b);
+    s.slope = row_times(s.M, s.F);
+    s.slope_e = dot(s.M, s.G);
+    s.slope_1 = dot(s.M, s.b);
     return s;
 }
 
@@ -125,7 +131,7 @@ public:
             std::erase_if(events_, [end](double t) { return t >= end; });
             events_.push_back(end);
         }
-        slack_ = 1e-9 * step_;
+        slack_ = kSameInstant * step_;
     }
 
     StepResponse run() {
@@ -135,7 +141,7 @@ public:
         for (Index i = 1; i < events_.size(); ++i) {
             const double from = memory_.back().t, length = events_[i] - from;
             if (length <= slack_) continue;
-            const int parts = static_cast<int>(std::ceil(length / step_ - 1e-9));
+            const int parts = static_cast<int>(std::ceil(length / step_ - kSameInstant));
             for (int k = 1; k <= parts; ++k) {
                 const double t = k == parts ? events_[i] : from + length * k / parts;
                 take_step(x, length / parts, t);
@@ -145,7 +151,7 @@ public:
         }
         while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
             const double now = memory_.back().t, left = options_.horizon.value_or(now + 2 * long_step_) - now;
-            const bool last = left <= long_step_ * (1 + 1e-9);
+            const bool last = left <= long_step_ * (1 + kSameInstant);
             take_step(x, last ? left : long_step_, last ? *options_.horizon : now + long_step_);
             if (finished()) return std::move(response_);
         }
@@ -225,12 +231,7 @@ private:
         ResponseNode node;
         node.t = t;
         node.u = dot(system_.M, x) + system_.N * e.value;
-        for (int i = 0; i < system_.n; ++i) {
-            double rate = system_.G[Index(i)] * e.value + system_.b[Index(i)];
-            for (int j = 0; j < system_.n; ++j) rate += system_.F[Index(i * system_.n + j)] * x[Index(j)];
-            node.u_slope += system_.M[Index(i)] * rate;
-        }
-        node.u_slope += system_.N * e.slope;
+        node.u_slope = dot(system_.slope, x) + system_.slope_e * e.value + system_.slope_1 + system_.N * e.slope;
         const Memory delayed = past(t - L_, response_.nodes.empty() || response_.nodes.back().t == t);
         node.y = delayed.y.value;
         node.y_slope = delayed.y.slope;

@@ -14,6 +14,14 @@ namespace tunewright {
 /// Between the instants at which dead times bring kinks, steps are exact for a cubic through values and slopes of what
 /// comes delayed (order 4); their lengths go with the fourth root of the tolerance. The plant is stable and strictly
 /// proper, the loop stable, the model's dead time > 0.
+///
+/// t is in the plant's time; y and r are in units of y, u and the load d in units of u, all as deviations.
+/// - `y_final` is r, because the controller integrates; `u_final` is r/P(0) - d.
+/// - `error_integral_final` is u_final kp d0 with C = 1/(kp d0 s) + ... at low frequency.
+/// - `settles` is false where neither the horizon nor rest is reached before there are `max_steps` nodes.
+/// - `options.repeat` and `options.tail` are not used, and `schedule` stays empty.
+///
+/// Source of the controller: Liu and Gao (2008), Eqs. 19-23 (imc_controller.h).
 StepResponse simulate_imc(const LinearPlant& plant, const ImcController& controller, const StepInputs& inputs,
                           const ResponseOptions& options);
 

@@ -1,16 +1,23 @@
 #include "engine/simulation/limited/limited_loop.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/numerics/linear_algebra.h"
+#include "engine/simulation/linear/response_system.h"
 
 namespace tunewright {
 namespace {
 
 using Index = std::size_t;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
+constexpr double kOnTheLimit = 1e-12;   // relative distance at which the slope decides
+constexpr double kRestOnLimit = 1e-9;   // of u at rest: the linear solution's rounding; nearer to a limit it is at it
+constexpr double kLeastScale = 1e-200;  // of y: keeps what is divided by the scale finite in a loop that never moves
+constexpr double kOwnTime = 0.1;        // of a time without an integral time of its own: the tracking time
 
 }  // namespace
 
@@ -24,7 +31,7 @@ std::optional<double> tracking_time(const ParallelPid& controller) {
 double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
     if (const auto time = tracking_time(controller)) return *time;
     const double time = plant.time_scale();
-    return 0.1 * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
+    return kOwnTime * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
 }
 
 LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
@@ -37,33 +44,32 @@ LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller
 }
 
 LimitedLoop::Equations LimitedLoop::equations(Region region) const {
-    const DelaySystem& s = system_;
-    const Index n = Index(s.n), wide = n + 1;
-    Equations e{std::vector<double>(wide * wide, 0.0), s.G, std::vector<double>(wide, 0.0)};
-    e.G.push_back(s.Z);
-    for (Index i = 0; i < n; ++i) {
-        for (Index j = 0; j < n; ++j) e.F[i * wide + j] = s.F[i * n + j];
-        e.F[n * wide + i] = s.Y[i];
-        e.b[i] = s.H[i] * in_.r;
-    }
-    e.b[n] = -in_.r;
     const double u = limit(region);
     if (region != Region::inside && !std::isfinite(u)) return {};
+    const DelaySystem& s = system_;
+    const Eigen::Index n = s.n, wide = n + 1;
+    Equations e{std::vector<double>(Index(wide * wide), 0.0), s.G, std::vector<double>(Index(wide), 0.0)};
+    e.G.push_back(s.Z);
+    Eigen::Map<Matrix> F(e.F.data(), wide, wide);
+    Eigen::Map<Eigen::VectorXd> G(e.G.data(), wide), b(e.b.data(), wide);
+    const Eigen::Map<const Eigen::RowVectorXd> M(s.M.data(), n);
+    F.topLeftCorner(n, n) = Eigen::Map<const Matrix>(s.F.data(), n, n);
+    F.row(n).head(n) = Eigen::Map<const Eigen::RowVectorXd>(s.Y.data(), n);
+    b.head(n) = in_.r * Eigen::Map<const Eigen::VectorXd>(s.H.data(), n);
+    b[n] = -in_.r;
     if (region != Region::inside && s.integral_state >= 0) {
-        const Index row = Index(s.integral_state);
-        for (Index j = 0; j < n; ++j) e.F[row * wide + j] -= tracking_gain_ * s.M[j];
-        e.G[row] -= tracking_gain_ * s.N;
-        e.b[row] += tracking_gain_ * (u - s.R * in_.r);
+        const Eigen::Index row = s.integral_state;
+        F.row(row).head(n) -= tracking_gain_ * M;
+        G[row] -= tracking_gain_ * s.N;
+        b[row] += tracking_gain_ * (u - s.R * in_.r);
     }
     if (delayed()) return e;
     // v = u + d at once: constant at a limit, (M x + R r + d)/(1 - N) within them.
     const double g = region == Region::inside ? 1 / (1 - s.N) : 0;
     const double v0 = region == Region::inside ? g * (s.R * in_.r + in_.d) : u + in_.d;
-    for (Index i = 0; i < wide; ++i) {
-        for (Index j = 0; j < n; ++j) e.F[i * wide + j] += e.G[i] * g * s.M[j];
-        e.b[i] += e.G[i] * v0;
-        e.G[i] = 0;
-    }
+    F.leftCols(n) += (g * G) * M;
+    b += v0 * G;
+    G.setZero();
     return e;
 }
 
@@ -73,12 +79,9 @@ double LimitedLoop::command(const std::vector<double>& x, double v) const {
 
 std::vector<double> LimitedLoop::rates(Region region, const std::vector<double>& x, double v) const {
     const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
-    const Index n = Index(system_.n), wide = n + 1;
-    std::vector<double> rate(n);
-    for (Index i = 0; i < n; ++i) {
-        rate[i] = e.b[i] + e.G[i] * v;
-        for (Index j = 0; j < n; ++j) rate[i] += e.F[i * wide + j] * x[j];
-    }
+    std::vector<double> rate(Index(system_.n));
+    multiply(e.F, x, rate);
+    for (Index i = 0; i < rate.size(); ++i) rate[i] += e.b[i] + e.G[i] * v;
     return rate;
 }
 
@@ -119,6 +122,33 @@ Region LimitedLoop::region_after(Region before, bool at_max) const {
 ExactStep LimitedLoop::step(Region region, double h) const {
     const Equations& e = region == Region::inside ? inside_ : region == Region::above ? above_ : below_;
     return Propagator(states(), e.F, e.G, e.b, h).level(0);
+}
+
+LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+                      const ActuatorLimits& limits) {
+    LimitedRest rest;
+    rest.linear = steady_state(plant, controller, in);
+    if (!rest.linear.exists) return rest;
+    const double u = rest.linear.u, slack = kRestOnLimit * std::abs(u);
+    if (u <= limits.max + slack && u >= limits.min - slack) {
+        rest.exists = rest.within = true;
+        rest.y = rest.linear.y;
+        rest.u = std::clamp(u, limits.min, limits.max);
+        return rest;
+    }
+    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return rest;
+    rest.exists = true;
+    rest.u = u > limits.max ? limits.max : limits.min;
+    rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
+    return rest;
+}
+
+double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest) {
+    double u = std::abs(in.d);
+    for (const double limit : {limits.min, limits.max})
+        if (std::isfinite(limit)) u += std::abs(limit);
+    const double gain = std::abs(plant.rational({0, 1 / own_time(plant)}));
+    return std::max({std::abs(in.r), std::abs(y_rest), gain * u, kLeastScale});
 }
 
 }  // namespace tunewright

@@ -1,11 +1,14 @@
-// A loop with actuator limits as three linear systems: below, within and above the limits.
+// A loop with actuator limits as three linear systems (below, within and above the limits), and where it comes to rest.
 #pragma once
 
 #include <vector>
 
+#include "engine/controller/pid.h"
 #include "engine/loop/delay_system.h"
 #include "engine/numerics/propagator.h"
+#include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/limited/limited_response.h"
+#include "engine/simulation/linear/response_end.h"
 
 namespace tunewright {
 
@@ -54,5 +57,19 @@ private:
     double tracking_gain_ = 0;  // 1/(Ki Tt)
     Equations below_, inside_, above_;
 };
+
+/// Where the loop comes to rest within its limits, or at one of them. It has no rest where a limit holds an integrating
+/// or unstable plant.
+struct LimitedRest {
+    bool exists = false, within = false;  ///< within: by the control law, not at a limit
+    double y = 0, u = 0;
+    SteadyState linear;
+};
+
+LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+                      const ActuatorLimits& limits);
+
+/// The size that y has when the actuator does all it can over the plant's own time, > 0.
+double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest);
 
 }  // namespace tunewright

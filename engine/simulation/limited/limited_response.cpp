@@ -6,14 +6,10 @@
 #include <limits>
 #include <map>
 
-#include "engine/numerics/linear_algebra.h"
 #include "engine/simulation/limited/limited_loop.h"
-#include "engine/simulation/limited/limited_rest.h"
-#include "engine/simulation/linear/error_tail.h"
 #include "engine/simulation/linear/long_step.h"
-#include "engine/simulation/linear/steady_state.h"
-#include "engine/simulation/run/echoes.h"
-#include "engine/simulation/run/input_history.h"
+#include "engine/simulation/linear/response_end.h"
+#include "engine/simulation/run/delayed_input.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
@@ -26,6 +22,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRetardedEchoes = 4;       // a jump's echoes: smoothed by the plant at each passage
 constexpr double kTimeResolution = 128;  // in units of rounding of t: shorter steps are not taken
 constexpr double kRounding = 1e-5;       // times `settled`, of the value at rest: deviations below are none
+constexpr double kAtStart = 1e-3;        // of the first step: the t that rounding is measured by near t = 0
+constexpr double kSameLength = 1e-9;     // relative: a stride no longer than the dead time but for rounding
+constexpr double kToStop = 0.75;         // of the distance to the next stop: the step goes there instead
+constexpr int kMaxLevel = 200;           // lengths stay finite
+constexpr double kNoise = 1e-11;         // of the largest command: how far beyond a limit it must go to have crossed it
+constexpr int kCorrections = 3;          // by exact steps of a crossing found on the cubic: each squares its error
+constexpr double kNearCrossing = 0.1;    // of the stride: a longer correction shows a command without a clear slope
+constexpr double kAtCrossing = 1e-14;    // of the largest command: rounding
 constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
 constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled length would still be fine
 
@@ -85,15 +89,7 @@ public:
 
 private:
     void choose_h0(const LinearPlant& plant, const ParallelPid& controller) {
-        double fastest = 0;
-        for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
-        if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
-        if (!loop_.delayed()) {
-            const DelaySystem closed = close_without_delay(loop_.system());
-            for (const auto pole : eigenvalues(closed.F, closed.n)) fastest = std::max(fastest, std::abs(pole));
-        }
-        h0_ = fastest > 0 ? 0.25 / fastest : kInfinity;
-        if (loop_.delayed()) h0_ = std::min(h0_, loop_.dead_time() / 8);
+        h0_ = first_step(system_, fastest_rate(system_, plant, controller));
         if (!std::isfinite(h0_)) h0_ = 1;
     }
 
@@ -172,7 +168,7 @@ private:
         Stride stride;
         stride.h = h;
         const double L = loop_.dead_time();
-        stride.longer_than_L = loop_.delayed() && h > L * (1 + 1e-9);
+        stride.longer_than_L = loop_.delayed() && h > L * (1 + kSameLength);
         stride.whole = loop_.step(region_, stride.longer_than_L ? L : h);
         if (!stride.longer_than_L) return stride;
         if (region_ == Region::inside)
@@ -242,11 +238,11 @@ private:
     /// False where no finite step is possible.
     bool take_step() {
         const double distance = distance_to_next_stop();
-        const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, 1e-3 * h0_);
+        const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, kAtStart * h0_);
         Stride cut;
         while (true) {
             const double wanted = std::ldexp(h0_, level_);
-            const bool to_stop = wanted >= 0.75 * distance;
+            const bool to_stop = wanted >= kToStop * distance;
             if (to_stop) cut = make_stride(0.5 * distance);
             const Stride& stride = to_stop ? cut : stride_of_level(level_ - 1);
             const Index kept = response_.nodes.size();
@@ -265,7 +261,7 @@ private:
             note(middle_);
             if (crosses(middle_, end_)) return cross(LoopInstant(middle_), end_, stride.h);
             const bool at_stop = to_stop;
-            if (!to_stop && error < kDoubling * options_.tolerance && level_ < 200) ++level_;
+            if (!to_stop && error < kDoubling * options_.tolerance && level_ < kMaxLevel) ++level_;
             std::swap(now_, end_);
             note(now_);
             if (at_stop) pass_echo();
@@ -283,7 +279,7 @@ private:
     std::optional<Crossing> crosses(const LoopInstant& a, const LoopInstant& b) const {
         const double h = b.t - a.t;
         const auto c = hermite_taylor(h, a.out.command, b.out.command);
-        const double noise = 1e-11 * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
+        const double noise = kNoise * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
         const auto rise = [&](double limit, double sign) -> std::optional<double> {
             if (!std::isfinite(limit)) return std::nullopt;
             return first_rise({sign * (c[0] - limit), sign * c[1], sign * c[2], sign * c[3]}, h, noise);
@@ -300,13 +296,14 @@ private:
     bool cross(const LoopInstant& from, const LoopInstant& to, double h) {
         const Crossing crossing = *crosses(from, to);
         const double limit = crossing.at_max ? limits_.max : limits_.min;
-        const double shortest = std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, 1e-3 * h0_));
+        const double shortest = std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, kAtStart * h0_));
         double s = std::clamp(crossing.s, shortest, h);
         LoopInstant at;
         for (int i = 0;; ++i) {
             advance(from, make_stride(s), at);
             const double gap = limit - at.out.command.value, correction = gap / at.out.command.slope;
-            if (i == 3 || !(std::abs(correction) < 0.1 * h) || std::abs(gap) <= 1e-14 * largest_command_) break;
+            if (i == kCorrections || !(std::abs(correction) < kNearCrossing * h)) break;
+            if (std::abs(gap) <= kAtCrossing * largest_command_) break;
             const double next = std::clamp(s + correction, shortest, h);
             if (next == s) break;
             s = next;

@@ -6,14 +6,11 @@
 #include <limits>
 
 #include "engine/controller/pid.h"
-#include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/propagator.h"
-#include "engine/simulation/linear/error_tail.h"
 #include "engine/simulation/linear/long_step.h"
-#include "engine/simulation/linear/steady_state.h"
+#include "engine/simulation/linear/response_end.h"
 #include "engine/simulation/linear/step_levels.h"
-#include "engine/simulation/run/echoes.h"
-#include "engine/simulation/run/input_history.h"
+#include "engine/simulation/run/delayed_input.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
@@ -21,12 +18,14 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kRetardedEchoes = 4;     // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
-constexpr int kRepetitions = 20;       // of a step that sees its own end through the scaled integral
-constexpr double kConverged = 1e-10;   // of the response's size
-constexpr double kSameInstant = 1e-9;  // of the shortest step: nearer instants are one
-constexpr double kFloor = 2e-3;        // of the largest deviation: errors are relative to at least that
-constexpr double kRough = 40;          // tolerances: 16 are what doubling a step costs at order 4, and a margin
+constexpr int kRetardedEchoes = 4;                     // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
+constexpr int kRepetitions = 20;                       // of a step that sees its own end through the scaled integral
+constexpr double kConverged = 1e-10;                   // of the response's size
+constexpr double kSameInstant = 1e-9;                  // of the shortest step: nearer instants are one
+constexpr double kFloor = 2e-3;                        // of the largest deviation: errors are relative to at least that
+constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
+constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
+constexpr double kRough = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
 
 /// Chooses step lengths, keeps the nodes, knows when to stop.
 class LinearRun {
@@ -87,7 +86,7 @@ private:
     }
 
     void add_scaling(const LinearPlant& plant) {
-        const Index i = Index(system_.s.integral_state);
+        const auto i = Index(system_.s.integral_state);
         into_u_ = system_.s.M[i];
         into_y_ = system_.s.Y[i];
         const double time = plant.dead_time() + propagator_.h0();
@@ -111,7 +110,7 @@ private:
     static double longest_step(const LinearPlant& plant) {
         double longest = std::numeric_limits<double>::infinity();
         for (const auto pole : plant.poles())
-            if (pole.real() > 0) longest = std::min(longest, 0.25 / pole.real());
+            if (pole.real() > 0) longest = std::min(longest, kOfGrowth / pole.real());
         return longest;
     }
 
@@ -121,18 +120,15 @@ private:
                 system_.delayed ? static_cast<int>(std::lround(std::log2(system_.s.L / options_.repeat->h0))) : 0;
             return options_.repeat->h0;
         }
-        double fastest = 0;
-        for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
-        if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
+        double fastest = fastest_rate(system_, plant, controller);
         if (!system_.delayed) {
-            // The closed loop's own speed: bounded by the norm of its matrix.
+            // The rates of the single states count beside the loop's own.
             for (int i = 0; i < system_.s.n; ++i)
                 fastest = std::max(fastest, std::abs(system_.s.F[Index(i * system_.s.n + i)]));
-            for (const auto pole : eigenvalues(system_.s.F, system_.s.n)) fastest = std::max(fastest, std::abs(pole));
-            return 0.25 / std::max(fastest, std::numeric_limits<double>::min());
+            return first_step(system_, std::max(fastest, std::numeric_limits<double>::min()));
         }
-        const double wanted = fastest > 0 ? std::min(system_.s.L / 8, 0.25 / fastest) : system_.s.L / 8;
-        level_of_L_ = std::clamp(static_cast<int>(std::ceil(std::log2(system_.s.L / wanted))), 3, 30);
+        const double doublings = std::log2(system_.s.L / first_step(system_, fastest));
+        level_of_L_ = std::clamp(static_cast<int>(std::ceil(doublings)), kLeastLevelOfL, kMostLevelOfL);
         return std::ldexp(system_.s.L, -level_of_L_);
     }
 
@@ -305,7 +301,7 @@ private:
 
     /// Finds the end of a step whose y depends on the integral's own input by repetition: `try_end` goes to the end
     /// with the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is
-    /// taken as it comes.
+    /// accepted all the same.
     template <class TryEnd>
     bool settle(double h, bool shortest, ResponseNode& node, const TryEnd& try_end) {
         end_x_.resize(x_.size());

@@ -19,9 +19,13 @@ struct StepSample {
 /// Samples from t = 0+ until every decaying mode is below 1e-6 of itself, at most 20,000 of them. The spacing follows
 /// the modes that are still alive (a tenth of the shortest time constant or radian) and else grows with t: a plant with
 /// lags of 1 ms and 1 h needs some hundreds. Each sample is propagated by matrix exponentials: no discretisation error.
+///
+/// The first sample is the direct term, at t = 0+. It is the only one where no mode decays (static, purely integrating
+/// and purely unstable plants). y is the plant's output for an input of 1, in units of y per unit of u.
 std::vector<StepSample> step_response(const LinearPlant& plant);
 
-/// The same response `tau` >= 0 after `from`, exact for any `tau`.
+/// The same response `tau` >= 0 after `from`, exact for any `tau`. `realisation` is that of the plant that `from` is
+/// of. Cost: one matrix exponential of order n + 1.
 StepSample step_response_after(const Realisation& realisation, const StepSample& from, double tau);
 
 }  // namespace tunewright

@@ -13,8 +13,10 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 200000;
-constexpr double kSide = 1e-10;      // of the input's scale: how far beyond a limit the law is before that counts
-constexpr double kStrongest = 1e12;  // of the input's effect at the start
+constexpr double kSide = 1e-10;       // of the input's scale: how far beyond a limit the law is before that counts
+constexpr double kFirstLook = 1e-15;  // of the horizon: how far ahead a fault is looked for first
+constexpr int kLooks = 50;            // each twice as far: the last beyond half the horizon
+constexpr double kStrongest = 1e12;   // of the input's effect at the start
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
 class LinearisingLaw {
@@ -190,8 +192,8 @@ private:
         }
         if (outcome == OdeStep::stalled) return at + " the steps needed are too short to go on: u grows beyond bounds.";
         std::vector<double> ahead(x.size());
-        double h = 1e-15 * options_.horizon;
-        for (int doubling = 0; doubling < 50; ++doubling, h *= 2) {
+        double h = kFirstLook * options_.horizon;
+        for (int doubling = 0; doubling < kLooks; ++doubling, h *= 2) {
             for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = x[i] + h * dx[i];
             const std::string fault = system_.domain_fault(ahead, u);
             if (!fault.empty()) return (at + " the states leave the model's domain. ").append(fault);

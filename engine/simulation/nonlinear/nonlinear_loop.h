@@ -1,4 +1,5 @@
-// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input.
+// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input, and where
+// it comes to rest.
 #pragma once
 
 #include <optional>
@@ -22,8 +23,8 @@ double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& c
 /// The size of y to which a load d drives the linearisation over the plant's own time.
 double size_of_effect(const NonlinearSystem& system, double d);
 
-/// How often a jump of the plant's input counts that comes back after a dead time. With a pure derivative it comes back
-/// as a jump, smaller each time; else smoother each time.
+/// The number of passages through the loop for which a jump of the plant's input still counts. With a pure derivative
+/// it comes back after a dead time as a smaller jump, else as a smoother kink.
 int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance);
 
 /// States z: those of the plant (absolute), then those of the PidLaw. y, u, w = u + d are deviations.
@@ -44,7 +45,7 @@ public:
     const ActuatorLimits& limits() const { return limits_; }
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
-    /// `w_then`: the plant's input with a dead time; without, it is not looked at.
+    /// `w_then`: what the plant receives with a dead time, its input one dead time ago; not used without one.
     Output output(Region region, std::span<const double> z, double w_then) const;
     /// The region for these states: on a limit it is `inside`.
     Region region(std::span<const double> z, double w_then) const;
@@ -72,5 +73,18 @@ private:
     std::size_t n_;
     mutable std::vector<double> slope_, C_, A_, B_;  // scratch
 };
+
+/// A rest of the loop.
+struct NonlinearRest {
+    bool within = false;    ///< by the control law; false: at a limit
+    double y = 0, u = 0;    ///< deviations
+    std::vector<double> x;  ///< absolute
+};
+
+/// The rest nearest to these states, by Newton's method: under the control law if the limits admit it, else at the
+/// limit. Empty where none is found near. `sizes`: by how much the states, and last u, move in this loop; what is far
+/// below them is rounding.
+std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInputs& inputs, std::vector<double> x,
+                                       double u, const std::vector<double>& sizes);
 
 }  // namespace tunewright

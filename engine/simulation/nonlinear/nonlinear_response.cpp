@@ -8,10 +8,9 @@
 #include "engine/numerics/ode_integrator.h"
 #include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/response_recorder.h"
-#include "engine/simulation/nonlinear/fault_ahead.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
-#include "engine/simulation/nonlinear/nonlinear_rest.h"
-#include "engine/simulation/run/echoes.h"
+#include "engine/simulation/nonlinear/plant_run.h"
+#include "engine/simulation/run/delayed_input.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/number_text.h"
-#include "engine/simulation/nonlinear/fault_ahead.h"
 
 namespace tunewright {
 namespace {
@@ -86,6 +86,20 @@ double PlantRun::unrest() const {
     const auto dx = integrator_.dx();
     for (std::size_t i = 0; i < dx.size(); ++i) unrest = std::max(unrest, std::abs(dx[i]) / integrator_.size(int(i)));
     return unrest;
+}
+
+std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
+                        double t) {
+    constexpr double kFirst = std::numeric_limits<double>::epsilon(), kFar = 1e3, kGrowth = 4;
+    constexpr double kAtStart = 1e-9;  // the t that rounding is measured by near t = 0
+    std::vector<double> ahead(x.size());
+    double length = 0;
+    while (length < kFar) {
+        for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + length * dx[i];
+        if (std::string sentence = system.domain_fault(ahead, u); !sentence.empty()) return sentence;
+        length = std::max(kGrowth * length, kFirst * std::max(t, kAtStart));
+    }
+    return "Their rates of change do not exist there.";
 }
 
 }  // namespace tunewright

@@ -1,4 +1,5 @@
-// A nonlinear plant from its operating point under an input that is constant between switches: open-loop experiments.
+// A nonlinear plant from its operating point under an input that is constant between switches (open-loop experiments),
+// and the operation of its equations that fails where it leaves its domain.
 #pragma once
 
 #include <deque>
@@ -55,5 +56,10 @@ private:
     StepPolynomial y_;
     std::string why_;
 };
+
+/// The operation that fails first when x continues at the rates dx from time t, as a sentence for the user
+/// (NonlinearSystem::domain_fault). x and u are absolute. Cost: some tens of looks along that line.
+std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
+                        double t);
 
 }  // namespace tunewright

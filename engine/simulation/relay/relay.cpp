@@ -6,13 +6,20 @@
 
 #include "engine/number_text.h"
 #include "engine/simulation/relay/relay_cycle.h"
-#include "engine/simulation/relay/relay_plan.h"
 #include "engine/simulation/relay/relay_sampled.h"
 
 namespace tunewright {
 namespace {
 
 constexpr double kRowsPerPeriod = 200;
+constexpr double kSameRow = 1e-9;  // of the rows' spacing: nearer instants are one row
+constexpr double kWhole = 1e-6;  // relative: a ratio of times given as decimals that is a whole number but for rounding
+constexpr int kMaxEnlargements = 20;  // of the levels, until y swings far enough
+constexpr double kLeastRaise = 1.1;   // of the levels each time: the swing falls short by rounding at last
+constexpr double kBlindRaise = 2;     // where the relay does not oscillate with these levels
+constexpr double kNoiseBand = 3;      // hysteresis per noise_std
+constexpr double kSwing = 3;          // amplitude of y per hysteresis
+constexpr int kQuietCycles = 3, kNoisyCycles = 10;
 
 Error refuse(const char* field, const std::string& message) {
     return {ErrorKind::invalid_argument, std::string("relay/") + field, message};
@@ -88,9 +95,9 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
     while (const auto piece = run.next()) {
         if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return stopped();
         // A row next to a switch, nearer than rounding of t, is the switch's own.
-        const double last = piece->switched ? piece->t_end - 1e-9 * spacing : piece->t_end;
+        const double last = piece->switched ? piece->t_end - kSameRow * spacing : piece->t_end;
         for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
-            if (!record.t.empty() && t <= record.t.back() + 1e-9 * spacing) continue;
+            if (!record.t.empty() && t <= record.t.back() + kSameRow * spacing) continue;
             if (record.t.size() >= kMaxRelayRows) return full_record(settings, switches / 2);
             add_row(record, t, piece->u, steady.direction * piece->y.at(std::max(0.0, t - piece->t)));
         }
@@ -156,6 +163,85 @@ void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const
                                                             ", 3 noise_std."});
 }
 
+// ---- the plan ----
+
+double amplitude(const SteadyRelayCycle& cycle) { return (cycle.y_max - cycle.y_min) / 2; }
+
+// Scaling levels and hysteresis together scales y: the cycle for levels f u and hysteresis eps is f times that for u
+// and eps/f.
+std::optional<SteadyRelayCycle> enlarged(const LinearPlant& plant, const RelayLevels& levels, double& factor,
+                                         const RunControl& control) {
+    std::optional<SteadyRelayCycle> best;
+    for (int i = 0; i < kMaxEnlargements; ++i) {
+        const RelayLevels scaled{levels.u_plus, levels.u_minus, levels.hysteresis / factor};
+        auto cycle = steady_relay_cycle(plant, scaled, control);
+        if (cycle) {
+            const double short_of = kSwing * scaled.hysteresis / amplitude(*cycle);
+            best = *cycle;
+            if (short_of <= 1) break;
+            factor *= std::max(short_of, kLeastRaise);
+        } else if (cycle.error().kind == ErrorKind::cancelled) {
+            return std::nullopt;
+        } else {
+            factor *= kBlindRaise;
+        }
+    }
+    return best;
+}
+
+std::string sentence(const RelayPlan& plan, const RelaySettings& settings, int settling, double factor) {
+    std::string out;
+    if (settings.noise_std > 0) {
+        out = "hysteresis is 3 noise_std: a single noisy sample crosses it by chance once in 741. ";
+        out += factor > 1 ? "The levels are " + text(factor) + " times those given, so that y swings "
+                          : std::string("With the levels given y swings ");
+        out += text(plan.amplitude / plan.hysteresis) + " hystereses to either side. ";
+    } else {
+        out = "Levels and hysteresis as given; tell noise_std for a hysteresis against noise. ";
+    }
+    out += std::to_string(settling) + (settling == 1 ? " cycle" : " cycles") + " to settle and " +
+           std::to_string(plan.cycles - settling) +
+           (settings.noise_std > 0 ? " to average: the error falls with the root of their number." : " to measure.");
+    return out;
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is at most x > 0.
+double round_down(double x) {
+    const double power = std::pow(10.0, std::floor(std::log10(x)));
+    const double first = x / power;
+    return power * (first >= 5 ? 5 : first >= 2 ? 2 : 1);
+}
+
+/// `steady` is the cycle of the settings as given.
+RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady,
+                     const RunControl& control) {
+    const bool noisy = settings.noise_std > 0;
+    RelayLevels levels{settings.u_plus, settings.u_minus,
+                       noisy ? kNoiseBand * settings.noise_std : settings.hysteresis};
+    SteadyRelayCycle cycle = steady;
+    double factor = 1;
+    if (noisy) {
+        if (const auto better = enlarged(plant, levels, factor, control)) {
+            cycle = *better;
+        } else {
+            factor = 1;
+            levels.hysteresis = settings.hysteresis;
+        }
+    }
+    RelayPlan plan;
+    plan.u_plus = factor * levels.u_plus;
+    plan.u_minus = factor * levels.u_minus;
+    plan.hysteresis = levels.hysteresis;
+    plan.amplitude = factor * amplitude(cycle);
+    plan.expected_period = cycle.Pu();
+    plan.cycles = std::min(cycle.settling_cycles + (noisy ? kNoisyCycles : kQuietCycles), kMaxRelayCycles);
+    plan.duration = plant.dead_time() + plan.cycles * cycle.Pu();
+    const double spacing = cycle.Pu() / kRowsPerPeriod, Ts = settings.relay_sample_time;
+    plan.record_interval = Ts > 0 ? Ts * std::max(1.0, std::floor(spacing / Ts)) : round_down(spacing);
+    plan.reason = sentence(plan, settings, plan.cycles - (noisy ? kNoisyCycles : kQuietCycles), factor);
+    return plan;
+}
+
 }  // namespace
 
 std::optional<Error> refuse_settings(const RelaySettings& settings) {
@@ -177,7 +263,7 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
     if (!s.record_interval) return std::nullopt;
     if (!(*s.record_interval > 0)) return refuse("record_interval", "record_interval must be > 0.");
     const double ratio = s.relay_sample_time > 0 ? *s.record_interval / s.relay_sample_time : 1;
-    if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
+    if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > kWhole * ratio)
         return refuse("record_interval", "record_interval is " + text(*s.record_interval) +
                                              "; it must be a whole multiple of relay_sample_time, " +
                                              text(s.relay_sample_time) + ". Leave it out to record every sample.");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "engine/numerics/linear_algebra.h"
 #include "engine/simulation/relay/relay_refusal.h"
@@ -13,8 +12,18 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMaxCycles = 400;
-constexpr double kNear = 0.02;    // of the period: a run that has come so close is on its way to the cycle
-constexpr double kSteady = 1e-3;  // of the period
+constexpr double kNear = 0.02;       // of the period: a run that has come so close is on its way to the cycle
+constexpr double kSteady = 1e-3;     // of the period
+constexpr double kLeastPart = 0.2;   // of a duration that a Newton step leaves; longer steps are halved
+constexpr double kLeastStep = 1e-6;  // of a Newton step: shorter ones lead nowhere
+constexpr int kMaxNewton = 40;
+constexpr double kRounding = 1e-15;     // relative change of the period: nothing is left to improve
+constexpr double kStalled = 1e-11;      // from here on a change that is not halved is rounding
+constexpr double kConverged = 1e-10;    // what a cycle must reach
+constexpr double kSameSwitch = 1e-8;    // of the period: the run switches where the solution says
+constexpr double kOnCycle = 1e-6;       // of the period: nearer than this it need not come nearer from cycle to cycle
+constexpr double kFarOff = 0.2;         // of the period: the last run has gone elsewhere
+constexpr double kSameInstant = 1e-12;  // of the period
 
 struct Durations {
     double t_plus = 0, t_minus = 0;
@@ -75,8 +84,9 @@ public:
         const auto [t_plus, t_minus] = point.durations;
         const Half plus = half(point.x, t_plus, levels_.u_plus);
         const Half minus = half(plus.end, t_minus, levels_.u_minus);
-        const std::vector<double> whole = product(minus.step.Phi, plus.step.Phi);
-        const std::vector<double> carried = times(minus.step.Phi, plus.end_rate);
+        const std::vector<double> whole = product(minus.step.Phi, plus.step.Phi, n_);
+        std::vector<double> carried(Index(n_), 0.0);
+        multiply(minus.step.Phi, plus.end_rate, carried);
         for (int i = 0; i < n_; ++i) {
             for (int j = 0; j < n_; ++j) J[Index(i * m + j)] = whole[Index(i * n_ + j)] - (i == j ? 1 : 0);
             J[Index(i * m + n_)] = carried[Index(i)];
@@ -90,9 +100,9 @@ public:
         if (!change) return false;
         double scale = 1;
         const double dp = (*change)[Index(n_)], dm = (*change)[Index(n_ + 1)];
-        while (t_plus + scale * dp < 0.2 * t_plus || t_minus + scale * dm < 0.2 * t_minus) {
+        while (t_plus + scale * dp < kLeastPart * t_plus || t_minus + scale * dm < kLeastPart * t_minus) {
             scale /= 2;
-            if (scale < 1e-6) return false;
+            if (scale < kLeastStep) return false;
         }
         for (int i = 0; i < n_; ++i) point.x[Index(i)] += scale * (*change)[Index(i)];
         point.durations.t_plus += scale * dp;
@@ -111,28 +121,6 @@ private:
         Half out{motion_.step(t), from, {}};
         motion_.advance(out.step, v, out.end);
         out.end_rate = motion_.rate(out.end, v);
-        return out;
-    }
-
-    std::vector<double> times(const std::vector<double>& M, const std::vector<double>& x) const {
-        std::vector<double> out(Index(n_), 0.0);
-        for (int i = 0; i < n_; ++i)
-            for (int j = 0; j < n_; ++j) out[Index(i)] += M[Index(i * n_ + j)] * x[Index(j)];
-        return out;
-    }
-
-    std::vector<double> product(const std::vector<double>& M, const std::vector<double>& N) const {
-        std::vector<double> out(Index(n_ * n_), 0.0);
-        for (int i = 0; i < n_; ++i)
-            for (int k = 0; k < n_; ++k)
-                for (int j = 0; j < n_; ++j) out[Index(i * n_ + j)] += M[Index(i * n_ + k)] * N[Index(k * n_ + j)];
-        return out;
-    }
-
-    std::vector<double> row_times(const std::vector<double>& row, const std::vector<double>& M) const {
-        std::vector<double> out(Index(n_), 0.0);
-        for (int i = 0; i < n_; ++i)
-            for (int j = 0; j < n_; ++j) out[Index(j)] += row[Index(i)] * M[Index(i * n_ + j)];
         return out;
     }
 
@@ -169,7 +157,7 @@ private:
         row[n_] = y.slope * at.by_plus;
         row[n_ + 1] = y.slope * at.by_minus;
         if (!in_plus) {
-            row[n_] += std::inner_product(by_state.begin(), by_state.end(), plus.end_rate.begin(), 0.0) - y.slope;
+            row[n_] += dot(by_state, plus.end_rate) - y.slope;
             by_state = row_times(by_state, plus.step.Phi);
         }
         for (int j = 0; j < n_; ++j) row[j] = by_state[Index(j)];
@@ -184,19 +172,19 @@ private:
 
 std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem, ShootingProblem::Point point) {
     double change = 1;
-    for (int i = 0; i < 40 && change > 1e-15; ++i) {
+    for (int i = 0; i < kMaxNewton && change > kRounding; ++i) {
         const double before = change;
         if (!problem.improve(point, change)) return std::nullopt;
-        if (change < 1e-11 && change >= before / 2) break;
+        if (change < kStalled && change >= before / 2) break;
     }
-    if (change > 1e-10) return std::nullopt;
+    if (change > kConverged) return std::nullopt;
     return point;
 }
 
 // Runs one period from the fixed point: it must switch where it says. Adds the extremes of y.
 bool verify(RelayMotion& motion, double L, const RelayLevels& levels, SteadyRelayCycle& cycle) {
     RelayRun run(motion, L, levels, state_at_switch(motion, L, levels, cycle));
-    const double tolerance = 1e-8 * cycle.Pu();
+    const double tolerance = kSameSwitch * cycle.Pu();
     double top = run.y(), bottom = top;
     int switches = 0;
     while (const auto piece = run.next()) {
@@ -242,10 +230,10 @@ public:
             auto steady = attempt(*cycle);
             if (!steady) continue;
             const double now = distance(cycle->durations, {steady->t_plus, steady->t_minus});
-            const bool arrived = now <= kNear && (now <= previous || now < 1e-6);
+            const bool arrived = now <= kNear && (now <= previous || now < kOnCycle);
             previous = now;
             if (!arrived && count + count / 4 < kMaxCycles) continue;
-            if (!arrived && now > 0.2) break;
+            if (!arrived && now > kFarOff) break;
             steady->settling_cycles = count_settling(*steady);
             return *steady;
         }
@@ -306,7 +294,7 @@ RelayState state_at_switch(RelayMotion& motion, double dead_time, const RelayLev
     state.x = cycle.x;
     state.u = levels.u_plus;
     // The delayed input is L behind: it stands s after the arrival of u_plus. What arrives just now is still pending.
-    const double now = 1e-12 * P;
+    const double now = kSameInstant * P;
     double s = std::ceil(L / P) * P - L;
     if (s <= now) s += P;
     motion.advance(motion.step(std::min(s, cycle.t_plus)), levels.u_plus, state.x);

@@ -13,7 +13,8 @@ namespace {
 using Index = std::size_t;
 
 constexpr double kStepsPerRadian = 10;
-constexpr double kDecay = 25;  // e^-25 = 1e-11
+constexpr double kDecay = 25;         // e^-25 = 1e-11
+constexpr double kOnTheAxis = 1e-10;  // of |p|: the real part of a pole that neither decays nor grows
 constexpr int kLevels = 60;
 constexpr double kExtremumTolerance = 1e-15;  // of the step
 
@@ -64,10 +65,10 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
     for (const auto pole : plant.poles()) {
         const double size = std::abs(pole);
         fastest = std::max(fastest, size);
-        const bool decays = pole.real() < -1e-10 * size;
+        const bool decays = pole.real() < -kOnTheAxis * size;
         const double ends = decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
         if (decays) decay_time_ = std::max(decay_time_, ends);
-        if (pole.real() > 1e-10 * size) growth_rate_ = std::max(growth_rate_, pole.real());
+        if (pole.real() > kOnTheAxis * size) growth_rate_ = std::max(growth_rate_, pole.real());
         modes_.push_back({size, ends});
     }
     if (fastest > 0)
@@ -122,11 +123,8 @@ OutputMotion RelayMotion::output(const std::vector<double>& x, double v) const {
 
 std::vector<double> RelayMotion::rate(const std::vector<double>& x, double v) const {
     std::vector<double> out(Index(n_), 0.0);
-    for (int i = 0; i < n_; ++i) {
-        double sum = B_[Index(i)] * v;
-        for (int j = 0; j < n_; ++j) sum += A_[Index(i * n_ + j)] * x[Index(j)];
-        out[Index(i)] = sum;
-    }
+    multiply(A_, x, out);
+    for (int i = 0; i < n_; ++i) out[Index(i)] += B_[Index(i)] * v;
     return out;
 }
 

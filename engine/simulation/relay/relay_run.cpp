@@ -11,6 +11,11 @@ namespace {
 constexpr std::int64_t kMaxSteps = 4'000'000;
 constexpr std::size_t kMaxPending = 20'000;
 constexpr int kMaxCrowded = 50;
+constexpr double kAtOnce = 1e-14;     // of t: no time between two switches
+constexpr int kPolish = 6;            // Newton steps; each squares the error of the quintic
+constexpr double kPolished = 1e-15;   // of the step: rounding
+constexpr double kWholeLevel = 1e-9;  // of a level: a length that is a power of 2 but for rounding
+constexpr int kMaxLevel = 59;
 constexpr double kGrowth = 45;  // e^45 beyond the last swing: never to come back
 constexpr int kFirstSwitches = 4;
 constexpr double kEscape = 1e9;     // times the swing before these switches
@@ -59,7 +64,7 @@ RelayPiece RelayRun::switch_over(RelayPiece piece) {
     piece.switched = true;
     piece.t_end = t_;
     ++switches_;
-    crowded_ = t_ - switched_at_ <= 1e-14 * t_ ? crowded_ + 1 : 0;
+    crowded_ = t_ - switched_at_ <= kAtOnce * t_ ? crowded_ + 1 : 0;
     if (crowded_ > kMaxCrowded) end_ = RelayEnd::too_fast;
     switched_at_ = t_;
     u_ = u_ == levels_.u_plus ? levels_.u_minus : levels_.u_plus;
@@ -74,9 +79,8 @@ bool RelayRun::settle_or_escape(bool quiet, double elapsed, double slope) {
     const int integrators = motion_->integrators();
     if (motion_->growth_rate() * elapsed > kGrowth) {
         end_ = RelayEnd::escaped;
-    } else if (quiet && (integrators <= 0 || (integrators == 1 && outward <= 0))) {
-        end_ = RelayEnd::latched;
-    } else if (elapsed > kPatience * motion_->shortest()) {
+    } else if ((quiet && (integrators <= 0 || (integrators == 1 && outward <= 0))) ||
+               elapsed > kPatience * motion_->shortest()) {
         end_ = RelayEnd::latched;
     }
     return end_ != RelayEnd::running;
@@ -106,7 +110,7 @@ std::optional<double> RelayRun::crossing(const Quintic& y, double first) const {
 // Newton steps on the exact motion.
 double RelayRun::polish(double tau, double low, double high) const {
     const double outward = u_ == levels_.u_plus ? 1 : -1;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < kPolish; ++i) {
         std::vector<double> x = x_;
         motion_->advance(motion_->step(tau), v_, x);
         const OutputMotion there = motion_->output(x, v_);
@@ -116,7 +120,7 @@ double RelayRun::polish(double tau, double low, double high) const {
         if (!(next >= low && next <= high)) break;
         const double change = std::abs(next - tau);
         tau = next;
-        if (change <= 1e-15 * high) break;
+        if (change <= kPolished * high) break;
     }
     return tau;
 }
@@ -141,7 +145,7 @@ std::optional<RelayPiece> RelayRun::next() {
     if (motion_->states() == 0) quiet = true;
     if (settle_or_escape(quiet, elapsed, now.slope)) return std::nullopt;
 
-    const int k = std::clamp(static_cast<int>(std::log2(allowed / motion_->shortest()) + 1e-9), 0, 59);
+    const int k = std::clamp(static_cast<int>(std::log2(allowed / motion_->shortest()) + kWholeLevel), 0, kMaxLevel);
     double h = std::ldexp(motion_->shortest(), k);
     const bool to_pending = !pending_.empty() && (motion_->states() == 0 || t_ + h >= pending_.front().t);
     if (to_pending) h = pending_.front().t - t_;

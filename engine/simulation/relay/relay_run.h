@@ -49,8 +49,8 @@ enum class RelayEnd {
     exhausted,  ///< the work allowed is over
 };
 
-/// How long u_plus must be held at the start: 0 but for a plant without dead time under a relay without hysteresis. At
-/// rest on its threshold such a relay would switch again and again without any time between; half the plant's lags
+/// How long u_plus must be held at the start: 0 except for a plant without dead time under a relay without hysteresis.
+/// At rest on its threshold such a relay would switch again and again without any time between; half the plant's lags
 /// set it going.
 double held_start(const LinearPlant& plant, const RelayLevels& levels);
 

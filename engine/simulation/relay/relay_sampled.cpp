@@ -12,7 +12,12 @@ namespace {
 
 constexpr std::int64_t kMaxSamples = 4'000'000;
 constexpr std::size_t kMaxCycles = 400, kAveraged = 200, kMaxPatternLength = 32, kRepeats = 4;
-constexpr double kGrowth = 45;
+constexpr double kSameTime = 1e-9;                     // relative: whole samples, which rounding alone makes differ
+constexpr double kSameOutput = 1e-7;                   // of the swing
+constexpr double kWholeSample = 1e-9;                  // of a sample: a dead time of whole samples but for rounding
+constexpr std::size_t kMinCycles = 8, kMinGrowth = 4;  // cycles that show a pattern; that show growth
+constexpr double kGrown = 1.5;                         // times the swing halfway: it grows
+constexpr double kGrowth = 45;                         // e^45 without a switch: never to come back
 constexpr double kSteady = 1e-3;
 
 struct SampledCycle {
@@ -24,15 +29,15 @@ struct SampledCycle {
 // The smallest number of cycles after which everything repeats.
 std::optional<std::size_t> pattern(const std::vector<SampledCycle>& cycles) {
     for (std::size_t k = 1; k <= kMaxPatternLength; ++k) {
-        const std::size_t needed = std::max<std::size_t>(kRepeats * k, 8) + k;
+        const std::size_t needed = std::max<std::size_t>(kRepeats * k, kMinCycles) + k;
         if (cycles.size() < needed) return std::nullopt;
         bool repeats = true;
         for (std::size_t i = cycles.size() - needed + k; i < cycles.size() && repeats; ++i) {
             const SampledCycle &a = cycles[i], &b = cycles[i - k];
             const double swing = a.top - a.bottom;
-            repeats = std::abs(a.t_plus - b.t_plus) <= 1e-9 * a.t_plus &&
-                      std::abs(a.t_minus - b.t_minus) <= 1e-9 * a.t_minus &&
-                      std::abs(a.y_start - b.y_start) <= 1e-7 * swing;
+            repeats = std::abs(a.t_plus - b.t_plus) <= kSameTime * a.t_plus &&
+                      std::abs(a.t_minus - b.t_minus) <= kSameTime * a.t_minus &&
+                      std::abs(a.y_start - b.y_start) <= kSameOutput * swing;
         }
         if (repeats) return k;
     }
@@ -80,14 +85,14 @@ public:
             if (grows()) return no_steady_cycle(plant_, static_cast<int>(kMaxCycles));
             return mean_over(kAveraged);
         }
-        if (cycles_.size() >= 4 && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
+        if (cycles_.size() >= kMinGrowth && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
         return Error{ErrorKind::invalid_argument, "relay/relay_sample_time",
                      "relay_sample_time is " + text(Ts_) + "; the oscillation is not steady after " +
                          std::to_string(kMaxSamples) + " samples. Make it longer, or 0 for an event-accurate relay."};
     }
 
 private:
-    static SampledCycle fresh() { return {0, 0, 0, -1e300, 1e300}; }
+    static SampledCycle fresh() { return {0, 0, 0, -HUGE_VAL, HUGE_VAL}; }
 
     std::optional<RelayEnd> ended(const SampledRelay::Sample& sample, double silent) const {
         const double y = std::abs(sample.y);
@@ -105,13 +110,13 @@ private:
     bool grows() const {
         if (motion_.bounded()) return false;
         const auto swing = [](const SampledCycle& cycle) { return cycle.top - cycle.bottom; };
-        return swing(cycles_.back()) > 1.5 * swing(cycles_[cycles_.size() / 2]);
+        return swing(cycles_.back()) > kGrown * swing(cycles_[cycles_.size() / 2]);
     }
 
     SteadyRelayCycle mean_over(std::size_t count) const {
         SteadyRelayCycle out;
         out.direction = direction_;
-        double top = -1e300, bottom = 1e300;
+        double top = -HUGE_VAL, bottom = HUGE_VAL;
         for (std::size_t i = cycles_.size() - count; i < cycles_.size(); ++i) {
             out.t_plus += cycles_[i].t_plus / static_cast<double>(count);
             out.t_minus += cycles_[i].t_minus / static_cast<double>(count);
@@ -166,11 +171,11 @@ SampledRelay::SampledRelay(const RelayMotion& motion, double dead_time, const Re
       x_(static_cast<std::size_t>(motion.states()), 0.0),
       u_(levels.u_plus) {
     double whole = std::floor(dead_time / Ts_), part = dead_time - whole * Ts_;
-    if (part > (1 - 1e-9) * Ts_) {
+    if (part > (1 - kWholeSample) * Ts_) {
         whole += 1;
         part = 0;
     }
-    if (part < 1e-9 * Ts_) part = 0;
+    if (part < kWholeSample * Ts_) part = 0;
     whole_ = static_cast<std::size_t>(whole);
     old_ = motion.step(part);
     new_ = motion.step(Ts_ - part);

@@ -7,7 +7,6 @@
 
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/relay/relay.h"
-#include "engine/simulation/relay/relay_plan.h"
 #include "engine/simulation/relay/relay_sampled.h"
 
 namespace tunewright {
@@ -330,8 +329,15 @@ TEST(RelayPlanTest, StandsAboveTheNoiseAndComesTrue) {
 }
 
 TEST(RelayPlanTest, RowsAreAtRoundTimes) {
-    for (const auto& [x, rounded] : {std::pair{0.0719, 0.05}, {0.05, 0.05}, {3.9, 2.0}, {1.0, 1.0}, {1e-5, 1e-5}})
-        EXPECT_NEAR(round_down(x), rounded, 1e-12 * rounded);
+    for (const double T : {0.001, 0.7, 3.0, 40.0, 5000.0}) {
+        const RelayPlan plan = run(Fopdt{1, T, 0.2 * T}, relay(1, -1, 0)).plan;
+        const double first =
+            plan.record_interval / std::pow(10.0, std::floor(std::log10(plan.record_interval * 1.001)));
+        EXPECT_NEAR(std::min({std::abs(first - 1), std::abs(first - 2), std::abs(first - 5)}), 0, 1e-9) << T;
+        const double rows = plan.expected_period / plan.record_interval;
+        EXPECT_GE(rows, 200) << T;
+        EXPECT_LT(rows, 500) << T;
+    }
 }
 
 }  // namespace

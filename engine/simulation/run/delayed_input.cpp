@@ -1,6 +1,7 @@
-#include "engine/simulation/run/input_history.h"
+#include "engine/simulation/run/delayed_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tunewright {
 
@@ -20,6 +21,15 @@ Signal InputHistory::at(double t, bool after, double slack) {
     const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
     const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
     return {value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
+}
+
+int echoes_that_count(double q, double tolerance, int smoothing) {
+    constexpr int kMaxEchoes = 2000;
+    constexpr double kLargestShare = 0.999;  // nearer to 1 the echoes hardly fade within kMaxEchoes
+    constexpr double kFaded = 1e-3;          // of the tolerance
+    if (!(q > 0)) return smoothing;
+    const double passages = std::log(kFaded * tolerance) / std::log(std::min(q, kLargestShare));
+    return std::min(kMaxEchoes, smoothing + static_cast<int>(passages));
 }
 
 }  // namespace tunewright

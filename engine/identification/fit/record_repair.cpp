@@ -1,7 +1,8 @@
-#include "engine/identification/fit/reading_check.h"
+#include "engine/identification/fit/record_repair.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
@@ -15,6 +16,7 @@ constexpr double kOfRange = 0.05;
 /// The size of a usual value of the series: its median magnitude, as a standard deviation.
 double usual_size(const std::vector<double>& values) {
     std::vector<double> sizes;
+    sizes.reserve(values.size());
     for (const double value : values) sizes.push_back(std::abs(value));
     return sizes.empty() ? 0 : median(std::move(sizes)) / kMedianOfNormal;
 }
@@ -61,12 +63,13 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     UnitResponse response, level;
     static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
     std::vector<double> times;
+    times.reserve(left_out.size());
     for (const std::size_t i : left_out) times.push_back(whole.t[i]);
     const ModelForm& form = there.form;
     const int derivatives = form.gains() - 1;
     unit_response(times, {whole.v_time, whole.v_level}, there.shape, derivatives, response);
     unit_response(times, {kAtOnce, kUnit}, there.shape, derivatives, level);
-    double least = 1e300;
+    double least = HUGE_VAL;
     for (std::size_t k = 0; k < times.size(); ++k) {
         double y = there.linear[static_cast<std::size_t>(form.offset_index())];
         const auto add = [&](int index, const UnitResponse& x) {
@@ -79,6 +82,13 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
         least = std::min(least, std::abs(whole.y[left_out[k]] - y));
     }
     return least;
+}
+
+/// The time of the last row before the one at or after `time`.
+double row_before(const CleanRecord& r, double time) {
+    constexpr double kRounding = 1e-12;  // of the record's length
+    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kRounding);
+    return row == r.t.begin() ? time : *std::prev(row);
 }
 
 }  // namespace
@@ -108,6 +118,47 @@ ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, Mode
     if (least_miss(record, doubtful, again) < std::max(kOfRange, kTimesOthers * rms)) return search;
     record = std::move(rest);
     return again;
+}
+
+std::vector<int> gap_moves(const CleanRecord& record) {
+    constexpr double kLong = 1.5;  // usual spacings: a row is missing
+    const double usual = usual_spacing(record);
+    std::vector<int> moves;
+    for (int j = 0; j < record.changes(); ++j) {
+        if (record.v_time[j] - row_before(record, record.v_time[j]) > kLong * usual) moves.push_back(j);
+    }
+    return moves;
+}
+
+CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
+                                  const std::stop_token& stop) {
+    constexpr int kRounds = 3, kFarthest = 8;  // of all moves; rows back
+    const double usual = usual_spacing(record);
+    CleanRecord placed = record;
+    placed.moves_placed = static_cast<int>(moves.size());
+    const auto misses = [&] { return project({&placed, {}}, fit.form, fit.shape).sse; };
+    double least = misses();
+    for (int round = 0; round < kRounds; ++round) {
+        bool moved = false;
+        for (const int j : moves) {
+            if (stop.stop_requested()) return placed;
+            const double seen = record.v_time[j];
+            const double first = std::max(row_before(record, seen), j > 0 ? placed.v_time[j - 1] : 0.0);
+            double best = placed.v_time[j];
+            for (int back = 0; back <= kFarthest && seen - back * usual > first + 0.5 * usual; ++back) {
+                placed.v_time[j] = seen - back * usual;
+                const double now = misses();
+                if (now < least) {
+                    least = now;
+                    best = placed.v_time[j];
+                    moved = true;
+                }
+            }
+            placed.v_time[j] = best;
+        }
+        if (!moved) break;
+    }
+    return placed;
 }
 
 }  // namespace tunewright

@@ -1,24 +1,40 @@
-// The instants at which a dead time brings a jump of the plant's input back to it, and how often that counts.
+// The plant's input as it comes back a dead time later: its values, and the instants at which its jumps return.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <map>
 #include <optional>
+#include <vector>
+
+#include "engine/numerics/cubic.h"
+#include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
+
+/// For responses that are kept as nodes; those on nonlinear plants are polynomials of degree 5, which
+/// numerics/step_polynomial.h looks up.
+///
+/// w = u + d, controller output and load: 0 before t = 0, then a cubic between neighbouring nodes; after the last node
+/// its value is held.
+class InputHistory {
+public:
+    /// `nodes`: of ascending t; must live as long as this. They may grow, and lose their last ones again.
+    InputHistory(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
+
+    /// Limit from the right (`after`) or from the left at t. Nodes within `slack` of t count as being at t.
+    Signal at(double t, bool after, double slack);
+
+private:
+    const std::vector<ResponseNode>& nodes_;
+    double d_;
+    std::size_t cursor_ = 0;  // the node that was found last: times are asked for in nearly ascending order
+};
 
 /// The number of passages through the loop after which a jump is no longer met with a step's end. Each passage smooths
 /// it by one derivative: after `smoothing` of them the method's order no longer sees it. Where the loop returns a share
 /// q (|q| < 1) of the jump at once, it counts until it is below a thousandth of `tolerance`.
-inline int echoes_that_count(double q, double tolerance, int smoothing) {
-    constexpr int kMaxEchoes = 2000;
-    constexpr double kLargestShare = 0.999;  // nearer to 1 the echoes hardly fade within kMaxEchoes
-    constexpr double kFaded = 1e-3;          // of the tolerance
-    if (!(q > 0)) return smoothing;
-    const double passages = std::log(kFaded * tolerance) / std::log(std::min(q, kLargestShare));
-    return std::min(kMaxEchoes, smoothing + static_cast<int>(passages));
-}
+int echoes_that_count(double q, double tolerance, int smoothing);
 
 /// The echoes still to come, each with the number of passages since its origin.
 class Echoes {

@@ -1,11 +1,14 @@
-// False readings that only a model shows: those beside a step, which a neighbour's value cannot tell from a response.
-// Those that no process makes are left out before (record_rows.h).
+// What only a model shows of a record, and the record put right by it: false readings beside a step, which a
+// neighbour's value cannot tell from a response (those that no process makes are left out before, record_rows.h), and
+// moves of u that happened while nothing was recorded.
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
 #include <vector>
 
 #include "engine/identification/fit/model_search.h"
+#include "engine/identification/fit/output_error.h"
 
 namespace tunewright {
 
@@ -23,5 +26,18 @@ std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& 
 /// it, the first search is returned.
 ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
                                    const RunControl& control);
+
+/// Indices into record.v_time, ascending, of the changes of u that were first seen after a spacing of more than 1.5
+/// times the usual one: the record does not show when they happened in it.
+std::vector<int> gap_moves(const CleanRecord& record);
+
+/// The record with each of the changes `moves` (from gap_moves()) at the missing row at which the structure and shape
+/// of `fit` explain y best: one change after the other, until none moves, three rounds at most. A change is moved back
+/// by whole usual spacings, eight at most, and never to or before the change of u before it.
+///
+/// Cost: one projection of the fit (output_error.h) for each row tried. When `stop` asks for it, the changes placed so
+/// far keep their rows.
+CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
+                                  const std::stop_token& stop);
 
 }  // namespace tunewright

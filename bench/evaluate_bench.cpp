@@ -10,7 +10,7 @@ namespace tunewright {
 namespace {
 
 const Plant kPlant = Fopdt{.K = 1.25, .T = 40, .L = 8};
-const Pid kPid{.Kp = 2.6, .Ti = 16, .Td = 3.4, .filter = {FilterType::measurement_second_order, 0.34}};
+const IdealPid kPid{.Kp = 2.6, .Ti = 16, .Td = 3.4, .filter = {FilterType::measurement_second_order, 0.34}};
 
 void evaluate_fopdt(benchmark::State& state) {
     EvaluateOptions options;

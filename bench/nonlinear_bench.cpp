@@ -70,7 +70,7 @@ void evaluation(benchmark::State& state) {
     EvaluateOptions options;
     options.setpoint_step = 10;
     for (auto _ : state) {
-        const auto evaluation = evaluate_nonlinear(subject, Pid{.Kp = 4.8, .Ti = 0.194}, options);
+        const auto evaluation = evaluate_nonlinear(subject, IdealPid{.Kp = 4.8, .Ti = 0.194}, options);
         if (!evaluation || !evaluation->performance.load.IAE) state.SkipWithError("no figures");
         benchmark::DoNotOptimize(evaluation);
     }

@@ -35,7 +35,7 @@ struct Times {
     }
 };
 
-bool holds_limits(const LinearPlant& plant, const Pid& pid) {
+bool holds_limits(const LinearPlant& plant, const IdealPid& pid) {
     const auto loop = Loop::make(plant, to_parallel(pid));
     if (!loop) return false;
     const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));

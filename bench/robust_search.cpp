@@ -24,7 +24,7 @@ struct Comparison {
     double above = 0;  ///< relative, of the best known cost
     double ms = 0;
     std::string best_by;
-    Pid fast;
+    IdealPid fast;
 };
 
 double now_ms() {

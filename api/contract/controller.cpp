@@ -56,12 +56,12 @@ const Description<GivenFilter>& filter_contract() {
     return description;
 }
 
-double derivative_time(const Pid& pid) { return pid.Td; }
+double derivative_time(const IdealPid& pid) { return pid.Td; }
 double derivative_time(const SeriesPid& pid) { return pid.Td; }
 double derivative_time(const Npid& pid) { return pid.Td; }
 double derivative_time(const ParallelPid& pid) { return pid.Kp == 0 ? 0 : pid.Kd / pid.Kp; }
 
-bool derivative_acts(const Pid& pid) { return pid.Td != 0; }
+bool derivative_acts(const IdealPid& pid) { return pid.Td != 0; }
 bool derivative_acts(const SeriesPid& pid) { return pid.Td != 0; }
 bool derivative_acts(const Npid& pid) { return pid.Td != 0; }
 bool derivative_acts(const ParallelPid& pid) { return pid.Kd != 0; }
@@ -134,15 +134,16 @@ NumberRule proportional_rule() {
 NumberRule integral_rule() { return {.exclusive_minimum = 0, .cure = "No integral action is \"Ti\": null."}; }
 const char* kNoIntegral = "No integral action.";
 
-const Description<Pid>& ideal() {
+const Description<IdealPid>& ideal() {
     static const auto description = [] {
-        Description<Pid> d("IdealController", "u = Kp [(b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f)].");
+        Description<IdealPid> d("IdealController",
+                                "u = Kp [(b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f)].");
         d.tag("form", "ideal", false)
-            .field("Kp", &Pid::Kp, number(proportional_rule()), "Proportional gain, of the sign that the plant needs.",
-                   {.required = true, .unit = "u/y"})
-            .field("Ti", &Pid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
+            .field("Kp", &IdealPid::Kp, number(proportional_rule()),
+                   "Proportional gain, of the sign that the plant needs.", {.required = true, .unit = "u/y"})
+            .field("Ti", &IdealPid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.unit = "time"})
-            .field("Td", &Pid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
+            .field("Td", &IdealPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
         return with_weights(d).example({{"form", "ideal"}, {"Kp", 1.2}, {"Ti", 10}, {"Td", 0}});
     }();
     return description;

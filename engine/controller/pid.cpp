@@ -33,7 +33,7 @@ Roots real_roots(double sum, double product, double discriminant) {
     return {product / smaller, smaller};
 }
 
-Error no_series(const Pid& pid, double Tf) {
+Error no_series(const IdealPid& pid, double Tf) {
     std::string message = "No series form: ";
     if (Tf > 0) {
         message += "(Ti + Tf)^2 = " + text(std::pow(pid.Ti + Tf, 2)) +
@@ -46,12 +46,12 @@ Error no_series(const Pid& pid, double Tf) {
 
 }  // namespace
 
-ParallelPid to_parallel(const Pid& pid) {
+ParallelPid to_parallel(const IdealPid& pid) {
     return {.Kp = pid.Kp, .Ki = pid.Kp / pid.Ti, .Kd = pid.Kp * pid.Td, .b = pid.b, .c = pid.c, .filter = pid.filter};
 }
 
-Expected<Pid> to_ideal(const ParallelPid& pid) {
-    Pid ideal{.Kp = pid.Kp, .b = pid.b, .c = pid.c, .filter = pid.filter};
+Expected<IdealPid> to_ideal(const ParallelPid& pid) {
+    IdealPid ideal{.Kp = pid.Kp, .b = pid.b, .c = pid.c, .filter = pid.filter};
     if (pid.Kp == 0) {
         if (pid.Ki == 0 && pid.Kd == 0) return ideal;
         return Error{ErrorKind::unsupported, "",
@@ -63,7 +63,7 @@ Expected<Pid> to_ideal(const ParallelPid& pid) {
     return ideal;
 }
 
-Expected<Pid> to_ideal(const SeriesPid& pid) {
+Expected<IdealPid> to_ideal(const SeriesPid& pid) {
     if (pid.Ti == 0)
         return Error{ErrorKind::invalid_argument, "Ti", "Ti is 0; it must be above 0, or null for no integral action."};
     const double Tf = lead_filter(pid.filter);
@@ -74,15 +74,15 @@ Expected<Pid> to_ideal(const SeriesPid& pid) {
                          ", so no proportional part is left. Choose a shorter filter or the parallel form."};
     // Without integral action Ti stays infinite whatever the factor's sign.
     const double Ti = std::isinf(pid.Ti) ? pid.Ti : pid.Ti * factor;
-    return Pid{.Kp = pid.Kp * factor,
-               .Ti = Ti,
-               .Td = pid.Td / factor - Tf,
-               .b = pid.b / factor,
-               .c = pid.c,
-               .filter = pid.filter};
+    return IdealPid{.Kp = pid.Kp * factor,
+                    .Ti = Ti,
+                    .Td = pid.Td / factor - Tf,
+                    .b = pid.b / factor,
+                    .c = pid.c,
+                    .filter = pid.filter};
 }
 
-Expected<SeriesPid> to_series(const Pid& pid) {
+Expected<SeriesPid> to_series(const IdealPid& pid) {
     const double Tf = lead_filter(pid.filter);
     SeriesPid series{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td + Tf, .b = pid.b, .c = pid.c, .filter = pid.filter};
     if (!pid.has_integral()) return series;
@@ -100,19 +100,19 @@ Expected<SeriesPid> to_series(const Pid& pid) {
     return series;
 }
 
-Expected<Pid> to_ideal(const Controller& controller) {
+Expected<IdealPid> to_ideal(const Controller& controller) {
     struct Conversion {
-        Expected<Pid> operator()(const Pid& pid) const { return pid; }
-        Expected<Pid> operator()(const Npid& npid) const { return npid.linear_part(); }
-        Expected<Pid> operator()(const ParallelPid& pid) const { return to_ideal(pid); }
-        Expected<Pid> operator()(const SeriesPid& pid) const { return to_ideal(pid); }
+        Expected<IdealPid> operator()(const IdealPid& pid) const { return pid; }
+        Expected<IdealPid> operator()(const Npid& npid) const { return npid.linear_part(); }
+        Expected<IdealPid> operator()(const ParallelPid& pid) const { return to_ideal(pid); }
+        Expected<IdealPid> operator()(const SeriesPid& pid) const { return to_ideal(pid); }
     };
     return std::visit(Conversion{}, controller);
 }
 
 namespace {
 
-ParallelPid gains_of(const Pid& pid) { return to_parallel(pid); }
+ParallelPid gains_of(const IdealPid& pid) { return to_parallel(pid); }
 ParallelPid gains_of(const ParallelPid& pid) { return pid; }
 ParallelPid gains_of(const Npid& npid) { return to_parallel(npid.linear_part()); }
 

@@ -40,7 +40,7 @@ struct ActuatorLimits {
 };
 
 /// The ideal (standard, non-interacting) form. `Ti` infinite: no integral action.
-struct Pid {
+struct IdealPid {
     double Kp = 0;
     double Ti = std::numeric_limits<double>::infinity();
     double Td = 0;
@@ -49,7 +49,7 @@ struct Pid {
     Filter filter = {};
 
     bool has_integral() const { return Ti < std::numeric_limits<double>::infinity(); }
-    bool operator==(const Pid&) const = default;
+    bool operator==(const IdealPid&) const = default;
 };
 
 /// Kp + Ki/s + Kd s, filter and weights as in the ideal form. Carries Kp = 0 (pure I, I + D) too.
@@ -85,29 +85,29 @@ struct Npid {
     Filter filter = {};                  ///< none or derivative
 
     /// The law for small errors, to which everything over frequency refers.
-    Pid linear_part() const { return {.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter}; }
+    IdealPid linear_part() const { return {.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter}; }
 };
 
 /// Any controller: as given by the user (`baseline`, `evaluate`), as answered by a method.
-using Controller = std::variant<Pid, ParallelPid, SeriesPid, Npid>;
+using Controller = std::variant<IdealPid, ParallelPid, SeriesPid, Npid>;
 
 /// Ki = Kp/Ti, Kd = Kp Td; exact.
-ParallelPid to_parallel(const Pid& pid);
+ParallelPid to_parallel(const IdealPid& pid);
 
 /// Exact. Errors: Kp = 0 with Ki or Kd != 0 has no ideal form (use the parallel form itself in the loop).
-Expected<Pid> to_ideal(const ParallelPid& pid);
+Expected<IdealPid> to_ideal(const ParallelPid& pid);
 
 /// Exact, the set-point weight included: the series form's proportional kick is Kp b, so b becomes b Kp/Kp_ideal.
 /// Errors: Ti = 0; Ti + Td = Tf with a derivative filter (no proportional part is left).
-Expected<Pid> to_ideal(const SeriesPid& pid);
+Expected<IdealPid> to_ideal(const SeriesPid& pid);
 
 /// Of any form; of the nonlinear PID its linear part. Errors: as above.
-Expected<Pid> to_ideal(const Controller& controller);
+Expected<IdealPid> to_ideal(const Controller& controller);
 
 /// The series form of the same loop, with the larger root as Ti' (SeriesPid states its law). With a derivative filter
 /// it exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
 /// which rule fails.
-Expected<SeriesPid> to_series(const Pid& pid);
+Expected<SeriesPid> to_series(const IdealPid& pid);
 
 /// The gains of any form, which the loop and the simulation work with: exact and total (Ti != 0). Of the nonlinear PID
 /// those of its linear part.

@@ -68,7 +68,7 @@ private:
     std::optional<TuningProblem> problem_;  // what methods work on, unless the plant is known by points alone
     std::optional<BestSoFar> best_;
     std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
-    std::vector<std::pair<Pid, Evaluation>> evaluated_;
+    std::vector<std::pair<IdealPid, Evaluation>> evaluated_;
     TuningResult result_;
 };
 
@@ -130,7 +130,7 @@ Error TuningRun::placed(Error error, const std::string& where) const {
 
 // Several rules may give the very same controller: it is evaluated once.
 Expected<Evaluation> TuningRun::evaluated(const Controller& controller) {
-    const Pid* pid = std::get_if<Pid>(&controller);
+    const IdealPid* pid = std::get_if<IdealPid>(&controller);
     if (pid != nullptr)
         for (const auto& [known, evaluation] : evaluated_)
             if (known == *pid) return evaluation;
@@ -273,10 +273,10 @@ Error all_failed(const std::vector<TuningEntry>& entries) {
 
 // Where a rule has no derivative its PID row is its PI row once more.
 bool TuningRun::repeats(const TuningEntry& entry) const {
-    const Pid* pid = entry.evaluation ? std::get_if<Pid>(&entry.evaluation->controller) : nullptr;
+    const IdealPid* pid = entry.evaluation ? std::get_if<IdealPid>(&entry.evaluation->controller) : nullptr;
     return pid != nullptr && std::ranges::any_of(result_.controllers, [&](const TuningEntry& other) {
                if (other.method != entry.method || !other.evaluation) return false;
-               const Pid* known = std::get_if<Pid>(&other.evaluation->controller);
+               const IdealPid* known = std::get_if<IdealPid>(&other.evaluation->controller);
                return known != nullptr && *known == *pid;
            });
 }

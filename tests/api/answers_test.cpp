@@ -84,7 +84,7 @@ TEST(Answers, TracesHaveSixDigitsAndFiguresAll) {
 
 TEST(Answers, TheProgressIsOneObject) {
     Progress progress{0.25, "tune", "Half of the starts are done.", BestSoFar{}};
-    progress.best->controller = Pid{.Kp = 2};
+    progress.best->controller = IdealPid{.Kp = 2};
     const Json written = Json::parse(progress_json(progress));
     EXPECT_EQ(schema_faults(written, "Progress"), std::vector<std::string>{});
     EXPECT_EQ(written["best"]["controller"]["Kp"], 2);

@@ -62,7 +62,7 @@ TEST(Plants, StateSpaceTakesColumnsAndRowsAsMatrixProgramsWriteThem) {
 }
 
 TEST(Controllers, TheIdealFormIsMeantWithoutAFormAndDefaultsAreTheContracts) {
-    const auto pid = read_controller<Pid>(R"({"Kp": 1.2})");
+    const auto pid = read_controller<IdealPid>(R"({"Kp": 1.2})");
     EXPECT_EQ(pid.Kp, 1.2);
     EXPECT_FALSE(pid.has_integral());
     EXPECT_EQ(pid.Td, 0);
@@ -82,13 +82,13 @@ TEST(Controllers, AnAnswersControllerCanBeSentBack) {
 
 TEST(Controllers, NoIntegralActionIsNullInBothDirections) {
     const auto decoded = decode<Controller>(controller_contract(), R"({"form": "ideal", "Kp": 1, "Ti": null})");
-    EXPECT_FALSE(std::get<Pid>(decoded.value).has_integral());
+    EXPECT_FALSE(std::get<IdealPid>(decoded.value).has_integral());
     EXPECT_TRUE(Json::parse(encode(controller_contract(), decoded.value))["Ti"].is_null());
 }
 
 TEST(Controllers, NGivesTheFilterTimeOfItsOwnForm) {
-    EXPECT_DOUBLE_EQ(read_controller<Pid>(R"({"Kp": 1, "Td": 2, "filter": {"type": "derivative", "N": 10}})").filter.Tf,
-                     0.2);
+    EXPECT_DOUBLE_EQ(
+        read_controller<IdealPid>(R"({"Kp": 1, "Td": 2, "filter": {"type": "derivative", "N": 10}})").filter.Tf, 0.2);
     EXPECT_DOUBLE_EQ(read_controller<ParallelPid>(
                          R"({"form": "parallel", "Kp": 4, "Kd": 2, "filter": {"type": "derivative", "N": 5}})")
                          .filter.Tf,
@@ -100,9 +100,9 @@ TEST(Controllers, NGivesTheFilterTimeOfItsOwnForm) {
 }
 
 TEST(Controllers, NWithoutDerivativeLeavesNothingToFilter) {
-    EXPECT_EQ(
-        read_controller<Pid>(R"({"Kp": 1, "Ti": 5, "Td": 0, "filter": {"type": "derivative", "N": 10}})").filter.type,
-        FilterType::none);
+    EXPECT_EQ(read_controller<IdealPid>(R"({"Kp": 1, "Ti": 5, "Td": 0, "filter": {"type": "derivative", "N": 10}})")
+                  .filter.type,
+              FilterType::none);
 }
 
 TEST(Controllers, NWithoutProportionalGainIsRefused) {
@@ -120,8 +120,8 @@ TEST(Controllers, PureIntegralActionIsAParallelForm) {
 }
 
 TEST(Controllers, CIsAllowedWithADerivativeFilterOrWithoutDerivative) {
-    read_controller<Pid>(R"({"Kp": 1, "Td": 1, "c": 1, "filter": {"type": "derivative", "N": 10}})");
-    read_controller<Pid>(R"({"Kp": 1, "c": 1})");
+    read_controller<IdealPid>(R"({"Kp": 1, "Td": 1, "c": 1, "filter": {"type": "derivative", "N": 10}})");
+    read_controller<IdealPid>(R"({"Kp": 1, "c": 1})");
 }
 
 TEST(Equivalents, AMissingSeriesFormTellsWhy) {

@@ -20,7 +20,7 @@ TuningResult compare_all(const Plant& plant, MethodOptions options = {}) {
     TuningRequest request;
     request.subject = test::subject_of(plant);
     request.tune = {{.method = "all", .options = std::move(options)}};
-    request.baseline = Pid{.Kp = 0.5, .Ti = 10};
+    request.baseline = IdealPid{.Kp = 0.5, .Ti = 10};
     request.evaluate.points = 0;
     auto result = tune(request, {});
     EXPECT_TRUE(result) << (result ? "" : result.error().message);
@@ -112,8 +112,8 @@ TEST(Comparison, TheRobustOptimumItselfLiesAtTheOptimumAndNoRuleWithItsFilterBel
             continue;
         }
         ASSERT_TRUE(entry.optimum_at_Ms->excess_percent) << entry.title;
-        if (std::get_if<Pid>(&entry.evaluation->controller) == nullptr) continue;
-        if (std::get<Pid>(entry.evaluation->controller).Td == 0) {
+        if (std::get_if<IdealPid>(&entry.evaluation->controller) == nullptr) continue;
+        if (std::get<IdealPid>(entry.evaluation->controller).Td == 0) {
             EXPECT_GT(*entry.optimum_at_Ms->excess_percent, 0) << entry.title;
         }
     }

@@ -49,9 +49,9 @@ void expect_same(const Performance& a, const Performance& b) {
 }
 
 std::vector<Controller> controllers() {
-    return {Pid{.Kp = 1.5, .Ti = 2.2},
-            Pid{.Kp = 2, .Ti = 2.5, .Td = 0.6, .b = 0.5, .filter = {FilterType::derivative, 0.1}},
-            Pid{.Kp = 2, .Ti = 2.5, .Td = 0.6, .filter = {FilterType::measurement_second_order, 0.2}},
+    return {IdealPid{.Kp = 1.5, .Ti = 2.2},
+            IdealPid{.Kp = 2, .Ti = 2.5, .Td = 0.6, .b = 0.5, .filter = {FilterType::derivative, 0.1}},
+            IdealPid{.Kp = 2, .Ti = 2.5, .Td = 0.6, .filter = {FilterType::measurement_second_order, 0.2}},
             ParallelPid{.Ki = 0.2}, Npid{.Kp = 1.5, .Ti = 2.2, .Td = 0.4, .filter = {FilterType::derivative, 0.04}}};
 }
 
@@ -79,7 +79,7 @@ TEST(EvaluateNonlinear, HoldsToAGivenHorizon) {
     EvaluateOptions options;
     options.setpoint_step = -10;
     options.horizon = 10;
-    const auto evaluation = evaluate(made_system(cstr("T")), Pid{.Kp = 1.81, .Ti = 0.403}, options);
+    const auto evaluation = evaluate(made_system(cstr("T")), IdealPid{.Kp = 1.81, .Ti = 0.403}, options);
     ASSERT_TRUE(evaluation);
     const auto& setpoint = evaluation->performance.setpoint;
     EXPECT_NEAR(*setpoint.IAE, 10.053186752, 1e-5);
@@ -92,7 +92,7 @@ TEST(EvaluateNonlinear, TellsWhereTheStatesLeaveTheModel) {
     EvaluateOptions options;
     options.setpoint_step = 0.14;
     options.load_step = 1;
-    const Pid kick{.Kp = -11753, .Ti = 0.2, .Td = 0.05, .c = 1, .filter = {FilterType::derivative, 0.1}};
+    const IdealPid kick{.Kp = -11753, .Ti = 0.2, .Td = 0.05, .c = 1, .filter = {FilterType::derivative, 0.1}};
     const auto evaluation = evaluate(made_system(cstr("CA")), kick, options);
     ASSERT_TRUE(evaluation);
     EXPECT_TRUE(evaluation->robustness.stable);
@@ -111,7 +111,7 @@ TEST(EvaluateNonlinear, TellsWhereTheStatesLeaveTheModel) {
 
 TEST(EvaluateNonlinear, SaysHowFarTheResponsesAreFromTheLinearOnes) {
     const auto system = made_system(cstr("CA"));
-    const Pid controller{.Kp = -11753, .Ti = 0.2, .Td = 0.05, .filter = {FilterType::derivative, 0.1}};
+    const IdealPid controller{.Kp = -11753, .Ti = 0.2, .Td = 0.05, .filter = {FilterType::derivative, 0.1}};
     EvaluateOptions options;
     options.setpoint_step = 0.05;
     const auto far = evaluate(system, controller, options);
@@ -131,7 +131,7 @@ TEST(EvaluateNonlinear, KeepsWithinThePlantsLimitsAndTheActuators) {
     plant.input.max = 493.87 + 50;
     EvaluateOptions options;
     options.setpoint_step = 10;
-    const Pid controller{.Kp = 15, .Ti = 0.1667};
+    const IdealPid controller{.Kp = 15, .Ti = 0.1667};
     const auto by_plant = evaluate(made_system(plant), controller, options);
     ASSERT_TRUE(by_plant && warning(*by_plant, "actuator-limited"));
     for (const auto* responses : {&*by_plant->responses, &*by_plant->linear->responses})
@@ -146,7 +146,7 @@ TEST(EvaluateNonlinear, KeepsWithinThePlantsLimitsAndTheActuators) {
 TEST(EvaluateNonlinear, ShowsWhatAnUnstableLoopDoes) {
     EvaluateOptions options;
     options.actuator = ActuatorLimits{-20, 20};
-    const auto evaluation = evaluate(made_system(cstr("T")), Pid{.Kp = -10, .Ti = 1}, options);
+    const auto evaluation = evaluate(made_system(cstr("T")), IdealPid{.Kp = -10, .Ti = 1}, options);
     ASSERT_TRUE(evaluation);
     EXPECT_FALSE(evaluation->robustness.stable);
     EXPECT_TRUE(warning(*evaluation, "unstable-loop"));
@@ -158,7 +158,7 @@ TEST(EvaluateNonlinear, ShowsWhatAnUnstableLoopDoes) {
 TEST(EvaluateNonlinear, RefusesWhatEveryEvaluationRefuses) {
     EvaluateOptions options;
     options.setpoint_step = 0;
-    const auto refused = evaluate(made_system(cstr("T")), Pid{.Kp = 1}, options);
+    const auto refused = evaluate(made_system(cstr("T")), IdealPid{.Kp = 1}, options);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().where, "evaluate/setpoint_step");
 }

@@ -23,7 +23,7 @@ TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
     // 1/(s + 1) with Kp = k, Ti = 1: y = 1 - e^(-kt), u = 1 + (k - 1) e^(-kt); after a load step y = (e^(-t) -
     // e^(-kt))/(k - 1).
     const double k = 4;
-    const auto e = evaluated(Fopdt{.K = 1, .T = 1, .L = 0}, Pid{.Kp = k, .Ti = 1});
+    const auto e = evaluated(Fopdt{.K = 1, .T = 1, .L = 0}, IdealPid{.Kp = k, .Ti = 1});
     const auto& s = e.performance.setpoint;
     EXPECT_NEAR(*s.IAE / (1 / k), 1, 1e-4);
     EXPECT_NEAR(*s.ISE / (1 / (2 * k)), 1, 1e-4);
@@ -47,7 +47,7 @@ TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
 /// Heun's rule with the delayed input from a table, for a FOPDT plant and every filter type.
 struct PlainLoop {
     double K, T, L;
-    Pid c;
+    IdealPid c;
 
     struct Result {
         double IAE = 0, ISE = 0, ITAE = 0, TV = 0, peak = 0;
@@ -155,7 +155,7 @@ TEST(Evaluate, EveryIndexAgreesWithAPlainSimulation) {
 
 TEST(Evaluate, MarginsObeyTheBoundsOfMs) {
     for (const double Kp : {0.3, 0.6, 0.9, 1.2}) {
-        const auto e = evaluated(Sopdt{.K = 2, .T1 = 10, .T2 = 2, .L = 3}, Pid{.Kp = Kp, .Ti = 10});
+        const auto e = evaluated(Sopdt{.K = 2, .T1 = 10, .T2 = 2, .L = 3}, IdealPid{.Kp = Kp, .Ti = 10});
         const double Ms = *e.robustness.Ms;
         EXPECT_GE(*e.robustness.gain_margin, Ms / (Ms - 1) * (1 - 1e-9));
         EXPECT_GE(*e.robustness.phase_margin_deg, 2 * std::asin(1 / (2 * Ms)) * 180 / std::numbers::pi * (1 - 1e-9));
@@ -164,23 +164,23 @@ TEST(Evaluate, MarginsObeyTheBoundsOfMs) {
 
 TEST(Evaluate, NoGainMarginIsInventedWherePhaseNeverReachesMinus180) {
     const auto e = evaluated(Sopdt{.K = 0.695, .T1 = 141, .T2 = 19.7, .L = 0},
-                             Pid{.Kp = 2, .Ti = 160, .Td = 17, .filter = {FilterType::derivative, 1.8}});
+                             IdealPid{.Kp = 2, .Ti = 160, .Td = 17, .filter = {FilterType::derivative, 1.8}});
     EXPECT_FALSE(e.robustness.gain_margin.has_value());
     EXPECT_FALSE(e.robustness.gain_margin.why.empty());
 }
 
 TEST(Evaluate, WithoutIntegralActionTheErrorStaysAndSaysSo) {
-    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 1});
+    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, IdealPid{.Kp = 1});
     EXPECT_FALSE(e.performance.load.IAE.has_value());
     EXPECT_FALSE(e.performance.load.IAE.why.empty());
     EXPECT_NEAR(e.responses->load.y.back(), 2.0 / 3, 5e-3);
     EvaluateOptions finite;
     finite.horizon = 50;
-    EXPECT_TRUE(evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 1}, finite).performance.load.IAE.has_value());
+    EXPECT_TRUE(evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, IdealPid{.Kp = 1}, finite).performance.load.IAE.has_value());
 }
 
 TEST(Evaluate, AnUnstableLoopIsAnEntryWithReasons) {
-    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, Pid{.Kp = 20, .Ti = 1});
+    const auto e = evaluated(Fopdt{.K = 2, .T = 5, .L = 1}, IdealPid{.Kp = 20, .Ti = 1});
     EXPECT_FALSE(e.robustness.stable);
     EXPECT_FALSE(e.robustness.Ms.has_value());
     EXPECT_FALSE(e.performance.setpoint.IAE.has_value());
@@ -190,7 +190,7 @@ TEST(Evaluate, AnUnstableLoopIsAnEntryWithReasons) {
 }
 
 TEST(Evaluate, TinyDeadTimesCostNoMoreThanOthersAndTendToNone) {
-    const Pid pid{.Kp = 3, .Ti = 1, .Td = 0.05, .filter = {FilterType::measurement_second_order, 0.02}};
+    const IdealPid pid{.Kp = 3, .Ti = 1, .Td = 0.05, .filter = {FilterType::measurement_second_order, 0.02}};
     const auto none = evaluated(Fopdt{.K = 1, .T = 1, .L = 0}, pid),
                tiny = evaluated(Fopdt{.K = 1, .T = 1, .L = 1e-7}, pid);
     EXPECT_NEAR(*tiny.performance.load.IAE / *none.performance.load.IAE, 1, 1e-4);
@@ -200,7 +200,7 @@ TEST(Evaluate, TinyDeadTimesCostNoMoreThanOthersAndTendToNone) {
 TEST(Evaluate, LimitsAreKeptAndAnnounced) {
     EvaluateOptions options;
     options.actuator = ActuatorLimits{-0.2, 1.1};
-    const auto e = evaluated(Fopdt{.K = 1, .T = 10, .L = 1}, Pid{.Kp = 5, .Ti = 8}, options);
+    const auto e = evaluated(Fopdt{.K = 1, .T = 10, .L = 1}, IdealPid{.Kp = 5, .Ti = 8}, options);
     for (const double u : e.responses->setpoint.u) {
         EXPECT_LE(u, 1.1 + 1e-9);
         EXPECT_GE(u, -0.2 - 1e-9);
@@ -213,12 +213,12 @@ TEST(Evaluate, LimitsAreKeptAndAnnounced) {
 TEST(Evaluate, OptionsOutOfRangeNameTheirField) {
     EvaluateOptions options;
     options.setpoint_step = 0;
-    auto refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, Pid{.Kp = 1}, options);
+    auto refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, IdealPid{.Kp = 1}, options);
     ASSERT_FALSE(refused.has_value());
     EXPECT_EQ(refused.error().where, "evaluate/setpoint_step");
     options = {};
     options.points = 1;
-    refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, Pid{.Kp = 1}, options);
+    refused = evaluate(Fopdt{.K = 1, .T = 1, .L = 1}, IdealPid{.Kp = 1}, options);
     ASSERT_FALSE(refused.has_value());
     EXPECT_EQ(refused.error().where, "evaluate/points");
 }

@@ -34,7 +34,7 @@ TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
     double w = 1.6;  // atan(10 w) + w = pi
     for (int i = 0; i < 50; ++i) w = std::numbers::pi - std::atan(10 * w);
     const Plant plant = Fopdt{1, 10, 1, {.K = FactorRange{0.8, 1.2}}};
-    const Pid pid{.Kp = std::sqrt(1 + 100 * w * w) / 1.1995, .Ti = 1e7};
+    const IdealPid pid{.Kp = std::sqrt(1 + 100 * w * w) / 1.1995, .Ti = 1e7};
     const auto evaluation = evaluate(plant, pid, without_traces());
     ASSERT_TRUE(evaluation && evaluation->region);
     EXPECT_TRUE(evaluation->robustness.stable);
@@ -52,7 +52,7 @@ TEST(FamilyFigures, AShareIsNotRoundedToAll) {
     PlantSet set;
     for (int i = 0; i < 2000; ++i) set.plants.emplace_back(Fopdt{1, 10, 1});
     set.plants.emplace_back(Fopdt{100, 10, 1});
-    const auto evaluation = evaluate(PlantModel(set), Pid{.Kp = 1, .Ti = 10}, without_traces());
+    const auto evaluation = evaluate(PlantModel(set), IdealPid{.Kp = 1, .Ti = 10}, without_traces());
     ASSERT_TRUE(evaluation && evaluation->region);
     const auto warning = std::ranges::find_if(evaluation->warnings,
                                               [](const Warning& told) { return told.code == "unstable-in-region"; });

@@ -122,8 +122,8 @@ EvaluateOptions up_to(std::optional<double> horizon) {
 TEST(IndexAccuracy, ActuatorLimitsThatAreNeverMetChangeNothing) {
     // The same responses by two programs: one of three linear systems, one of one.
     const Fopdt plant{.K = 1, .T = 10, .L = 3};
-    for (const Pid& pid :
-         {Pid{.Kp = 1, .Ti = 40}, Pid{.Kp = 2, .Ti = 8, .Td = 1, .b = 0.5, .filter = {FilterType::derivative, 0.1}}})
+    for (const IdealPid& pid : {IdealPid{.Kp = 1, .Ti = 40},
+                                IdealPid{.Kp = 2, .Ti = 8, .Td = 1, .b = 0.5, .filter = {FilterType::derivative, 0.1}}})
         for (const std::optional<double> horizon : {std::optional<double>(20), std::optional<double>(4.7),
                                                     std::optional<double>(61.3), std::optional<double>()}) {
             auto options = up_to(horizon);
@@ -152,7 +152,7 @@ TEST(IndexAccuracy, ActuatorLimitsThatAreNeverMetChangeNothing) {
 }
 
 TEST(IndexAccuracy, BeforeTheDeadTimeNothingHasHappened) {
-    const auto e = evaluate(Fopdt{.K = 1, .T = 10, .L = 3}, Pid{.Kp = 2, .Ti = 8}, up_to(2.9999));
+    const auto e = evaluate(Fopdt{.K = 1, .T = 10, .L = 3}, IdealPid{.Kp = 2, .Ti = 8}, up_to(2.9999));
     ASSERT_TRUE(e);
     EXPECT_EQ(*e->performance.load.IAE, 0);
     EXPECT_EQ(*e->performance.load.TV, 0);
@@ -168,7 +168,7 @@ TEST(IndexAccuracy, ATailWithoutChangeOfSignIsTheIntegralOfErrorHoweverSlow) {
         for (const double Kp : {0.5, 2.0, 5.0}) {
             SCOPED_TRACE(Ti);
             const auto e = evaluate(Zpk{.K = 0.1, .zeros = {}, .poles = {0.0, -1.0}, .L = 1},
-                                    Pid{.Kp = Kp, .Ti = Ti, .Td = 1, .filter = {FilterType::derivative, 0.1}},
+                                    IdealPid{.Kp = Kp, .Ti = Ti, .Td = 1, .filter = {FilterType::derivative, 0.1}},
                                     up_to(std::nullopt));
             ASSERT_TRUE(e);
             ASSERT_TRUE(e->performance.load.IAE && e->performance.load.ITAE && e->performance.setpoint.IAE);
@@ -183,7 +183,7 @@ TEST(IndexAccuracy, ATailWithoutChangeOfSignIsTheIntegralOfErrorHoweverSlow) {
 }
 
 TEST(IndexAccuracy, AnErrorThatChangesSignIsNotSaidToKeepIt) {
-    const auto e = evaluate(Fopdt{.K = 1, .T = 10, .L = 3}, Pid{.Kp = 3, .Ti = 6}, up_to(std::nullopt));
+    const auto e = evaluate(Fopdt{.K = 1, .T = 10, .L = 3}, IdealPid{.Kp = 3, .Ti = 6}, up_to(std::nullopt));
     ASSERT_TRUE(e);
     EXPECT_FALSE(e->verification.load_error_keeps_sign.value_or(true));
     EXPECT_GT(*e->performance.load.IAE, 6.0 / 3);

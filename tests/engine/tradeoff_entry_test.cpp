@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 const ParallelPid kPi{.Kp = 0.5, .Ki = 0.4};
 
-double iae(const Fopdt& model, const Pid& pid, bool load) {
+double iae(const Fopdt& model, const IdealPid& pid, bool load) {
     EvaluateOptions options;
     options.points = 0;
     const auto e = evaluate(model, pid, options);
@@ -26,7 +26,7 @@ double iae(const Fopdt& model, const Pid& pid, bool load) {
     return value.value_or(HUGE_VAL);
 }
 
-Pid moved(Pid pid, const std::array<double, 3>& by) {
+IdealPid moved(IdealPid pid, const std::array<double, 3>& by) {
     pid.Kp *= std::exp(by[0]);
     pid.Ti *= std::exp(by[1]);
     pid.Td *= std::exp(by[2]);
@@ -43,7 +43,7 @@ TEST(TradeoffOptima, NoControllerNearbyIsBetterByMoreThanOneInTenThousand) {
         const auto ideal = ideal_controllers(model);
         ASSERT_TRUE(ideal);
         for (const bool load : {false, true}) {
-            const Pid& best = load ? ideal->load : ideal->servo;
+            const IdealPid& best = load ? ideal->load : ideal->servo;
             const double J = iae(model, best, load);
             for (int i = 0; i < 60; ++i)
                 EXPECT_GT(iae(model, moved(best, {step(random), step(random), step(random)}), load), J * (1 - 1e-4))
@@ -62,9 +62,9 @@ TEST(TradeoffOptima, WhereThereIsNoneTheErrorSaysWhy) {
 TEST(Tradeoffs, AreTimesWhateverTheGain) {
     const Fopdt unit{1, 1, 0.5}, other{-20, 60, 30};
     const auto a =
-        Tradeoffs(unit).of(Pid{.Kp = 0.9, .Ti = 1.1, .Td = 0.1, .filter = {FilterType::derivative, 0.01}}, {});
+        Tradeoffs(unit).of(IdealPid{.Kp = 0.9, .Ti = 1.1, .Td = 0.1, .filter = {FilterType::derivative, 0.01}}, {});
     const auto b =
-        Tradeoffs(other).of(Pid{.Kp = -0.045, .Ti = 66, .Td = 6, .filter = {FilterType::derivative, 0.6}}, {});
+        Tradeoffs(other).of(IdealPid{.Kp = -0.045, .Ti = 66, .Td = 6, .filter = {FilterType::derivative, 0.6}}, {});
     EXPECT_NEAR(*b.model.J_r / 60 / *a.model.J_r, 1, 1e-6);
     EXPECT_NEAR(*b.model.J_d / 60 / *a.model.J_d, 1, 1e-6);
     EXPECT_NEAR(*b.model.J_rd / 60 / *a.model.J_rd, 1, 1e-6);
@@ -86,7 +86,7 @@ TEST(Tradeoffs, TheSteppedSizesOfTheEvaluationDoNotMatter) {
     TuningRequest request;
     request.subject = test::subject_of(Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3});
     request.tune = {MethodRequest{.method = "simc", .options = {}}};
-    request.baseline = Pid{.Kp = 0.5, .Ti = 8};
+    request.baseline = IdealPid{.Kp = 0.5, .Ti = 8};
     request.evaluate.points = 0;
     request.evaluate.tradeoff = true;
     const auto unit = tune(request, {});
@@ -117,9 +117,9 @@ TEST(Tradeoffs, SayWhyTheyAreEmpty) {
     expect_empty(Tradeoffs(std::nullopt).of(kPi, {}).model, "frequency response");
     expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).plant, "integrating plant");
     expect_empty(Tradeoffs(Ipdt{.K = 1, .L = 1}).of(kPi, {}).model, "integrating plant");
-    expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 9, .Ti = 1}, {}).plant, "not stable");
+    expect_empty(Tradeoffs(Fopdt{1, 1, 1}).of(IdealPid{.Kp = 9, .Ti = 1}, {}).plant, "not stable");
 
-    const auto no_integral = Tradeoffs(Fopdt{1, 1, 1}).of(Pid{.Kp = 0.5}, {}).plant;
+    const auto no_integral = Tradeoffs(Fopdt{1, 1, 1}).of(IdealPid{.Kp = 0.5}, {}).plant;
     EXPECT_TRUE(no_integral.Ms && no_integral.J_r_opt && no_integral.J_d_opt);
     for (const Figure* figure :
          {&no_integral.J_r, &no_integral.J_d, &no_integral.J_rd, &no_integral.I_perf, &no_integral.Deg})
@@ -133,7 +133,7 @@ TEST(Tradeoffs, OfANonlinearPidAreThoseOfItsResponsesToTheGivenSteps) {
     options.setpoint_step = 3;
     options.load_step = -0.5;
     Tradeoffs tradeoffs(plant, options);
-    const auto linear = tradeoffs.of(Pid{.Kp = 0.7, .Ti = 10}, {});
+    const auto linear = tradeoffs.of(IdealPid{.Kp = 0.7, .Ti = 10}, {});
     const auto wide = tradeoffs.of(Npid{.Kp = 0.7, .Ti = 10, .delta_r = 3e4}, {});
     EXPECT_NEAR(*wide.plant.J_r / *linear.plant.J_r, 1, 1e-4);
     EXPECT_NEAR(*wide.plant.J_d / *linear.plant.J_d, 1, 1e-4);
@@ -148,7 +148,7 @@ TEST(Tradeoffs, OfANonlinearPidAreThoseOfItsResponsesToTheGivenSteps) {
 }
 
 TEST(Tradeoffs, WithoutAModelThePlantKeepsItsOwnFigures) {
-    const auto unstable = Tradeoffs(Fopdt{-1, -10, 1}).of(Pid{.Kp = 4, .Ti = 20}, {});
+    const auto unstable = Tradeoffs(Fopdt{-1, -10, 1}).of(IdealPid{.Kp = 4, .Ti = 20}, {});
     EXPECT_TRUE(unstable.plant.J_r && unstable.plant.J_d && unstable.plant.Ms);
     const TradeoffFigures& f = unstable.plant;
     for (const Figure* figure : {&f.J_rd, &f.J_r_opt, &f.J_d_opt, &f.I_perf, &f.Deg})

@@ -92,7 +92,7 @@ TEST(Tune, NamesTheObjectiveThatMeasuredPointsAllow) {
 
 TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {
     auto request = request_for(kPlant, {method("simc"), method("amigo"), method("simc", {{"tau_c", 9.0}})});
-    request.baseline = Pid{.Kp = 0.5, .Ti = 10};
+    request.baseline = IdealPid{.Kp = 0.5, .Ti = 10};
     const auto result = tune(request, {});
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_THAT(methods_of(*result), ElementsAre("simc", "amigo", "simc", "baseline"));
@@ -106,14 +106,14 @@ TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {
     EXPECT_FALSE(result->controllers[0].reduced_model);
     EXPECT_FALSE(result->model);
     EXPECT_FALSE(result->partial);
-    EXPECT_EQ(std::get<Pid>(result->controllers[3].evaluation->controller).Kp, 0.5);
+    EXPECT_EQ(std::get<IdealPid>(result->controllers[3].evaluation->controller).Kp, 0.5);
 }
 
 TEST(Tune, RanksByLoadIaeWithinTheMsLimitThenTheRestThenTheUnstable) {
     // Ziegler-Nichols is fast but far above Ms = 2 here; the baseline does not stabilise.
     auto request =
         request_for(kPlant, {method("ziegler_nichols_step"), method("simc", {{"tau_c", 12.0}}), method("simc")});
-    request.baseline = Pid{.Kp = 50, .Ti = 10};
+    request.baseline = IdealPid{.Kp = 50, .Ti = 10};
     const auto result = tune(request, {});
     ASSERT_TRUE(result);
     const auto& entries = result->controllers;
@@ -206,7 +206,7 @@ TEST(Tune, CancelledBeforeADesignIsAnErrorAfterwardsAPartialResult) {
         if (progress.best) stop.request_stop();
     };
     auto request = request_for(kPlant, {method("simc"), method("amigo"), method("lambda")});
-    request.baseline = Pid{.Kp = 0.5, .Ti = 10};
+    request.baseline = IdealPid{.Kp = 0.5, .Ti = 10};
     const auto partial = tune(request, control);
     ASSERT_TRUE(partial);
     EXPECT_TRUE(partial->partial);
@@ -249,7 +249,7 @@ TEST(Tune, RecordIsIdentifiedFirstAndTheModelIsTuned) {
     ASSERT_TRUE(result->model);
     EXPECT_GT(result->model->fit_percent, 99);
     // K 1.5, T 8, L 2: Kp = 8/(1.5 4), Ti = 8.
-    const Pid pid = std::get<Pid>(result->controllers[0].evaluation->controller);
+    const IdealPid pid = std::get<IdealPid>(result->controllers[0].evaluation->controller);
     EXPECT_NEAR(pid.Kp, 8 / 6.0, 0.05);
     EXPECT_NEAR(pid.Ti, 8, 0.2);
     EXPECT_EQ(seen.front().stage, "identify");

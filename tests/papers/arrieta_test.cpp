@@ -52,7 +52,7 @@ TuningEntry by_degradation(const Plant& plant, double degradation, bool exact = 
     return entry(plant, method);
 }
 
-const Pid& pid_of(const TuningEntry& entry) { return std::get<Pid>(entry.evaluation->controller); }
+const IdealPid& pid_of(const TuningEntry& entry) { return std::get<IdealPid>(entry.evaluation->controller); }
 
 double Ms_with(const Fopdt& model, const ArrietaConstants& constants) {
     EvaluateOptions options;
@@ -72,8 +72,8 @@ TEST(Arrieta, Table3FollowsFromTheProcessAndFromThePrintedModel) {
     EXPECT_NEAR(model->L, 0.691, 5.1e-4);
     for (const char* level : kLevels) {
         const Json& row = reference()["table3"][level];
-        const Pid on_process = pid_of(by_degradation(kProcess, std::stod(level)));
-        const Pid on_model = pid_of(by_degradation(kModel, std::stod(level)));
+        const IdealPid on_process = pid_of(by_degradation(kProcess, std::stod(level)));
+        const IdealPid on_model = pid_of(by_degradation(kModel, std::stod(level)));
         const std::array<std::array<double, 2>, 3> settings = {
             {{on_process.Kp, on_model.Kp}, {on_process.Ti, on_model.Ti}, {on_process.Td, on_model.Td}}};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -131,7 +131,7 @@ TEST(Arrieta, EveryFigureOfTheExampleOnBothPlantsAgreesWithTheRecomputedOnes) {
 TEST(Arrieta, ConstantsAreThoseOfThePrintedTables) {
     const auto expect_same = [](const ArrietaConstants& ours, const ArrietaConstants& printed) {
         const Fopdt model{.K = 2, .T = 3, .L = 1.7};
-        const Pid a = arrieta_pid(ours, model), b = arrieta_pid(printed, model);
+        const IdealPid a = arrieta_pid(ours, model), b = arrieta_pid(printed, model);
         EXPECT_DOUBLE_EQ(a.Kp, b.Kp);
         EXPECT_DOUBLE_EQ(a.Ti, b.Ti);
         EXPECT_DOUBLE_EQ(a.Td, b.Td);
@@ -209,7 +209,7 @@ TEST(Arrieta, OptimaAndDegradationsOverTheRangeAgreeWithTheRecomputedOnes) {
         const Fopdt model = scaled_model(tau);
         const TradeoffScale scale(*LinearPlant::make(model), reference_controllers(model));
         for (const auto& [Ms, I_perf] : row["Iperf_eq9_b3"].items()) {
-            const Pid pid = arrieta_pid(arrieta_equation_9(std::stod(Ms), ArrietaC3::printed), model);
+            const IdealPid pid = arrieta_pid(arrieta_equation_9(std::stod(Ms), ArrietaC3::printed), model);
             EXPECT_NEAR(*scale.figures(to_parallel(pid)).I_perf / I_perf.get<double>(), 1, 2e-3) << tau << " " << Ms;
         }
     }

@@ -20,7 +20,7 @@ Expected<TunedController> robust(const Plant& plant, const MethodOptions& option
     return find_method("robust")->tune(TuningProblem{plant, *linear, std::nullopt}, options, {});
 }
 
-Evaluation evaluated(const Plant& plant, const Pid& pid) {
+Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     EvaluateOptions options;
     options.points = 0;
     const auto evaluation = evaluate(plant, pid, options);
@@ -51,7 +51,7 @@ TEST(Garpinger, PrintedDesignsComeOutAsPrinted) {
         options.set("constraint", std::string(row.constraint));
         const auto tuned = robust(row.plant, options);
         ASSERT_TRUE(tuned.has_value()) << row.where << ": " << tuned.error().message;
-        const Pid& c = tuned->controller;
+        const IdealPid& c = tuned->controller;
         EXPECT_NEAR(c.Kp, row.Kp, 0.005) << row.where;
         EXPECT_NEAR(c.Ti, row.Ti, 0.005) << row.where;
         EXPECT_NEAR(c.Td, row.Td, 0.005) << row.where;
@@ -126,7 +126,7 @@ TEST(Garpinger, EvaluationAgreesWithTheReferenceOnItsOwnDesigns) {
         for (const char* name : {"pid_M1.4_td10", "pid_M1.4_fixedTf", "pi_M1.4"}) {
             const auto& r = row[name];
             if (r.value("degenerate", false) || !r.value("feasible", false)) continue;
-            Pid pid{.Kp = r["K"], .Ti = r["Ti"], .Td = r["Td"]};
+            IdealPid pid{.Kp = r["K"], .Ti = r["Ti"], .Td = r["Td"]};
             if (r["Tf"].get<double>() > 0) pid.filter = {FilterType::measurement_second_order, r["Tf"].get<double>()};
             const TransferFunction plant{row["plant"]["num"], row["plant"]["den"], row["plant"]["delay"]};
             const auto e = evaluated(plant, pid);

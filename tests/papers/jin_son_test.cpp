@@ -69,7 +69,7 @@ SetpointPerformance figures(const std::string& row, std::optional<double> horizo
     options.horizon = horizon;
     const Controller controller = is_nonlinear(row)
                                       ? Controller(Npid{.Kp = Kp, .Ti = Ti, .Td = Td, .delta_r = 1, .filter = filter})
-                                      : Controller(Pid{.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter});
+                                      : Controller(IdealPid{.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter});
     const auto evaluation = evaluate(PlantModel(process(process_of(row))), controller, options);
     EXPECT_TRUE(evaluation.has_value() && evaluation->robustness.stable) << row;
     return evaluation->performance.setpoint;
@@ -137,7 +137,7 @@ TEST(JinSon, AFilteredDerivativeAgreesWithTheRecomputationToo) {
     }
 }
 
-double cost_of(const std::string& row, const LinearPlant& plant, const Pid& pid) {
+double cost_of(const std::string& row, const LinearPlant& plant, const IdealPid& pid) {
     ResponseOptions options;
     options.settled = 1e-8;
     const auto response = simulate_npid(plant, to_parallel(pid), 1, {1, 0}, options);

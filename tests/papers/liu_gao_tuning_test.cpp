@@ -33,13 +33,15 @@ Expected<TunedController> tuned(const char* method, const Plant& plant,
     return find_method(method)->tune(TuningProblem{plant, *LinearPlant::make(plant), std::nullopt}, options, {});
 }
 
-Pid proposed() { return tuned("rimc", kModel, {{"lambda", 0.9}, {"Tf_over_Td", 0.0}})->controller; }
-Pid skogestad() { return tuned("simc", kProcess, {{"tau_c", 1.0}, {"filter/Tf_over_Td", 0.0}})->controller; }
-Pid imc() { return tuned("imc", kProcess, {{"lambda", 0.45}, {"filter/Tf_over_Td", 0.0}})->controller; }
+IdealPid proposed() { return tuned("rimc", kModel, {{"lambda", 0.9}, {"Tf_over_Td", 0.0}})->controller; }
+IdealPid skogestad() { return tuned("simc", kProcess, {{"tau_c", 1.0}, {"filter/Tf_over_Td", 0.0}})->controller; }
+IdealPid imc() { return tuned("imc", kProcess, {{"lambda", 0.45}, {"filter/Tf_over_Td", 0.0}})->controller; }
 
-Pid of_row(const std::string& name) { return name == "proposed" ? proposed() : name == "imc" ? imc() : skogestad(); }
+IdealPid of_row(const std::string& name) {
+    return name == "proposed" ? proposed() : name == "imc" ? imc() : skogestad();
+}
 
-Evaluation evaluated(const Plant& plant, const Pid& pid) {
+Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     EvaluateOptions options;
     options.points = 0;
     const auto evaluation = evaluate(plant, pid, options);
@@ -48,7 +50,7 @@ Evaluation evaluated(const Plant& plant, const Pid& pid) {
 }
 
 /// k_c, tau_i (the inverse integral gain), tau_d (the derivative gain): Eq. 26.
-std::array<double, 3> as_printed(const Pid& pid) { return {pid.Kp, pid.Ti / pid.Kp, pid.Td * pid.Kp}; }
+std::array<double, 3> as_printed(const IdealPid& pid) { return {pid.Kp, pid.Ti / pid.Kp, pid.Td * pid.Kp}; }
 
 TEST(LiuGao, Table2ComesOutToEveryPrintedDigit) {
     for (const auto& [name, row] : reference()["table2"]["rows"].items()) {
@@ -64,7 +66,7 @@ TEST(LiuGao, Table2ComesOutToEveryPrintedDigit) {
 }
 
 TEST(LiuGao, RecoveryTimesGiveThePapersReductions) {
-    const auto recovery = [](const Pid& pid) { return *evaluated(kProcess, pid).performance.load.recovery_time; };
+    const auto recovery = [](const IdealPid& pid) { return *evaluated(kProcess, pid).performance.load.recovery_time; };
     const double ours = recovery(proposed()), skogestads = recovery(skogestad()), imcs = recovery(imc());
     EXPECT_NEAR(ours / 17.0, 1, 0.01);
     EXPECT_NEAR(skogestads / 33.9, 1, 0.01);
@@ -77,7 +79,7 @@ TEST(LiuGao, Example3RespondsAsRecomputedAlsoOnThePerturbedPlant) {
     const Json& tolerance = reference()["tolerance_response"];
     int unstable = 0;
     for (const Json& row : reference()["example3_disturbance"]) {
-        Pid pid = of_row(row["tuning"]);
+        IdealPid pid = of_row(row["tuning"]);
         const double Tf = row["T_f"];
         pid.filter = Tf > 0 ? Filter{FilterType::derivative, Tf} : Filter{};
         const std::string which = row.dump();

@@ -58,7 +58,7 @@ MethodOptions options_of(const Json& row) {
     return options;
 }
 
-std::vector<double> settings(const Pid& pid) { return {pid.Kp, pid.Ti, pid.Td}; }
+std::vector<double> settings(const IdealPid& pid) { return {pid.Kp, pid.Ti, pid.Td}; }
 
 TEST(Mhaskar, OptimaOfTheSecondLevelAreTheRecomputedOnes) {
     for (const Json& row : reference()["level2"]) {
@@ -219,7 +219,7 @@ TEST(Mhaskar, ImcOnTheDefaultStepTestIsTableIIIsFirstRow) {
     ASSERT_TRUE(answer) << answer.error().message;
     const LevelOneRow* step = row_of(*answer->report_as<EmulationReport>(), "imc", "step");
     ASSERT_TRUE(step && step->controller) << (step ? step->error : "no row");
-    const auto imc_I = settings(std::get<Pid>(*step->controller));
+    const auto imc_I = settings(std::get<IdealPid>(*step->controller));
     EXPECT_NEAR(imc_I[0] / -1342.7, 1, 0.01);
     EXPECT_NEAR(imc_I[1] / 0.95, 1, 0.01);
     EXPECT_NEAR(imc_I[2] / 0.0524, 1, 0.02);
@@ -235,12 +235,12 @@ TEST(Mhaskar, TheFirstLevelsImcRowsAreTableIIIs) {
     ASSERT_TRUE(answer) << answer.error().message;
     const LevelOneRow* linear = row_of(*answer->report_as<EmulationReport>(), "imc", "linear");
     ASSERT_TRUE(linear && linear->controller) << (linear ? linear->error : "no row");
-    const auto imc_II = settings(std::get<Pid>(*linear->controller));
+    const auto imc_II = settings(std::get<IdealPid>(*linear->controller));
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(imc_II[i] / reference()["level1"]["IMC_II_lambda_0p2"][i].get<double>(), 1, 1e-6);
     const LevelOneRow* step = row_of(*answer->report_as<EmulationReport>(), "imc", "step");
     ASSERT_TRUE(step && step->controller) << (step ? step->error : "no row");
-    const auto imc_I = settings(std::get<Pid>(*step->controller));
+    const auto imc_I = settings(std::get<IdealPid>(*step->controller));
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(imc_I[i] / reference()["level1"]["step_tests"][0]["CA_IMC_PID_lambda_0p2"][i].get<double>(), 1,
                     0.01);

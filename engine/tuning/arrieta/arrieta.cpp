@@ -31,7 +31,7 @@ public:
         : model_(model), scale_(*LinearPlant::make(model), references) {}
 
     std::optional<double> degradation(double Ms) const {
-        const Pid pid = arrieta_pid(arrieta_equation_9(Ms, ArrietaC3::refitted), model_);
+        const IdealPid pid = arrieta_pid(arrieta_equation_9(Ms, ArrietaC3::refitted), model_);
         return pid.Td >= 0 ? scale_.degradation(to_parallel(pid)) : std::nullopt;
     }
 
@@ -113,7 +113,7 @@ Expected<TunedController> answer(const TuningProblem& problem, const ReducedMode
                                  const ArrietaConstants& constants, ArrietaSettings report,
                                  std::vector<Warning> warnings) {
     const double tau = model.L / model.T1;
-    const Pid pid = arrieta_pid(constants, report.model);
+    const IdealPid pid = arrieta_pid(constants, report.model);
     if (pid.Td < 0 || pid.Ti <= 0 || pid.Kp * model.K <= 0)
         return degenerate("plant",
                           "The rule gives Kp = " + text(pid.Kp) + ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +

@@ -53,9 +53,9 @@ ArrietaConstants arrieta_equation_9(double M, ArrietaC3 c3) {
             .c3 = printed ? (0.1331 * M - 0.4733) * M + 0.4032 : (0.1331 * M - 0.4320) * M + 0.3330};
 }
 
-Pid arrieta_pid(const ArrietaConstants& k, const Fopdt& model) {
+IdealPid arrieta_pid(const ArrietaConstants& k, const Fopdt& model) {
     const double tau = model.L / model.T;
-    Pid pid;
+    IdealPid pid;
     pid.Kp = power_law(k.a1, k.b1, k.c1, tau) / model.K;
     pid.Ti = power_law(k.a2, k.b2, k.c2, tau) * model.T;
     pid.Td = power_law(k.a3, k.b3, k.c3, tau) * model.T;

@@ -51,6 +51,6 @@ ArrietaConstants arrieta_equation_9(double Ms, ArrietaC3 c3);
 ///
 /// Source: Arrieta, Vilanova and Alfaro, Performance degradation driven PID controller design, IFAC Conf. Advances in
 /// PID Control PID'12 (2012), Eqs. 1, 7-9, Tables 1 and 2.
-Pid arrieta_pid(const ArrietaConstants& constants, const Fopdt& model);
+IdealPid arrieta_pid(const ArrietaConstants& constants, const Fopdt& model);
 
 }  // namespace tunewright

@@ -40,7 +40,7 @@ Expected<Loop> usable_loop(const LinearPlant& plant, const ParallelPid& controll
     return *loop;
 }
 
-Expected<double> iae_with(const LinearPlant& plant, const Pid& pid, const StepInputs& inputs) {
+Expected<double> iae_with(const LinearPlant& plant, const IdealPid& pid, const StepInputs& inputs) {
     const auto loop = usable_loop(plant, to_parallel(pid));
     if (!loop) return loop.error();
     const auto IAE = step_iae(*loop, inputs);
@@ -195,8 +195,8 @@ LogSettings start_at(std::span<const Optimum> table, double tau, bool load) {
             std::log(std::lerp(a.derivative_time, b.derivative_time, at) * L)};
 }
 
-Pid controller_at(const LogSettings& x) {
-    Pid pid;
+IdealPid controller_at(const LogSettings& x) {
+    IdealPid pid;
     pid.Kp = std::exp(x[0]);
     pid.Ti = std::exp(x[1]);
     pid.Td = std::exp(x[2]);
@@ -217,7 +217,7 @@ double log_iae(const LinearPlant& plant, const LogSettings& x, bool load) {
     return std::log(integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final));
 }
 
-Pid best_from(const LogSettings& start, const LinearPlant& plant, bool load) {
+IdealPid best_from(const LogSettings& start, const LinearPlant& plant, bool load) {
     LocalOptions options;
     options.step = {kFirstStep, kFirstStep, kFirstStep};
     options.tolerance = kOptimumAccuracy;
@@ -226,7 +226,7 @@ Pid best_from(const LogSettings& start, const LinearPlant& plant, bool load) {
     return controller_at(find_local_minimum(LocalSearch::nelder_mead, cost, start, options).x);
 }
 
-Pid scaled(Pid pid, double K, double time) {
+IdealPid scaled(IdealPid pid, double K, double time) {
     pid.Kp /= K;
     pid.Ti *= time;
     pid.Td *= time;

@@ -25,8 +25,8 @@ namespace tunewright {
 /// The PID controllers that are best for set points alone and for loads alone on a first-order model. Both have b = 1,
 /// c = 0 and the derivative of the measurement filtered with Tf = Td/10.
 struct IdealControllers {
-    Pid servo;  ///< least IAE of a set-point step
-    Pid load;   ///< least IAE of a load step
+    IdealPid servo;  ///< least IAE of a set-point step
+    IdealPid load;   ///< least IAE of a load step
 };
 
 /// Short local searches from tabulated optima; the IAE on the model is within 1e-4 of the least one (mostly 1e-6). In
@@ -47,7 +47,7 @@ TradeoffFigures no_tradeoff(const std::string& reason);
 struct ReferenceControllers {
     Fopdt model;
     IdealControllers ideal;
-    std::optional<Pid> free;  ///< empty below L/T of 0.045, where the rule gives Td < 0
+    std::optional<IdealPid> free;  ///< empty below L/T of 0.045, where the rule gives Td < 0
 };
 
 /// Errors: those of ideal_controllers().

@@ -18,7 +18,7 @@ constexpr int kMsPoints = 13;     // 1.4, 1.45 ... 2
 
 void add_point(std::vector<ProfilePoint>& points, double level, const ArrietaConstants& constants, const Fopdt& model,
                const TradeoffScale& scale) {
-    const Pid pid = arrieta_pid(constants, model);
+    const IdealPid pid = arrieta_pid(constants, model);
     if (pid.Td < 0) return;
     const TradeoffFigures f = scale.figures(to_parallel(pid));
     if (f.Deg && f.Ms) points.push_back({level, *f.Ms, *f.J_r, *f.J_d, *f.J_rd, *f.I_perf, *f.Deg});

@@ -23,7 +23,7 @@ Criterion::Criterion(const EmulationProblem& problem, const std::vector<Trajecto
                     static_cast<double>(trajectories.size());
 }
 
-PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop) const {
+PidRun Criterion::run(std::size_t scenario, const IdealPid& pid, double tolerance, const std::stop_token& stop) const {
     const Scenario& asked = problem_.scenarios[scenario];
     NonlinearOptions options;
     options.tolerance = tolerance;
@@ -38,7 +38,7 @@ PidRun Criterion::run(std::size_t scenario, const Pid& pid, double tolerance, co
             std::move(response.ended)};
 }
 
-Cost Criterion::weigh(const Pid& pid, double tolerance, const std::stop_token& stop,
+Cost Criterion::weigh(const IdealPid& pid, double tolerance, const std::stop_token& stop,
                       std::vector<double>* residuals) const {
     Cost cost;
     if (residuals != nullptr) residuals->clear();

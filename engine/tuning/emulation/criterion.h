@@ -39,12 +39,13 @@ public:
     Criterion(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories);
 
     /// `stop` ends the run early.
-    PidRun run(std::size_t scenario, const Pid& pid, double tolerance, const std::stop_token& stop = {}) const;
-    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop = {}) const {
+    PidRun run(std::size_t scenario, const IdealPid& pid, double tolerance, const std::stop_token& stop = {}) const;
+    Cost cost(const IdealPid& pid, double tolerance, const std::stop_token& stop = {}) const {
         return weigh(pid, tolerance, stop, nullptr);
     }
     /// The same, and residuals whose squares add up to J.
-    Cost cost(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>& residuals) const {
+    Cost cost(const IdealPid& pid, double tolerance, const std::stop_token& stop,
+              std::vector<double>& residuals) const {
         return weigh(pid, tolerance, stop, &residuals);
     }
     /// J, or where a run ended early more than that: the earlier, the more. Finite.
@@ -54,7 +55,8 @@ public:
     const std::vector<Trajectory>& trajectories() const { return trajectories_; }
 
 private:
-    Cost weigh(const Pid& pid, double tolerance, const std::stop_token& stop, std::vector<double>* residuals) const;
+    Cost weigh(const IdealPid& pid, double tolerance, const std::stop_token& stop,
+               std::vector<double>* residuals) const;
 
     const EmulationProblem& problem_;
     const std::vector<Trajectory>& trajectories_;

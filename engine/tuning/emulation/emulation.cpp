@@ -38,7 +38,7 @@ Expected<EmulatedDesign> full(const Criterion& criterion, const Remark6& remark6
     std::vector<SettingsPoint> starts;
     if (auto point = remark6.best(bounds)) starts.push_back(std::move(*point));
     for (const LevelOneRow& row : rows)
-        if (const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr)
+        if (const IdealPid* pid = row.controller ? std::get_if<IdealPid>(&*row.controller) : nullptr)
             starts.push_back(point_of(criterion.problem(), *pid));
     const auto optimum = find_optimum(criterion, bounds, starts, control);
     if (!optimum) return cancelled();

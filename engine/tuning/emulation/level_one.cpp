@@ -159,7 +159,7 @@ private:
             return;
         }
         if (tuned->reduced_model) row.model = tuned->reduced_model;
-        Pid pid = tuned->controller;
+        IdealPid pid = tuned->controller;
         if (tuned->nonlinear_integral || (!problem_.with_derivative && pid.Td > 0 && row.method != kImc)) {
             row.error = row.method + " has no linear " + wanted_word() + " controller.";
             return;
@@ -239,9 +239,9 @@ private:
 };
 
 // The magnitudes of one parameter over the rows.
-std::vector<double> magnitudes(const std::vector<Pid>& settings, double Pid::*member) {
+std::vector<double> magnitudes(const std::vector<IdealPid>& settings, double IdealPid::*member) {
     std::vector<double> values;
-    for (const Pid& pid : settings)
+    for (const IdealPid& pid : settings)
         if (const double value = std::abs(pid.*member); value > 0 && std::isfinite(value)) values.push_back(value);
     return values;
 }
@@ -271,9 +271,9 @@ Expected<std::vector<LevelOneRow>> level_one(const EmulationProblem& problem, co
 Expected<Bounds> search_bounds(const EmulationProblem& problem, const std::vector<LevelOneRow>& rows) {
     std::map<std::string, NumberRange> ranges = problem.bounds;
     double sign = 0;  // that of the first row: an unstable plant's static gain does not show it
-    std::vector<Pid> settings;
+    std::vector<IdealPid> settings;
     for (const LevelOneRow& row : rows) {
-        const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
+        const IdealPid* pid = row.controller ? std::get_if<IdealPid>(&*row.controller) : nullptr;
         if (pid == nullptr) continue;
         if (sign == 0) sign = pid->Kp < 0 ? -1 : 1;
         if (sign * pid->Kp > 0) settings.push_back(*pid);
@@ -283,16 +283,16 @@ Expected<Bounds> search_bounds(const EmulationProblem& problem, const std::vecto
     if (!complete && settings.empty()) return nothing_to_start_from(rows);
     const NumberRange alpha = problem.level_one.alpha;
     if (!ranges.contains("Kp")) {
-        const NumberRange size = widened(magnitudes(settings, &Pid::Kp), alpha);
+        const NumberRange size = widened(magnitudes(settings, &IdealPid::Kp), alpha);
         ranges["Kp"] = sign > 0 ? size : NumberRange{-size.high, -size.low};
     }
     if (!ranges.contains("Ti")) {
-        const auto times = magnitudes(settings, &Pid::Ti);
+        const auto times = magnitudes(settings, &IdealPid::Ti);
         if (times.empty()) return nothing_to_start_from(rows);
         ranges["Ti"] = widened(times, {std::max(alpha.low, kMinAlphaOfTi), alpha.high});
     }
     if (problem.with_derivative && !ranges.contains("Td")) {
-        const auto times = magnitudes(settings, &Pid::Td);
+        const auto times = magnitudes(settings, &IdealPid::Td);
         ranges["Td"] = times.empty() ? NumberRange{0, ranges["Ti"].high / 4} : widened(times, alpha);
     }
     Bounds bounds;

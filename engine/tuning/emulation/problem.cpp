@@ -215,8 +215,8 @@ std::vector<std::string> unknowns(const EmulationProblem& problem) {
     return names;
 }
 
-Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point) {
-    Pid pid{.Kp = point[0], .Ti = point[1]};
+IdealPid controller_at(const EmulationProblem& problem, const SettingsPoint& point) {
+    IdealPid pid{.Kp = point[0], .Ti = point[1]};
     if (!problem.with_derivative) return pid;
     pid.Td = point[2];
     pid.c = problem.error_derivative ? 1 : 0;
@@ -224,7 +224,7 @@ Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point) {
     return pid;
 }
 
-SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid) {
+SettingsPoint point_of(const EmulationProblem& problem, const IdealPid& pid) {
     SettingsPoint point = {pid.Kp, pid.Ti};
     if (problem.with_derivative) point.push_back(pid.Td);
     if (problem.free_Tf()) point.push_back(pid.filter.Tf > 0 ? pid.filter.Tf : problem.Tf);

@@ -74,10 +74,10 @@ struct Bounds {
 };
 
 /// The controller at a point: b = 1, the filter derivative with PID.
-Pid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
+IdealPid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
 
 /// The point of a controller; a PI of a PID problem has Td = 0.
-SettingsPoint point_of(const EmulationProblem& problem, const Pid& pid);
+SettingsPoint point_of(const EmulationProblem& problem, const IdealPid& pid);
 
 SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
 

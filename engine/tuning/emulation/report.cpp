@@ -141,7 +141,7 @@ void judge_fit(EmulationFit& fit) {
                                       "or implement the nonlinear controller itself.";
 }
 
-void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pid& pid) {
+void add_scenarios(EmulationReport& report, const Criterion& criterion, const IdealPid& pid) {
     const EmulationProblem& problem = criterion.problem();
     const std::vector<double> weights = simpson_weights(problem);
     const std::size_t every = stride(problem);
@@ -171,7 +171,7 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Pi
 }
 
 void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6, const std::stop_token& stop) {
-    const Pid* pid = row.controller ? std::get_if<Pid>(&*row.controller) : nullptr;
+    const IdealPid* pid = row.controller ? std::get_if<IdealPid>(&*row.controller) : nullptr;
     if (pid == nullptr || stop.stop_requested()) return;
     const EmulationProblem& problem = criterion.problem();
     const Judgement judgement = judge(criterion, remark6, point_of(problem, *pid));

@@ -19,7 +19,7 @@ namespace {
 
 // The figures of a design that progress carries: on the linearisation, for a unit load. Empty where that loop is not
 // stable.
-std::optional<BestSoFar> best_so_far(const LinearPlant& plant, const Pid& pid) {
+std::optional<BestSoFar> best_so_far(const LinearPlant& plant, const IdealPid& pid) {
     const auto loop = Loop::make(plant, to_parallel(pid));
     if (!loop || !count_unstable_poles(*loop).stable()) return std::nullopt;
     if (plant.dead_time() > 0 && loop->high_frequency_gain() >= 1) return std::nullopt;

@@ -36,12 +36,12 @@ std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule
 
 Expected<TunedController> tune_first_order(const TuningProblem& problem, const FirstOrderOptions& options,
                                            const FirstOrderRule& rule,
-                                           const std::function<Pid(const ReducedModel&)>& settings) {
+                                           const std::function<IdealPid(const ReducedModel&)>& settings) {
     const auto model = rule_model(problem, options.reduction,
                                   {.preferred = ReductionMethod::tangent, .tangent_time = rule.tangent_time});
     if (!model) return model.error();
     if (const auto error = unfit(*model, rule)) return *error;
-    Pid controller = settings(*model);
+    IdealPid controller = settings(*model);
     if (!(controller.Ti > 0))
         return degenerate("plant",
                           rule.name + " gives a negative integral time for L/T = " + text(model->L / model->T1) +

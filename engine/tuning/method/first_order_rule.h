@@ -35,6 +35,6 @@ std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule
 /// integrating plants.
 Expected<TunedController> tune_first_order(const TuningProblem& problem, const FirstOrderOptions& options,
                                            const FirstOrderRule& rule,
-                                           const std::function<Pid(const ReducedModel&)>& settings);
+                                           const std::function<IdealPid(const ReducedModel&)>& settings);
 
 }  // namespace tunewright

@@ -26,7 +26,7 @@ namespace tunewright {
 class NonlinearSystem;
 
 struct TunedController {
-    Pid controller;
+    IdealPid controller;
     bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
     std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
     std::vector<Warning> warnings;
@@ -43,7 +43,7 @@ struct TunedController {
 
 /// The controller that the method answers.
 inline Controller controller_of(const TunedController& tuned) {
-    const Pid& pid = tuned.controller;
+    const IdealPid& pid = tuned.controller;
     if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
     return pid;
 }

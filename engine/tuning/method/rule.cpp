@@ -84,7 +84,7 @@ Warning no_second_lag() {
         "The model has no second lag, which the rule's derivative action would cancel: the answer is a PI controller."};
 }
 
-Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warnings) {
+Expected<TunedController> rule_answer(const IdealPid& pid, std::vector<Warning> warnings) {
     const bool finite = std::isfinite(pid.Kp) && pid.Kp != 0 && pid.Ti > 0 && std::isfinite(pid.Td) && pid.Td >= 0;
     if (!finite)
         return Error{
@@ -97,7 +97,7 @@ Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warni
     return answer;
 }
 
-Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const Pid& pid,
+Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const IdealPid& pid,
                                       std::vector<Warning> warnings) {
     std::vector<Warning> all = model.warnings;
     all.insert(all.end(), warnings.begin(), warnings.end());

@@ -86,10 +86,10 @@ Warning no_second_lag();
 
 /// The answer: controller, warnings of the reduction first, the reduced model unless the plant was given in its form.
 /// Errors: numerical_failure if a parameter is not a finite number or Kp is 0.
-Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const Pid& pid,
+Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const IdealPid& pid,
                                       std::vector<Warning> warnings);
 
 /// The answer of a rule that works on no reduced model. Errors: as above.
-Expected<TunedController> rule_answer(const Pid& pid, std::vector<Warning> warnings);
+Expected<TunedController> rule_answer(const IdealPid& pid, std::vector<Warning> warnings);
 
 }  // namespace tunewright

@@ -14,7 +14,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const HaalmanOption
     if (!model) return model.error();
     if (const auto error = unfit(*model, {.name = "Haalman's rule"})) return *error;
     const double Ti = model->T1 + model->T2;
-    Pid answer{.Kp = 2 * Ti / (3 * model->K * model->L), .Ti = Ti, .Td = model->T1 * model->T2 / Ti};
+    IdealPid answer{.Kp = 2 * Ti / (3 * model->K * model->L), .Ti = Ti, .Td = model->T1 * model->T2 / Ti};
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
     if (wants_PID && answer.Td == 0) warnings.push_back(no_second_lag());

@@ -27,7 +27,7 @@ double binomial(int n, int k) {
     return value;
 }
 
-Pid by_maclaurin(const Model& model, const ImcFilter& f) {
+IdealPid by_maclaurin(const Model& model, const ImcFilter& f) {
     std::array<double, 4> d{};
     double power = 1, dead = 1;  // lambda^k and (-L)^k/k!
     for (int k = 1; k <= 4; ++k) {
@@ -39,14 +39,14 @@ Pid by_maclaurin(const Model& model, const ImcFilter& f) {
 }
 
 // (1 + a1 s + a2 s^2)/(K s (d0 + d1 s)): a PID with the filter time d1/d0.
-Pid by_pade(const Model& model, const ImcFilter& f) {
+IdealPid by_pade(const Model& model, const ImcFilter& f) {
     const double half = model.L / 2, lambda = f.lambda;
     const double a1 = model.second_order() ? model.n1 : model.n1 + half;
     const double a2 = model.second_order() ? model.n2 : model.n1 * half;
     const double d0 = f.n * lambda + (model.second_order() ? model.L : half);
     const double Tf = f.n == 2 ? lambda * lambda / d0 : 0;
     const double Kp = (a1 - Tf) / (model.K * d0);
-    Pid pid{.Kp = Kp, .Ti = a1 - Tf, .Td = a2 / (a1 - Tf) - Tf};
+    IdealPid pid{.Kp = Kp, .Ti = a1 - Tf, .Td = a2 / (a1 - Tf) - Tf};
     if (Tf > 0) pid.filter = {FilterType::derivative, Tf};
     return pid;
 }
@@ -69,7 +69,7 @@ std::optional<Error> unfit(const ReducedModel& model) {
         "Use simc, lambda, amigo or robust.");
 }
 
-Error no_pid(const Pid& pid, const ImcFilter& f) {
+Error no_pid(const IdealPid& pid, const ImcFilter& f) {
     const bool is_default_order = f.n == 1;
     return {ErrorKind::no_feasible_controller, "lambda",
             "lambda = " + text(f.lambda) + " with filter_order " + std::to_string(f.n) + " gives Kp = " + text(pid.Kp) +
@@ -103,7 +103,7 @@ Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOption
         return degenerate("plant/L", "The default lambda is the dead time, and the model has none.",
                           "Give lambda, the closed-loop time constant that you want.");
     const bool pade = options.expansion == ImcExpansion::pade;
-    Pid pid = pade ? by_pade(model, f) : by_maclaurin(model, f);
+    IdealPid pid = pade ? by_pade(model, f) : by_maclaurin(model, f);
     if (!(model.K * pid.Kp > 0) || !(pid.Ti > 0) || !(pid.Td >= 0)) return no_pid(pid, f);
     const bool own_filter = pid.filter.type != FilterType::none;
     if (own_filter && options.filter)
@@ -174,7 +174,7 @@ ImcTerms imc_terms(double K, double n1, double n2, const std::array<double, 4>& 
     return {m0 / K, m1 / K, m2 / K, m3 / K};
 }
 
-Pid maclaurin_pid(const ImcTerms& m) { return {.Kp = m.m1, .Ti = m.m1 / m.m0, .Td = m.m2 / m.m1}; }
+IdealPid maclaurin_pid(const ImcTerms& m) { return {.Kp = m.m1, .Ti = m.m1 / m.m0, .Td = m.m2 / m.m1}; }
 
 std::optional<double> linear_fraction_Tf(const ImcTerms& m) {
     if (m.m2 == 0) return std::nullopt;

@@ -46,7 +46,7 @@ struct ImcTerms {
 ImcTerms imc_terms(double K, double n1, double n2, const std::array<double, 4>& d);
 
 /// The first three terms as a PID: Kp = m1, Ti = m1/m0, Td = m2/m1 (Liu and Gao 2008, Eq. 26). No filter.
-Pid maclaurin_pid(const ImcTerms& terms);
+IdealPid maclaurin_pid(const ImcTerms& terms);
 
 /// The filter time that matches the fourth term too: C = (a0 + a1 s + a2 s^2)/(s (1 + Tf s)) with Tf = -m3/m2 has the
 /// gains of maclaurin_pid and its derivative filtered by Tf. Empty where there is none (Tf <= 0 or Td = 0).

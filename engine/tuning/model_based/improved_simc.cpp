@@ -7,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-Pid pi(const ReducedModel& model, double tau_c) {
+IdealPid pi(const ReducedModel& model, double tau_c) {
     const double horizon = tau_c + model.L, T = model.T1 + model.L / 3;
     if (model.integrators == 1) return {.Kp = 1 / (model.K * horizon), .Ti = 4 * horizon};
     return {.Kp = T / (model.K * horizon), .Ti = std::min(T, 4 * horizon)};
@@ -15,7 +15,7 @@ Pid pi(const ReducedModel& model, double tau_c) {
 
 // Series Kp, Ti, Td as Kp (1 + Td/Ti), Ti + Td, Ti Td/(Ti + Td); written without the quotient Kp/Ti = 0/0 that a pure
 // dead time would give.
-Pid pid(const ReducedModel& model, double tau_c) {
+IdealPid pid(const ReducedModel& model, double tau_c) {
     const double horizon = tau_c + model.L, Td = model.L / 3;
     const bool integrates = model.integrators == 1;
     const double Ti = integrates ? 4 * horizon : std::min(model.T1, 4 * horizon);
@@ -33,7 +33,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const ImprovedSimcO
     const bool wants_PID = options.controller == ControllerKind::PID;
     const double least = wants_PID ? model->L / 2 : model->L;
     const double tau_c = options.tau_c.value_or(least);
-    Pid answer = wants_PID ? pid(*model, tau_c) : pi(*model, tau_c);
+    IdealPid answer = wants_PID ? pid(*model, tau_c) : pi(*model, tau_c);
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
     if (tau_c < least)

@@ -12,13 +12,13 @@ double default_lambda(const ReducedModel& model) {
     return model.integrators == 1 ? std::sqrt(10.0) * model.L : std::max(model.T1, model.L);
 }
 
-Pid pi(const ReducedModel& model, double lambda) {
+IdealPid pi(const ReducedModel& model, double lambda) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1) return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L, 2)), .Ti = 2 * lambda + L};
     return {.Kp = T / (K * (lambda + L)), .Ti = T};
 }
 
-Pid pid(const ReducedModel& model, double lambda) {
+IdealPid pid(const ReducedModel& model, double lambda) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1)
         return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L / 2, 2)),
@@ -54,7 +54,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const LambdaOptions
                           "Give lambda, the closed-loop time constant that you want.");
 
     const bool wants_PID = options.controller == ControllerKind::PID;
-    Pid controller = wants_PID ? pid(*model, lambda) : pi(*model, lambda);
+    IdealPid controller = wants_PID ? pid(*model, lambda) : pi(*model, lambda);
     controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
     return rule_answer(problem, *model, controller, remarks(*model, lambda, wants_PID));
 }

@@ -26,7 +26,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const VisioliIntegr
                           "a fixed filter Tf.");
     const Row& row = kTable.at(options.criterion);
     const double L = model->L;
-    Pid answer{.Kp = row.K_L_Kp / (model->K * L), .Ti = row.Ti_over_L * L, .Td = row.Td_over_L * L};
+    IdealPid answer{.Kp = row.K_L_Kp / (model->K * L), .Ti = row.Ti_over_L * L, .Td = row.Td_over_L * L};
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     return rule_answer(problem, *model, answer, {});
 }

@@ -84,8 +84,8 @@ private:
         }
     }
 
-    Pid controller(const std::vector<double>& x) const {
-        Pid pid{.Kp = sign_ * std::exp(x[0]), .Ti = std::exp(x[1])};
+    IdealPid controller(const std::vector<double>& x) const {
+        IdealPid pid{.Kp = sign_ * std::exp(x[0]), .Ti = std::exp(x[1])};
         if (!with_derivative_) return pid;
         pid.Td = std::exp(x[2]);
         const double Tf = problem_.Tf.value_or(problem_.Tf_over_Td * pid.Td);
@@ -93,7 +93,7 @@ private:
         return pid;
     }
 
-    std::vector<double> logs(const Pid& pid) const {
+    std::vector<double> logs(const IdealPid& pid) const {
         std::vector<double> x = {std::log(std::abs(pid.Kp)), std::log(pid.Ti)};
         if (with_derivative_) x.push_back(std::log(pid.Td > 0 ? pid.Td : std::exp(box_.low[2])));
         return x;
@@ -120,7 +120,7 @@ private:
     }
 
     /// ln of the criterion, time in periods; kNoLoop where the response does not settle.
-    double cost(const Pid& pid) const {
+    double cost(const IdealPid& pid) const {
         const auto loop = Loop::make(problem_.plant, to_parallel(pid));
         if (!loop) return kNoLoop;
         if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMaxNeutral) return kNoLoop;

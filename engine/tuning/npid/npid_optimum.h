@@ -15,13 +15,13 @@ enum class ErrorCriterion { ISE, IAE, ITAE };
 struct NpidProblem {
     const LinearPlant& plant;
     ErrorCriterion criterion = ErrorCriterion::IAE;
-    double Tf_over_Td = 0;          ///< of the derivative filter; 0: none
-    std::optional<double> Tf = {};  ///< fixed instead
-    std::optional<Pid> start = {};  ///< a rule's settings, tried too
+    double Tf_over_Td = 0;               ///< of the derivative filter; 0: none
+    std::optional<double> Tf = {};       ///< fixed instead
+    std::optional<IdealPid> start = {};  ///< a rule's settings, tried too
 };
 
 struct NpidOptimum {
-    Pid controller;         ///< linear part
+    IdealPid controller;    ///< linear part
     double cost = 0;        ///< for a unit step, delta_r 1
     bool at_bound = false;  ///< of the region searched
     bool stopped = false;   ///< by control.stop: the best so far

@@ -37,7 +37,7 @@ constexpr Rule kITAE = {ErrorCriterion::ITAE,
                         {1.0019, -0.9457, 0.8723, 0.1848, 0.3401, 0.9799},
                         {1.0093, -0.5198, 0.7813, 0.2781, 0.2878, 0.7317}};
 
-Pid settings(const Coefficients& c, double K, double T, double L) {
+IdealPid settings(const Coefficients& c, double K, double T, double L) {
     const double q = L / T;
     return {.Kp = c.a1 * std::pow(q, c.b1) / K, .Ti = T * (c.a2 + c.b2 * q), .Td = T * c.a3 * std::pow(q, c.b3)};
 }
@@ -76,7 +76,7 @@ Expected<TunedController> by_rule(const Rule& rule, const TuningProblem& problem
     if (!model) return model.error();
     if (auto error = unfit(*model)) return *error;
     const double q = model->L / model->T1;
-    Pid pid = settings(q <= kTable2To ? rule.short_delay : rule.long_delay, model->K, model->T1, model->L);
+    IdealPid pid = settings(q <= kTable2To ? rule.short_delay : rule.long_delay, model->K, model->T1, model->L);
     pid.filter = chosen_filter(options.filter, FilterType::derivative, pid.Td);
     auto answer = rule_answer(problem, *model, pid, remarks(q));
     if (answer) answer->nonlinear_integral = true;

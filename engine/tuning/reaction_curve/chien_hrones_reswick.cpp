@@ -3,13 +3,13 @@
 namespace tunewright {
 namespace {
 
-Pid regulation(ControllerKind controller, bool overshoots, double a, double L) {
+IdealPid regulation(ControllerKind controller, bool overshoots, double a, double L) {
     if (controller == ControllerKind::P) return {.Kp = (overshoots ? 0.7 : 0.3) / a};
     if (controller == ControllerKind::PI) return {.Kp = (overshoots ? 0.7 : 0.6) / a, .Ti = (overshoots ? 2.3 : 4) * L};
     return {.Kp = (overshoots ? 1.2 : 0.95) / a, .Ti = (overshoots ? 2 : 2.4) * L, .Td = 0.42 * L};
 }
 
-Pid servo(ControllerKind controller, bool overshoots, double a, double T, double L) {
+IdealPid servo(ControllerKind controller, bool overshoots, double a, double T, double L) {
     if (controller == ControllerKind::P) return {.Kp = (overshoots ? 0.7 : 0.3) / a};
     if (controller == ControllerKind::PI)
         return {.Kp = (overshoots ? 0.6 : 0.35) / a, .Ti = (overshoots ? 1 : 1.2) * T};

@@ -3,7 +3,7 @@
 namespace tunewright {
 namespace {
 
-Pid settings(ControllerKind controller, const ReducedModel& model) {
+IdealPid settings(ControllerKind controller, const ReducedModel& model) {
     const double L = model.L, q = L / model.T1, unit = 1 / (model.K * q);
     if (controller == ControllerKind::P) return {.Kp = unit * (1 + q / 3)};
     if (controller == ControllerKind::PI) return {.Kp = unit * (0.9 + q / 12), .Ti = L * (30 + 3 * q) / (9 + 20 * q)};

@@ -7,9 +7,9 @@
 
 namespace tunewright {
 
-Pid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model) {
+IdealPid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model) {
     const double q = model.L / model.T1;
-    Pid pid{.Kp = row.a1 * std::pow(q, row.b1) / model.K};
+    IdealPid pid{.Kp = row.a1 * std::pow(q, row.b1) / model.K};
     if (row.a2 != 0)
         pid.Ti = model.T1 * (law == IntegralLaw::power ? std::pow(q, row.b2) / row.a2 : 1 / (row.a2 + row.b2 * q));
     if (row.a3 != 0) pid.Td = model.T1 * row.a3 * std::pow(q, row.b3);
@@ -111,7 +111,7 @@ TuningMethod rovira_method() {
 
 namespace {
 
-Pid wang_settings(const ReducedModel& model) {
+IdealPid wang_settings(const ReducedModel& model) {
     const double K = model.K, T = model.T1, L = model.L, Ti = T + 0.5 * L;
     return {.Kp = (0.7303 + 0.5307 * T / L) * Ti / (K * (T + L)), .Ti = Ti, .Td = 0.5 * L * T / Ti};
 }

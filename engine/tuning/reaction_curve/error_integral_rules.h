@@ -26,7 +26,7 @@ struct ErrorIntegralRow {
 };
 
 /// `model`: first order, T > 0, L > 0.
-Pid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model);
+IdealPid error_integral_settings(const ErrorIntegralRow& row, IntegralLaw law, const ReducedModel& model);
 
 /// Integrals over time: ise of e^2, iae of |e|, itae of t |e|, itse of t e^2, iste and istse (the words of two sources)
 /// of t^2 e^2.

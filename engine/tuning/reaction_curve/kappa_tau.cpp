@@ -23,7 +23,7 @@ constexpr Row kPI20{{0.78, -4.1, 5.7}, {8.9, -6.6, 3.0}, kNone, {0.44, 0.78, -0.
 constexpr Row kPID14{{3.8, -8.4, 7.3}, {5.2, -2.5, -1.4}, {0.89, -0.37, -4.1}, {0.40, 0.18, 2.8}};
 constexpr Row kPID20{{8.4, -9.6, 9.8}, {3.2, -1.5, -0.93}, {0.86, -1.9, -0.44}, {0.22, 0.65, 0.051}};
 
-Pid settings(const Row& row, const ReducedModel& model) {
+IdealPid settings(const Row& row, const ReducedModel& model) {
     const double L = model.L, a = model.K * L / model.T1, tau = normalised_dead_time(model);
     return {.Kp = row.a_Kp.at(tau) / a,
             .Ti = row.Ti_over_L.at(tau) * L,

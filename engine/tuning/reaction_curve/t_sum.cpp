@@ -9,7 +9,7 @@ using enum ControllerKind;
 
 constexpr double kDeadTimeDominated = 0.5;  // L/T_sum, from where the fast settings lose their margins
 
-Pid settings(ControllerKind controller, TSumSpeed speed, double K, double T_sum) {
+IdealPid settings(ControllerKind controller, TSumSpeed speed, double K, double T_sum) {
     const bool fast = speed == TSumSpeed::fast;
     if (controller == P) return {.Kp = 1 / K};
     if (controller == PI) return {.Kp = (fast ? 1 : 0.5) / K, .Ti = (fast ? 0.7 : 0.5) * T_sum};
@@ -43,7 +43,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const TSumOptions& 
     const LinearPlant& plant = problem.linear;
     const double T_sum = plant.lag_sum() + plant.dead_time();
     if (const auto error = unfit(plant, T_sum, options)) return *error;
-    Pid answer = settings(options.controller, options.speed, plant.low_frequency_gain(), T_sum);
+    IdealPid answer = settings(options.controller, options.speed, plant.low_frequency_gain(), T_sum);
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     return rule_answer(answer, remarks(plant, T_sum, options));
 }

@@ -5,22 +5,22 @@
 namespace tunewright {
 namespace {
 
-Pid ise(const ReducedModel& model) {
+IdealPid ise(const ReducedModel& model) {
     const double L = model.L, q = L / model.T1;
     return {.Kp = (0.3 * q + 0.75) / (q + 0.05) / model.K, .Ti = L * 2.4 / (q + 0.4), .Td = L / (90 * q)};
 }
 
-Pid iae(const ReducedModel& model) {
+IdealPid iae(const ReducedModel& model) {
     const double L = model.L, q = L / model.T1;
     return {.Kp = 1 / (q + 0.2) / model.K, .Ti = L * (0.3 * q + 1.2) / (q + 0.08), .Td = L / (90 * q)};
 }
 
-Pid itae(const ReducedModel& model) {
+IdealPid itae(const ReducedModel& model) {
     const double L = model.L, q = L / model.T1;
     return {.Kp = 0.8 / (q + 0.1) / model.K, .Ti = L * (0.3 + 1 / q), .Td = L * 0.06 / (q + 0.04)};
 }
 
-template <Pid (*settings)(const ReducedModel&)>
+template <IdealPid (*settings)(const ReducedModel&)>
 Expected<TunedController> tune(const TuningProblem& problem, const FirstOrderOptions& options) {
     return tune_first_order(problem, options, {.name = "Tavakoli", .least = 0.1, .most = 2}, settings);
 }

@@ -5,7 +5,7 @@
 namespace tunewright {
 namespace {
 
-Pid settings(ControllerKind controller, double a, double L) {
+IdealPid settings(ControllerKind controller, double a, double L) {
     if (controller == ControllerKind::P) return {.Kp = 1 / a};
     if (controller == ControllerKind::PI) return {.Kp = 0.9 / a, .Ti = L / 0.3};
     return {.Kp = 1.2 / a, .Ti = 2 * L, .Td = 0.5 * L};
@@ -26,7 +26,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const ZieglerNichol
             "Use amigo or robust.");
 
     const double slope = model->integrators == 1 ? model->K : model->K / model->T1;
-    Pid controller = settings(options.controller, slope * model->L, model->L);
+    IdealPid controller = settings(options.controller, slope * model->L, model->L);
     controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
 
     std::vector<Warning> warnings;

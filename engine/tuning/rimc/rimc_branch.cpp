@@ -77,7 +77,7 @@ void RimcBranch::find_admissible() {
 
 // Least |1 + L| over a fixed set of frequencies, with a parabola through the lowest three: quick, and close enough to
 // find where the branch begins and ends.
-double RimcBranch::nearest_approach(const Pid& pid) const {
+double RimcBranch::nearest_approach(const IdealPid& pid) const {
     const double Ki = pid.Kp / pid.Ti, Kd = pid.Kp * pid.Td, Tf = pid.filter.Tf;
     const auto squared = [&](std::size_t i) {
         // C(j omega) written out: the divisions of complex numbers would take most of the time.

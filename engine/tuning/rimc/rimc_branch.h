@@ -64,10 +64,10 @@ private:
         double best = 0;               ///< what comes closest to it, where it never does
     };
 
-    std::optional<Pid> pid(double x) const { return rimc_pid(scaled_, x, filter_); }
+    std::optional<IdealPid> pid(double x) const { return rimc_pid(scaled_, x, filter_); }
     std::optional<Loop> loop(double x) const;
     std::optional<Loop> stable_loop(double x) const;
-    double nearest_approach(const Pid& pid) const;
+    double nearest_approach(const IdealPid& pid) const;
     static double Ms_of(const Loop& loop);
     double peak_of(const Loop& loop, double x) const;
     void find_admissible();

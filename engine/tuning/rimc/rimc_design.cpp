@@ -23,9 +23,9 @@ ImcTerms rimc_terms(const ImcController& c) {
          c.beta * std::pow(theta, 3) / 6 - std::pow(theta, 4) / 24});
 }
 
-std::optional<Pid> rimc_pid(const Fopdt& model, double lambda, const RimcFilter& filter) {
+std::optional<IdealPid> rimc_pid(const Fopdt& model, double lambda, const RimcFilter& filter) {
     const ImcTerms terms = rimc_terms(rimc_controller(model, lambda));
-    Pid pid = maclaurin_pid(terms);
+    IdealPid pid = maclaurin_pid(terms);
     if (!(model.K * pid.Kp > 0) || !(pid.Ti > 0) || !(pid.Td >= 0)) return std::nullopt;
     if (pid.Td == 0) return pid;
     const auto Tf = filter.linear_fraction ? linear_fraction_Tf(terms) : std::optional(filter.Tf_over_Td * pid.Td);

@@ -28,6 +28,6 @@ ImcTerms rimc_terms(const ImcController& controller);
 /// Eqs. 25-26 with its filter: Kp = k_c, Ti = k_c tau_i, Td = tau_d/k_c (tau_i is the paper's inverse integral gain,
 /// tau_d its derivative gain), b 1, c 0. Empty where K k_c <= 0 or Td < 0, and where the linear fraction has no filter
 /// time.
-std::optional<Pid> rimc_pid(const Fopdt& model, double lambda, const RimcFilter& filter);
+std::optional<IdealPid> rimc_pid(const Fopdt& model, double lambda, const RimcFilter& filter);
 
 }  // namespace tunewright

@@ -72,8 +72,8 @@ inline double filter_time(const DesignProblem& problem, double Td) {
     return problem.filter.Tf_over_Td ? *problem.filter.Tf_over_Td * Td : 0;
 }
 
-inline Pid controller_at(const DesignProblem& problem, const DesignPoint& x) {
-    Pid pid;
+inline IdealPid controller_at(const DesignProblem& problem, const DesignPoint& x) {
+    IdealPid pid;
     pid.Kp = problem.sign * std::exp(x[0]);
     pid.Ti = std::exp(x[1]);
     pid.Td = problem.pid ? std::exp(x[2]) : 0;

@@ -293,7 +293,7 @@ Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& contro
     }
     std::optional<DesignPoint> before;
     if (nearest != nullptr) {
-        const Pid& pid = nearest->controller;
+        const IdealPid& pid = nearest->controller;
         before = DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
     }
     DesignProblem problem = *posed;

@@ -40,7 +40,7 @@ public:
     explicit RobustFront(const TuningProblem& problem) : problem_(problem) {}
 
     struct Design {
-        Pid controller;
+        IdealPid controller;
         double load_IAE = 0;  ///< of a unit step, to infinity; the search's own, to about 1e-4
     };
     /// M in (1, 4]. Errors: those of the method robust; cancelled if it was stopped before the search ended.

@@ -127,7 +127,7 @@ void Sweep::complete(Curve& curve) const {
 }
 
 Sweep::Gains Sweep::gains(const DesignPoint& x) const {
-    const Pid pid = controller_at(problem_, x);
+    const IdealPid pid = controller_at(problem_, x);
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
 

@@ -7,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-Pid settings(ControllerKind controller, double kappa, const UltimatePoint& at) {
+IdealPid settings(ControllerKind controller, double kappa, const UltimatePoint& at) {
     if (controller == ControllerKind::PI) return {.Kp = 0.16 * at.Ku, .Ti = at.Pu / (1 + 4.5 * kappa)};
     return {.Kp = (0.3 - 0.1 * std::pow(kappa, 4)) * at.Ku,
             .Ti = 0.6 * at.Pu / (1 + 2 * kappa),
@@ -24,7 +24,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const AmigoUltimate
                      "The rule needs a stable or integrating plant whose gain at its ultimate point is at most the "
                      "static gain; 1/(K Ku) is " +
                          text(kappa) + ". Use amigo, ziegler_nichols_ultimate or robust."};
-    Pid answer = settings(options.controller, kappa, *at);
+    IdealPid answer = settings(options.controller, kappa, *at);
     answer.filter = chosen_filter(options.filter, FilterType::measurement_second_order, answer.Td);
     std::vector<Warning> warnings;
     if (options.controller == ControllerKind::PID && kappa < 0.1)

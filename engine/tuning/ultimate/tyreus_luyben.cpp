@@ -21,9 +21,9 @@ std::vector<Warning> sluggishness(const TuningProblem& problem, const UltimatePo
 Expected<TunedController> tune(const TuningProblem& problem, const TyreusLuybenOptions& options) {
     const auto at = chosen_ultimate_point(problem, options.point);
     if (!at) return at.error();
-    Pid answer = options.controller == ControllerKind::PI
-                     ? Pid{.Kp = at->Ku / 3.2, .Ti = 2.2 * at->Pu}
-                     : Pid{.Kp = at->Ku / 2.2, .Ti = 2.2 * at->Pu, .Td = at->Pu / 6.3};
+    IdealPid answer = options.controller == ControllerKind::PI
+                          ? IdealPid{.Kp = at->Ku / 3.2, .Ti = 2.2 * at->Pu}
+                          : IdealPid{.Kp = at->Ku / 2.2, .Ti = 2.2 * at->Pu, .Td = at->Pu / 6.3};
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings = ultimate_warnings(problem);
     for (const auto& warning : sluggishness(problem, *at)) warnings.push_back(warning);

@@ -13,7 +13,7 @@ Words<ZieglerNicholsVariant> variants() {
         {"classic", classic}, {"pessen", pessen}, {"some_overshoot", some_overshoot}, {"no_overshoot", no_overshoot}};
 }
 
-Pid pid(ZieglerNicholsVariant variant, double Ku, double Pu) {
+IdealPid pid(ZieglerNicholsVariant variant, double Ku, double Pu) {
     using enum ZieglerNicholsVariant;
     if (variant == pessen) return {.Kp = 0.7 * Ku, .Ti = 0.4 * Pu, .Td = 0.15 * Pu};
     if (variant == some_overshoot) return {.Kp = Ku / 3, .Ti = Pu / 2, .Td = Pu / 3};
@@ -21,7 +21,7 @@ Pid pid(ZieglerNicholsVariant variant, double Ku, double Pu) {
     return {.Kp = 0.6 * Ku, .Ti = Pu / 2, .Td = Pu / 8};
 }
 
-Pid settings(ControllerKind controller, ZieglerNicholsVariant variant, const UltimatePoint& at) {
+IdealPid settings(ControllerKind controller, ZieglerNicholsVariant variant, const UltimatePoint& at) {
     if (controller == ControllerKind::P) return {.Kp = 0.5 * at.Ku};
     if (controller == ControllerKind::PI) return {.Kp = 0.45 * at.Ku, .Ti = at.Pu / 1.2};
     return pid(variant, at.Ku, at.Pu);
@@ -48,7 +48,7 @@ Expected<TunedController> tune_ziegler_nichols_ultimate(const TuningProblem& pro
                 word_of(words_of({options.controller}), options.controller) + ". Leave variant out, or ask for PID."};
     const auto point = chosen_ultimate_point(problem, options.point);
     if (!point) return point.error();
-    Pid answer = settings(options.controller, options.variant, *point);
+    IdealPid answer = settings(options.controller, options.variant, *point);
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     return rule_answer(answer, remarks(problem, *point));
 }

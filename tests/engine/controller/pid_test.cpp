@@ -25,7 +25,7 @@ Complex measurement_filter(const Filter& filter, Complex s) {
 double derivative_Tf(const Filter& filter) { return filter.type == FilterType::derivative ? filter.Tf : 0; }
 
 // -u/y with r = 0, written from the contract's definitions, not from the code under test.
-Complex law(const Pid& pid, Complex s) {
+Complex law(const IdealPid& pid, Complex s) {
     return pid.Kp * (1.0 + 1.0 / (s * pid.Ti) + s * pid.Td / (1.0 + s * derivative_Tf(pid.filter))) *
            measurement_filter(pid.filter, s);
 }
@@ -54,7 +54,7 @@ const Filter kFilters[] = {{},
 TEST(Forms, SeriesOfAnIdealControllerIsTheSameLoopWithEveryFilterAndSign) {
     for (const auto& filter : kFilters) {
         for (const double Kp : {1.7, -0.4}) {
-            const Pid pid{.Kp = Kp, .Ti = 9, .Td = 1.1, .filter = filter};
+            const IdealPid pid{.Kp = Kp, .Ti = 9, .Td = 1.1, .filter = filter};
             const auto series = to_series(pid);
             ASSERT_TRUE(series) << series.error().message;
             expect_same_loop(pid, *series);
@@ -74,7 +74,7 @@ TEST(Forms, SeriesOfAnIdealControllerIsTheSameLoopWithEveryFilterAndSign) {
 
 TEST(Forms, SeriesWithoutFilterObeysSumAndProduct) {
     // Ti' + Td' = Ti, Ti' Td' = Ti Td: Ti = 10, Td = 1.6 gives 8 and 2, Kp' = 0.8 Kp.
-    const auto series = to_series(Pid{.Kp = 5, .Ti = 10, .Td = 1.6});
+    const auto series = to_series(IdealPid{.Kp = 5, .Ti = 10, .Td = 1.6});
     ASSERT_TRUE(series);
     EXPECT_NEAR(series->Ti, 8, 1e-14);
     EXPECT_NEAR(series->Td, 2, 1e-14);
@@ -83,7 +83,7 @@ TEST(Forms, SeriesWithoutFilterObeysSumAndProduct) {
 }
 
 TEST(Forms, SeriesWithDerivativeFilterObeysItsOwnSumAndProduct) {
-    const Pid pid{.Kp = 1, .Ti = 10, .Td = 1.6, .filter = {FilterType::derivative, 0.2}};
+    const IdealPid pid{.Kp = 1, .Ti = 10, .Td = 1.6, .filter = {FilterType::derivative, 0.2}};
     const auto series = to_series(pid);
     ASSERT_TRUE(series);
     EXPECT_NEAR(series->Ti + series->Td, pid.Ti + 0.2, 1e-13);
@@ -92,25 +92,25 @@ TEST(Forms, SeriesWithDerivativeFilterObeysItsOwnSumAndProduct) {
 
 TEST(Forms, SeriesExistsExactlyAtTheBoundaryDespiteRounding) {
     for (const double Td : {0.1, 0.3, 0.7, 1e-6, 12345.678}) {
-        const auto series = to_series(Pid{.Kp = 1, .Ti = 4 * Td, .Td = Td});
+        const auto series = to_series(IdealPid{.Kp = 1, .Ti = 4 * Td, .Td = Td});
         ASSERT_TRUE(series) << "Td " << Td;
         EXPECT_NEAR(series->Ti / series->Td, 1, 1e-6);
     }
 }
 
 TEST(Forms, SeriesIsRefusedWithTheRuleAndBothNumbers) {
-    const auto plain = to_series(Pid{.Kp = 1, .Ti = 1, .Td = 0.3});
+    const auto plain = to_series(IdealPid{.Kp = 1, .Ti = 1, .Td = 0.3});
     ASSERT_FALSE(plain);
     EXPECT_EQ(plain.error().kind, ErrorKind::unsupported);
     EXPECT_THAT(plain.error().message, HasSubstr("Ti = 1 is below 4 Td = 1.2"));
 
-    const auto filtered = to_series(Pid{.Kp = 1, .Ti = 1, .Td = 0.3, .filter = {FilterType::derivative, 0.1}});
+    const auto filtered = to_series(IdealPid{.Kp = 1, .Ti = 1, .Td = 0.3, .filter = {FilterType::derivative, 0.1}});
     ASSERT_FALSE(filtered);
     EXPECT_THAT(filtered.error().message, HasSubstr("(Ti + Tf)^2 = 1.21 is below 4 Ti (Td + Tf) = 1.6"));
 }
 
 TEST(Forms, WithoutIntegralActionSeriesAlwaysExists) {
-    const Pid pd{.Kp = 2, .Td = 3, .filter = {FilterType::derivative, 0.5}};
+    const IdealPid pd{.Kp = 2, .Td = 3, .filter = {FilterType::derivative, 0.5}};
     const auto series = to_series(pd);
     ASSERT_TRUE(series);
     EXPECT_EQ(series->Ti, kInfinity);
@@ -124,7 +124,7 @@ TEST(Forms, WithoutIntegralActionSeriesAlwaysExists) {
 }
 
 TEST(Forms, ParallelGainsAreProductsAndBack) {
-    const Pid pid{.Kp = -3, .Ti = 6, .Td = 0.5, .b = 0.4, .filter = {FilterType::measurement_second_order, 0.1}};
+    const IdealPid pid{.Kp = -3, .Ti = 6, .Td = 0.5, .b = 0.4, .filter = {FilterType::measurement_second_order, 0.1}};
     const ParallelPid parallel = to_parallel(pid);
     EXPECT_DOUBLE_EQ(parallel.Ki, -0.5);
     EXPECT_DOUBLE_EQ(parallel.Kd, -1.5);
@@ -138,7 +138,7 @@ TEST(Forms, ParallelGainsAreProductsAndBack) {
 }
 
 TEST(Forms, InfiniteTiHasNoIntegralGainEitherWay) {
-    EXPECT_EQ(to_parallel(Pid{.Kp = 2}).Ki, 0);
+    EXPECT_EQ(to_parallel(IdealPid{.Kp = 2}).Ki, 0);
     const auto back = to_ideal(ParallelPid{.Kp = 2, .Kd = 1});
     ASSERT_TRUE(back);
     EXPECT_FALSE(back->has_integral());

@@ -9,12 +9,12 @@
 namespace tunewright {
 namespace {
 
-IntegralSector judged(const Plant& plant, const Pid& pid) {
+IntegralSector judged(const Plant& plant, const IdealPid& pid) {
     const auto linear = *LinearPlant::make(plant);
     return judge_integral_sector(*Loop::make(linear, to_parallel(pid)));
 }
 
-bool stable_with(const Plant& plant, Pid pid, double factor) {
+bool stable_with(const Plant& plant, IdealPid pid, double factor) {
     const auto linear = *LinearPlant::make(plant);
     ParallelPid gains = to_parallel(pid);
     gains.Ki *= factor;
@@ -56,7 +56,7 @@ TEST(IntegralSector, PopovFailsWhereTheLinearLoopIsCloseToInstability) {
 TEST(IntegralSector, FindsTheIntegralGainThatHoldsAnOscillatoryPlant) {
     // A lightly damped plant whose dead time turns the derivative into negative and the integral into positive damping.
     const OscillatorySopdt plant{.K = 1, .T = 1, .zeta = 0.05, .L = 3.14159265};
-    const Pid pid{.Kp = 0.01, .Ti = 0.1, .Td = 15};
+    const IdealPid pid{.Kp = 0.01, .Ti = 0.1, .Td = 15};
     ASSERT_TRUE(stable_with(plant, pid, 1));
     const auto sector = judged(plant, pid);
     EXPECT_FALSE(sector.stable_without_integral);

@@ -14,7 +14,7 @@ namespace {
 struct Case {
     const char* name;
     double T, L;  // of e^(-Ls)/(T s + 1)
-    Pid pid;
+    IdealPid pid;
     double delta_r;
     StepInputs in;
 };
@@ -70,7 +70,7 @@ TEST(NpidResponse, AgreesWithPlainSimulationInSmallSteps) {
     }
 }
 
-ErrorIntegrals integrals(const Plant& plant, const Pid& pid, double delta_r, const StepInputs& in,
+ErrorIntegrals integrals(const Plant& plant, const IdealPid& pid, double delta_r, const StepInputs& in,
                          double tolerance = 1e-6) {
     ResponseOptions options;
     options.tolerance = tolerance;
@@ -79,8 +79,8 @@ ErrorIntegrals integrals(const Plant& plant, const Pid& pid, double delta_r, con
     return error_integrals(response.nodes, in.r, response.error_integral_final);
 }
 
-const Pid kPid{.Kp = 1.976, .Ti = 1.016, .Td = 0.1838};
-const Pid kFast{.Kp = 5, .Ti = 1, .Td = 0.1};
+const IdealPid kPid{.Kp = 1.976, .Ti = 1.016, .Td = 0.1838};
+const IdealPid kFast{.Kp = 5, .Ti = 1, .Td = 0.1};
 
 TEST(NpidResponse, IsTheLinearOneWhereDeltaIsLarge) {
     for (const Plant& plant : {Plant(Fopdt{.K = 1, .T = 1, .L = 0.5}), Plant(Sopdt{.K = 1, .T1 = 1, .T2 = 0.2, .L = 0}),
@@ -110,7 +110,7 @@ TEST(NpidResponse, ScalesWithStepAndDeltaTogetherAndNotWithTheStepAlone) {
 
 TEST(NpidResponse, ScalesWithGainAndTime) {
     const double one = integrals(Fopdt{.K = 1, .T = 1, .L = 0.5}, kPid, 1, {1, 0}).IAE;
-    const Pid scaled{.Kp = kPid.Kp / -3, .Ti = 100 * kPid.Ti, .Td = 100 * kPid.Td};
+    const IdealPid scaled{.Kp = kPid.Kp / -3, .Ti = 100 * kPid.Ti, .Td = 100 * kPid.Td};
     EXPECT_NEAR(integrals(Fopdt{.K = -3, .T = 100, .L = 50}, scaled, 1, {1, 0}).IAE / 100, one, 1e-7);
 }
 
@@ -123,7 +123,7 @@ TEST(NpidResponse, HasItsLimitWithoutDeadTime) {
 TEST(NpidResponse, ToleranceDecidesTheAccuracy) {
     for (const double L : {0.0, 0.01, 0.5}) {
         const Sopdt plant{.K = 1, .T1 = 1, .T2 = 0.2, .L = L};
-        const Pid pid{.Kp = 1.5, .Ti = 1, .Td = 0.1};
+        const IdealPid pid{.Kp = 1.5, .Ti = 1, .Td = 0.1};
         const auto exact = integrals(plant, pid, 1, {1, 0}, 1e-9);
         EXPECT_NEAR(integrals(plant, pid, 1, {1, 0}, 1e-4).IAE / exact.IAE, 1, 1e-4) << L;
         EXPECT_NEAR(integrals(plant, pid, 1, {1, 0}, 1e-6).IAE / exact.IAE, 1, 1e-6) << L;
@@ -133,7 +133,7 @@ TEST(NpidResponse, ToleranceDecidesTheAccuracy) {
 TEST(NpidResponse, EchoesOfANeutralLoopAreJumps) {
     // Kp Td K/T = 0.69: u jumps by -0.69 times its last jump at every dead time.
     const Fopdt plant{.K = 1, .T = 1, .L = 0.1};
-    const Pid pid{.Kp = 9.2, .Ti = 0.95, .Td = 0.075};
+    const IdealPid pid{.Kp = 9.2, .Ti = 0.95, .Td = 0.075};
     const auto response = simulate_npid(*LinearPlant::make(plant), to_parallel(pid), 1, {1, 0}, {});
     std::vector<double> jumps;
     for (std::size_t i = 1; i < response.nodes.size(); ++i)
@@ -156,7 +156,7 @@ TEST(NpidResponse, AStalledIntegralEndsTheRunWithoutSettling) {
 }
 
 TEST(NpidResponse, GrowthEndsTheRunWithFiniteValues) {
-    const Pid unstable{.Kp = 8, .Ti = 1, .Td = 0};
+    const IdealPid unstable{.Kp = 8, .Ti = 1, .Td = 0};
     for (const double L : {0.5, 3.0}) {
         const auto response =
             simulate_npid(*LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = L}), to_parallel(unstable), 1, {1, 0}, {});

@@ -33,7 +33,7 @@ bool warns(const TunedController& answer, const std::string& code) {
     return std::ranges::any_of(answer.warnings, [&](const Warning& w) { return w.code == code; });
 }
 
-double degradation_on(const Fopdt& model, const Pid& pid) {
+double degradation_on(const Fopdt& model, const IdealPid& pid) {
     return *TradeoffScale(*LinearPlant::make(model), reference_controllers(model)).degradation(to_parallel(pid));
 }
 

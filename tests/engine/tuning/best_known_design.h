@@ -31,7 +31,7 @@ inline Expected<TunedController> designed(const DesignTask& task, const std::str
 }
 
 /// The problem that a design answered. `linear` must outlive it.
-inline robust::DesignProblem problem_of(const DesignTask& task, const LinearPlant& linear, const Pid& design) {
+inline robust::DesignProblem problem_of(const DesignTask& task, const LinearPlant& linear, const IdealPid& design) {
     robust::DesignProblem problem;
     problem.plant = &linear;
     problem.sign = design.Kp < 0 ? -1 : 1;
@@ -46,7 +46,7 @@ inline robust::DesignProblem problem_of(const DesignTask& task, const LinearPlan
     return problem;
 }
 
-inline robust::DesignPoint point_of(const Pid& pid) {
+inline robust::DesignPoint point_of(const IdealPid& pid) {
     return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
 }
 

@@ -114,7 +114,7 @@ TEST(Emulation, NoSettingsOfTheFirstLevelInsideTheBoundsAreBetter) {
             for (const LevelOneRow& row : report.level1) {
                 EXPECT_NE(row.controller.has_value(), !row.error.empty()) << row.title;
                 if (!row.controller || !row.J) continue;
-                const Pid& pid = std::get<Pid>(*row.controller);
+                const IdealPid& pid = std::get<IdealPid>(*row.controller);
                 const auto inside = [&](const char* name, double value) {
                     return value >= report.bounds.at(name).low && value <= report.bounds.at(name).high;
                 };
@@ -139,8 +139,8 @@ TEST(Emulation, BoundsAreAlphaTimesTheFirstLevelsSettings) {
     double least = HUGE_VAL, most = 0;
     for (const LevelOneRow& row : answer->report_as<EmulationReport>()->level1) {
         ASSERT_TRUE(row.controller) << row.error;
-        least = std::min(least, -std::get<Pid>(*row.controller).Kp);
-        most = std::max(most, -std::get<Pid>(*row.controller).Kp);
+        least = std::min(least, -std::get<IdealPid>(*row.controller).Kp);
+        most = std::max(most, -std::get<IdealPid>(*row.controller).Kp);
     }
     const auto& bounds = answer->report_as<EmulationReport>()->bounds;
     EXPECT_DOUBLE_EQ(bounds.at("Kp").low, -3 * most);

@@ -159,7 +159,7 @@ struct Claim {
     double c;  // weight of the set point in the derivative part that the source had
 };
 
-double cost(const LinearPlant& plant, Pid pid, const Claim& claim) {
+double cost(const LinearPlant& plant, IdealPid pid, const Claim& claim) {
     pid.c = claim.c;
     pid.filter = pid.Td > 0 ? Filter{FilterType::derivative, 0.02 * pid.Td} : Filter{};
     const ParallelPid gains = to_parallel(pid);
@@ -169,7 +169,7 @@ double cost(const LinearPlant& plant, Pid pid, const Claim& claim) {
     return integral(simulate_linear(plant, gains, step, {}).nodes, step.r, criterion_of(claim.criterion));
 }
 
-double least_cost(const LinearPlant& plant, const Pid& start, const Claim& claim) {
+double least_cost(const LinearPlant& plant, const IdealPid& start, const Claim& claim) {
     const bool has_D = start.Td > 0;
     std::vector<double> x{std::log(start.Kp), std::log(start.Ti)};
     if (has_D) x.push_back(std::log(start.Td));

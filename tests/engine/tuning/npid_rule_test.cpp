@@ -112,7 +112,7 @@ TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
         }
         // Nor than its neighbours.
         for (const double factor : {0.97, 1.03}) {
-            for (double Pid::*parameter : {&Pid::Kp, &Pid::Ti, &Pid::Td}) {
+            for (double IdealPid::*parameter : {&IdealPid::Kp, &IdealPid::Ti, &IdealPid::Td}) {
                 TunedController neighbour = *optimum;
                 neighbour.controller.*parameter *= factor;
                 const auto loop = *LinearPlant::make(plant);

@@ -24,7 +24,7 @@ Expected<TunedController> tuned(const Plant& plant, const Given& given, const ch
     return find_method(id)->tune({plant, *LinearPlant::make(plant), std::nullopt}, options, {});
 }
 
-Evaluation evaluated(const Plant& plant, const Pid& pid) {
+Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     EvaluateOptions options;
     options.points = 0;
     return *evaluate(plant, pid, options);
@@ -203,14 +203,14 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
     EXPECT_DOUBLE_EQ(fraction->controller.Td, plain->controller.Td);
     ASSERT_EQ(fraction->controller.filter.type, FilterType::derivative);
     // s C of PID and of Eq. 23 at a small real s differ by the fifth term with it, by the fourth without.
-    const auto defect = [&](const Pid& pid, double s) {
+    const auto defect = [&](const IdealPid& pid, double s) {
         const ImcController c = rimc_controller(model, 0.8);
         const double Q = c.Q(s).real(), full = Q / (1 - c.model(s).real() * Q);
         const double Tf = pid.filter.Tf;
         return s * (pid.Kp * (1 + 1 / (s * pid.Ti) + s * pid.Td / (1 + s * Tf)) - full);
     };
     EXPECT_NEAR(defect(fraction->controller, 0.04) / defect(fraction->controller, 0.02), 16, 1.5);
-    Pid unfiltered = plain->controller;
+    IdealPid unfiltered = plain->controller;
     unfiltered.filter = {};
     EXPECT_NEAR(defect(unfiltered, 0.04) / defect(unfiltered, 0.02), 8, 1);
 
@@ -321,7 +321,7 @@ TEST(Imc, MaclaurinAndPadeAgreeWithTheirFormulas) {
     const auto series = tuned(model, {{"lambda", 4.0}, {"filter/Tf_over_Td", 0.0}}, "imc");
     ASSERT_TRUE(series);
     const auto defect = [&](double s) {
-        const Pid& c = series->controller;
+        const IdealPid& c = series->controller;
         return s * (c.Kp * (1 + 1 / (s * c.Ti) + s * c.Td) - (10 * s + 1) / (-2 * (4 * s - std::expm1(-3 * s))));
     };
     EXPECT_NEAR(defect(4e-3) / defect(2e-3), 8, 0.1);

@@ -33,10 +33,10 @@ TuningEntry robust_entry(const PlantModel& plant,
     return result ? result->controllers.at(0) : TuningEntry{};
 }
 
-const Pid& pid_of(const TuningEntry& entry) { return std::get<Pid>(entry.evaluation->controller); }
+const IdealPid& pid_of(const TuningEntry& entry) { return std::get<IdealPid>(entry.evaluation->controller); }
 
 /// The larger of Ms and Mt of one plant with this controller; infinite if unstable.
-double larger_peak(const Plant& plant, const Pid& pid) {
+double larger_peak(const Plant& plant, const IdealPid& pid) {
     EvaluateOptions options;
     options.points = 0;
     const auto alone = evaluate(plant, pid, options);

@@ -55,8 +55,8 @@ TEST(FrequencyResponse, DesignsAsTheKnownPlantDoes) {
         const auto exact = designed(known.plant, known.M);
         const auto measured = designed(points_of(known.plant, known.low, known.high, 60), known.M);
         ASSERT_TRUE(exact.has_value() && measured.has_value()) << known.name;
-        const Pid& a = std::get<Pid>(exact->controllers[0].evaluation->controller);
-        const Pid& b = std::get<Pid>(measured->controllers[0].evaluation->controller);
+        const IdealPid& a = std::get<IdealPid>(exact->controllers[0].evaluation->controller);
+        const IdealPid& b = std::get<IdealPid>(measured->controllers[0].evaluation->controller);
         EXPECT_NEAR(b.Kp / b.Ti / (a.Kp / a.Ti), 1, 1e-3) << known.name;
         // And on the plant itself the design from the points keeps its limits.
         EvaluateOptions options;
@@ -97,7 +97,7 @@ TEST(FrequencyResponse, CountsTheSameUnstablePolesAsTheKnownPlant) {
         const auto measured = MeasuredPlant::make(points_of(known.plant, known.low, known.high * 4, 200));
         ASSERT_TRUE(measured.has_value()) << known.name;
         const auto exact = designed(known.plant, known.M);
-        Pid pid = std::get<Pid>(exact->controllers[0].evaluation->controller);
+        IdealPid pid = std::get<IdealPid>(exact->controllers[0].evaluation->controller);
         const double nominal = pid.Kp;
         for (const double factor : {-1.0, 0.05, 0.3, 1.0, 2.0, 3.0, 5.0, 9.0, 14.0}) {
             pid.Kp = nominal * factor;
@@ -117,10 +117,10 @@ TEST(FrequencyResponse, ABandThatEndsTooEarlyIsRefusedInWords) {
     ASSERT_FALSE(design.has_value());
     EXPECT_EQ(design.error().kind, ErrorKind::unsupported);
     EXPECT_NE(design.error().message.find("Measure higher frequencies"), std::string::npos);
-    const auto judged = evaluate(points_of(plant, 0.005, 0.6, 30), Pid{.Kp = 4, .Ti = 6, .Td = 1}, {});
+    const auto judged = evaluate(points_of(plant, 0.005, 0.6, 30), IdealPid{.Kp = 4, .Ti = 6, .Td = 1}, {});
     ASSERT_FALSE(judged.has_value());
     EXPECT_NE(judged.error().message.find("|L| still is"), std::string::npos) << judged.error().message;
-    const auto late = evaluate(points_of(plant, 0.2, 5, 30), Pid{.Kp = 0.5, .Ti = 6}, {});
+    const auto late = evaluate(points_of(plant, 0.2, 5, 30), IdealPid{.Kp = 0.5, .Ti = 6}, {});
     ASSERT_FALSE(late.has_value());
     EXPECT_NE(late.error().message.find("Measure lower frequencies"), std::string::npos) << late.error().message;
 }

@@ -51,7 +51,7 @@ TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {
 }
 
 /// `fast` costs at most what `known` does, a design within the limits whose filter follows the same rule.
-void expect_no_dearer_than(const Pid& known, const DesignTask& task) {
+void expect_no_dearer_than(const IdealPid& known, const DesignTask& task) {
     const LinearPlant linear = *LinearPlant::make(task.plant);
     const auto fast = designed(task, "fast");
     ASSERT_TRUE(fast.has_value());
@@ -77,7 +77,7 @@ TEST(RobustSearch, AnIntegralAloneBehindAHeavyFilterIsFound) {
     robust::DesignProblem problem;
     problem.plant = &linear;
     const double unit = 1 / robust::reference_frequency(problem);
-    Pid known;
+    IdealPid known;
     known.Kp = 5.77e-6;
     known.Ti = 6.27e-5 * unit;
     known.Td = 237.6 * unit;
@@ -119,12 +119,12 @@ TEST(RobustSearch, UnitsOfTimeAndGainChangeNothing) {
         const RandomPlant drawn = random_plant(seed, seed % 3 == 0);
         const auto base = designed({drawn.plant, drawn.M, "load_ie"}, "fast");
         ASSERT_TRUE(base.has_value());
-        const Pid& p = base->controller;
+        const IdealPid& p = base->controller;
         for (const double time : {1e-9, 1e-4, 1e9})
             for (const double gain : {1e-9, -3e5, 1e9}) {
                 const auto other = designed({in_other_units(drawn.plant, time, gain), drawn.M, "load_ie"}, "fast");
                 ASSERT_TRUE(other.has_value()) << seed << ": " << other.error().message;
-                const Pid& q = other->controller;
+                const IdealPid& q = other->controller;
                 EXPECT_NEAR(q.Ti / q.Kp / (p.Ti / p.Kp) / time / gain, 1, 1e-6) << seed << " " << time << " " << gain;
                 EXPECT_NEAR(q.Kp * gain / p.Kp, 1, 1e-3) << seed << " " << time << " " << gain;
                 EXPECT_NEAR(q.Ti / time / p.Ti, 1, 1e-3) << seed << " " << time << " " << gain;

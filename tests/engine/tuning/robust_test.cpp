@@ -26,7 +26,7 @@ Expected<TunedController> design(const Plant& plant, const MethodOptions& option
     return robust_method().tune(TuningProblem{plant, *linear, std::nullopt}, options, control);
 }
 
-Evaluation evaluated(const Plant& plant, const Pid& pid) {
+Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     EvaluateOptions options;
     options.points = 0;
     auto evaluation = evaluate(plant, pid, options);
@@ -88,7 +88,7 @@ TEST(Robust, EachObjectiveWinsAtItsOwnMeasure) {
     const auto load = figures("load_iae"), ie = figures("load_ie"), setpoint = figures("setpoint_iae"),
                both = figures("weighted");
     const auto ratio = [](const Evaluation& e) {
-        const auto& c = std::get<Pid>(e.controller);
+        const auto& c = std::get<IdealPid>(e.controller);
         return c.Ti / c.Kp;
     };
     for (const auto* other : {&ie, &setpoint, &both})
@@ -163,7 +163,7 @@ TEST(Robust, SaysWhenTheOptimumHasNoEnd) {
 
 TEST(Robust, DefaultFilterFollowsTheContract) {
     const auto filter = [](const Plant& plant) { return design(plant, {})->controller; };
-    const Pid delayed = filter(Fopdt{.K = 1, .T = 2, .L = 1});
+    const IdealPid delayed = filter(Fopdt{.K = 1, .T = 2, .L = 1});
     EXPECT_NEAR(delayed.filter.Tf, 0.1 * delayed.Td, 1e-12);
     EXPECT_NEAR(filter(Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0}).filter.Tf, 0.05 * 4, 1e-12);
     const Plant plant = Sopdt{.K = 1, .T1 = 3, .T2 = 1, .L = 0.01};

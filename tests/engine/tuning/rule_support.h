@@ -37,7 +37,7 @@ inline const Given kP{word("controller", "P")}, kPI{word("controller", "PI")}, k
 inline void expect_settings(const Expected<TunedController>& answer, double Kp, double Ti, double Td,
                             double tolerance = 1e-9) {
     ASSERT_TRUE(answer) << answer.error().message;
-    const Pid& pid = answer->controller;
+    const IdealPid& pid = answer->controller;
     EXPECT_NEAR(pid.Kp, Kp, tolerance * std::abs(Kp));
     if (std::isinf(Ti))
         EXPECT_FALSE(pid.has_integral());

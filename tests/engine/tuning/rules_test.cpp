@@ -100,10 +100,10 @@ TEST(Simc, SeriesFormIsAnsweredExactlyWithAFilterThatStaysFasterThanTheLoop) {
     // Two lags far above the dead time: series 50, 8, 100.
     const auto answer = tuned("simc", Sopdt{.K = 1, .T1 = 100, .T2 = 100, .L = 1});
     expect_settings(answer, 50 * 108 / 8.0, 108, 800 / 108.0);
-    const Pid& pid = answer->controller;
+    const IdealPid& pid = answer->controller;
     EXPECT_EQ(pid.filter.type, FilterType::derivative);
     EXPECT_NEAR(pid.filter.Tf, 0.1 * pid.Td, 1e-15);
-    const auto series = to_series(Pid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td});
+    const auto series = to_series(IdealPid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td});
     ASSERT_TRUE(series);
     // The larger root is named Ti: here the lag 100; Kp/Ti stays.
     EXPECT_NEAR(series->Ti, 100, 1e-9);
@@ -199,7 +199,7 @@ TEST(Rules, ScalingTimeAndGainScalesTheSettingsOfEveryRow) {
             const auto scaled = method.tune({larger, *LinearPlant::make(larger), std::nullopt}, options, {});
             ASSERT_EQ(base.has_value(), scaled.has_value());
             if (!base) continue;
-            const Pid &a = base->controller, &b = scaled->controller;
+            const IdealPid &a = base->controller, &b = scaled->controller;
             expect_settings(scaled, a.Kp / -4, a.Ti * 100, a.Td * 100, 1e-6);
             EXPECT_NEAR(b.filter.Tf, 100 * a.filter.Tf, 1e-4 * a.filter.Tf);
             EXPECT_NEAR(a.b, b.b, 1e-9);

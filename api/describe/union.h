@@ -1,4 +1,4 @@
-// One of several described types, told apart by a word: plants by `type`, controllers by `form`.
+// One of several described types, distinguished by a word: plants by `type`, controllers by `form`.
 #pragma once
 
 #include <algorithm>

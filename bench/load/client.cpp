@@ -197,7 +197,7 @@ void Client::finish(Connection& connection, Answer answer) {
     if (then) then(connection.id, std::move(answer));
 }
 
-/// True where a whole answer was there; its receiver has been told.
+/// True where a whole answer was there; its receiver has been notified.
 bool Client::take_answer(Connection& connection) {
     std::string& in = connection.in;
     const std::size_t head_end = in.find("\r\n\r\n");

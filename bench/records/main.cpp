@@ -142,10 +142,10 @@ int run(const Options& options) {
         by[0][static_cast<int>(row->made.plant.family)].add(row->judgement);
         by[1][static_cast<int>(row->made.test)].add(row->judgement);
         by[2][static_cast<int>(row->made.noise)].add(row->judgement);
-        std::vector<std::string> told = row->judgement.codes;
-        std::sort(told.begin(), told.end());
-        told.erase(std::unique(told.begin(), told.end()), told.end());
-        for (const std::string& code : told) ++codes[code];
+        std::vector<std::string> reported = row->judgement.codes;
+        std::sort(reported.begin(), reported.end());
+        reported.erase(std::unique(reported.begin(), reported.end()), reported.end());
+        for (const std::string& code : reported) ++codes[code];
         if (!options.show.empty() && shown(options.show, row->judgement)) show(*row);
     }
     std::printf("\n%-22s %6s %7s %7s %9s %9s %8s %8s %8s %8s %8s %8s %8s\n", "% of records", "number", "refused",

@@ -231,7 +231,7 @@ void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, 
         if (!another) return;
         warnings.push_back({"gain-from-oscillation",
                             "The model leaves more than noise, so whether the plant integrates, is unstable or has a "
-                            "static gain K is open: a relay's oscillation hardly tells. A step test does."});
+                            "static gain K is open: a relay's oscillation says little about it. Make a step test."});
         return;
     }
     const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();

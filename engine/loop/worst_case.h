@@ -28,7 +28,7 @@ WorstCase find_worst_case(const PlantRegion& region, const PlantCost& cost,
                           const std::vector<PlantRegion::Point>& starts, const std::stop_token& stop = {});
 
 /// ln of the largest |S| of the loop, negative where that is below 1; infinite where it is unstable, no loop, or where
-/// the peak cannot be told.
+/// the peak cannot be judged.
 double log_sensitivity_peak(const LinearPlant& plant, const ParallelPid& controller);
 
 }  // namespace tunewright

@@ -35,7 +35,8 @@ public:
     /// An identified plant with what its record leaves open. Errors: as LinearPlant::make of the nominal plant.
     static Expected<Subject> of_family(PlantFamily family);
 
-    /// The one place that tells the kinds apart: a function of each of LinearSubject, MeasuredPlant, NonlinearSubject.
+    /// The one place that distinguishes the kinds: a function of each of LinearSubject, MeasuredPlant,
+    /// NonlinearSubject.
     template <class Visitor>
     decltype(auto) visit(Visitor&& visitor) const {
         return std::visit(std::forward<Visitor>(visitor), content_);

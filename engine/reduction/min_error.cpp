@@ -231,10 +231,11 @@ Expected<ReducedModel> min_error(const LinearPlant& plant, const ReductionReques
     best.warnings = plant.integrators() == 0 ? monotonicity_warnings(step_response(plant), plant.low_frequency_gain())
                                              : std::vector<Warning>{};
     if (request.horizon && best.T1 > *request.horizon)
-        best.warnings.push_back({"short-horizon", "The model's time constant, " + text(best.T1) +
-                                                      ", exceeds the horizon " + text(*request.horizon) +
-                                                      ": the part of the response that was fitted hardly tells it. "
-                                                      "Give a longer horizon."});
+        best.warnings.push_back(
+            {"short-horizon", "The model's time constant, " + text(best.T1) + ", exceeds the horizon " +
+                                  text(*request.horizon) +
+                                  ": the part of the response that was fitted hardly depends on it. "
+                                  "Give a longer horizon."});
     return best;
 }
 

@@ -337,20 +337,20 @@ TEST(BadRequests, ARecordThatDeterminesNoModelIsShownByThreeRowsInFull) {
 }
 
 TEST(BadRequests, LimitsOfUAreTwoAscendingNumbers) {
-    const auto told = [](const std::string& limits) {
+    const auto fault_of = [](const std::string& limits) {
         const Answer answer =
             identify_call(R"({"record": {"dt": 1, "u": [0, 1], "y": [0, 1], "u_limits": )" + limits + "}}", {});
         EXPECT_EQ(answer.status, 422) << limits;
         const Json problem = Json::parse(answer.body);
         return problem.contains("errors") ? problem["errors"][0].dump() : problem.dump();
     };
-    EXPECT_THAT(told("[100, 0]"),
+    EXPECT_THAT(fault_of("[100, 0]"),
                 HasSubstr("u_limits is [100,0]; the first number is the lower limit and must be below"));
-    EXPECT_THAT(told("[5, 5]"), HasSubstr("must be below the second"));
-    EXPECT_THAT(told("[0]"), HasSubstr("it must be [low, high], such as [0, 100]"));
-    EXPECT_THAT(told("100"), HasSubstr("it must be [low, high]"));
-    EXPECT_THAT(told("[0, \"all\"]"), HasSubstr("/record/u_limits/1"));
-    EXPECT_THAT(told("[0, 1e31]"), HasSubstr("/record/u_limits/1"));
+    EXPECT_THAT(fault_of("[5, 5]"), HasSubstr("must be below the second"));
+    EXPECT_THAT(fault_of("[0]"), HasSubstr("it must be [low, high], such as [0, 100]"));
+    EXPECT_THAT(fault_of("100"), HasSubstr("it must be [low, high]"));
+    EXPECT_THAT(fault_of("[0, \"all\"]"), HasSubstr("/record/u_limits/1"));
+    EXPECT_THAT(fault_of("[0, 1e31]"), HasSubstr("/record/u_limits/1"));
 }
 
 TEST(BadRequests, ASetPointIsAsLongAsTheRecord) {

@@ -39,7 +39,7 @@ Outcome read_pieces(const BatchQuestion& question, std::string_view body, std::s
 }
 
 /// What came out, as text: the same for every cut of the body.
-std::string told(const Outcome& outcome) {
+std::string shown(const Outcome& outcome) {
     std::string text = outcome.name + "\n";
     for (const BatchEntry& entry : outcome.entries) {
         const auto* job = std::get_if<PreparedJob>(&entry.job);
@@ -52,7 +52,8 @@ std::string told(const Outcome& outcome) {
 Outcome read(const BatchQuestion& question, std::string_view body) {
     const Outcome whole = read_pieces(question, body, std::max<std::size_t>(body.size(), 1));
     for (const std::size_t piece : {1, 2, 3, 7, 64})
-        EXPECT_EQ(told(read_pieces(question, body, piece)), told(whole)) << "in pieces of " << piece << " of " << body;
+        EXPECT_EQ(shown(read_pieces(question, body, piece)), shown(whole))
+            << "in pieces of " << piece << " of " << body;
     return whole;
 }
 

@@ -226,9 +226,9 @@ std::string first_fault(const std::string& text, const CsvOptions& options = {})
 }
 
 TEST(Csv, SeveralTagsAreNotGuessedAmong) {
-    const std::string told = first_fault("Time,TIC101.PV,TIC102.PV,TIC101.OP\n0,1,2,3\n1,2,3,4\n");
-    EXPECT_THAT(told, HasSubstr("columns/y: Several columns may be y (the measurement): \"TIC101.PV\" and "
-                                "\"TIC102.PV\". Name one in columns.y."));
+    const std::string fault = first_fault("Time,TIC101.PV,TIC102.PV,TIC101.OP\n0,1,2,3\n1,2,3,4\n");
+    EXPECT_THAT(fault, HasSubstr("columns/y: Several columns may be y (the measurement): \"TIC101.PV\" and "
+                                 "\"TIC102.PV\". Name one in columns.y."));
 }
 
 TEST(Csv, TwoMovingColumnsAreNotGuessedBetween) {

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string told(const std::string& text, const CsvOptions& options = {}) {
+std::string faults_of(const std::string& text, const CsvOptions& options = {}) {
     const auto out = read_csv_record(text, options);
     const auto* faults = std::get_if<std::vector<CsvFault>>(&out);
     return faults ? faults->front().where + ": " + faults->front().message : "it was read";
@@ -20,19 +20,20 @@ std::string told(const std::string& text, const CsvOptions& options = {}) {
 
 TEST(Csv, HeadingsThatNothingTellsApartAreShownBesideTheValues) {
     EXPECT_THAT(
-        told("a,b,c,d,e\n" + written("{t},{y},{u}")),
+        faults_of("a,b,c,d,e\n" + written("{t},{y},{u}")),
         HasSubstr("csv: Line 1 has 5 headings and the rows have 3 values, so which belongs to which is open: "
                   "headings \"a\", \"b\", \"c\", \"d\" and \"e\"; values \"0\", \"20.00\" and \"20\". Give each "
                   "column one heading."));
 }
 
 TEST(Csv, AHeadingOfTimeOverNumbersThatDoNotRunMakesSurplusHeadingsOpen) {
-    EXPECT_THAT(told("temp,time,u,x,z\n" + written("{t},{y},{u}")), HasSubstr("so which belongs to which is open"));
+    EXPECT_THAT(faults_of("temp,time,u,x,z\n" + written("{t},{y},{u}")),
+                HasSubstr("so which belongs to which is open"));
 }
 
 TEST(Csv, TwoClocksAreRefusedWithTheCure) {
     EXPECT_THAT(
-        told("PV Time,PV,OP Time,OP\n" + written("{clock},{y},{late},{u}")),
+        faults_of("PV Time,PV,OP Time,OP\n" + written("{clock},{y},{late},{u}")),
         HasSubstr("csv has two clocks: \"OP\" has its own times in \"OP Time\", which are not those of \"PV Time\". "
                   "Export all tags at common times"));
 }
@@ -43,7 +44,7 @@ TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
     std::string moving = both;
     moving.replace(moving.find("pwm=0.5"), 7, "pwm=0.4");
     moving.replace(moving.find("temp=199.5"), 10, "temp=199.7");
-    EXPECT_THAT(told(moving),
+    EXPECT_THAT(faults_of(moving),
                 HasSubstr("columns/u: Several columns may be u (the controller output): \"heater_bed.pwm\" and "
                           "\"extruder.pwm\". Name one in columns.u."));
     CsvOptions options;
@@ -56,26 +57,28 @@ TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
 
 TEST(Csv, LinesOfOneTagEachAreRefusedInEveryDialect) {
     const std::string cure = "export it with one column for each tag";
-    EXPECT_THAT(told("\"Time\",\"Series\",\"Value\"\n2026-11-21 14:00:00,temp,20\n2026-11-21 14:00:00,pwm,30\n"),
-                HasSubstr(cure));
-    EXPECT_THAT(told("entity_id,state,last_changed\nsensor.temp,20,2026-11-21T14:00:00Z\nsensor.power,30,2026-11-21T14:"
-                     "00:00Z\n"),
+    EXPECT_THAT(faults_of("\"Time\",\"Series\",\"Value\"\n2026-11-21 14:00:00,temp,20\n2026-11-21 14:00:00,pwm,30\n"),
                 HasSubstr(cure));
     EXPECT_THAT(
-        told(",result,table,_time,_value,_field\n,,0,2026-11-21T14:00:00Z,20,temp\n,,1,2026-11-21T14:00:00Z,30,pwm\n"),
+        faults_of("entity_id,state,last_changed\nsensor.temp,20,2026-11-21T14:00:00Z\nsensor.power,30,2026-11-21T14:"
+                  "00:00Z\n"),
+        HasSubstr(cure));
+    EXPECT_THAT(
+        faults_of(
+            ",result,table,_time,_value,_field\n,,0,2026-11-21T14:00:00Z,20,temp\n,,1,2026-11-21T14:00:00Z,30,pwm\n"),
         HasSubstr(cure));
 }
 
 TEST(Csv, ALogOfSentencesIsRefusedByItsFirstLine) {
     EXPECT_THAT(
-        told(written("[{clock}][D][sensor:094]: 'Boiler': Sending state {y} \xC2\xB0"
-                     "C with 1 decimals")),
+        faults_of(written("[{clock}][D][sensor:094]: 'Boiler': Sending state {y} \xC2\xB0"
+                          "C with 1 decimals")),
         HasSubstr("csv has no line of numbers in columns, nor lines that name two values or more each; it begins with "
                   "\"[14:05:00][D][sensor:094]"));
 }
 
 TEST(Csv, ALogWithoutTimesAsksForTheirSpacing) {
-    EXPECT_THAT(told(written("T:{y},PWM:{u}")),
+    EXPECT_THAT(faults_of(written("T:{y},PWM:{u}")),
                 HasSubstr("columns/t: No heading is plainly t (time); name it in columns.t, or give dt."));
 }
 
@@ -84,9 +87,9 @@ TEST(Csv, ASetPointIsNeitherUNorY) {
          {"SP", "setpoint", "set point", "Set_Point", "target", "Sollwert", "consigne", "reference", "r", "w",
           "TIC101.SP", "targetTemp", "T_set", "temp target", "rpm_ref", "SV", "desired speed", "pv_sp"}) {
         SCOPED_TRACE(name);
-        EXPECT_THAT(told("time," + std::string(name) + ",temp\n" + written("{t},{u},{y}")),
+        EXPECT_THAT(faults_of("time," + std::string(name) + ",temp\n" + written("{t},{u},{y}")),
                     HasSubstr("columns/u: No heading is plainly u"));
-        EXPECT_THAT(told("time," + std::string(name) + ",valve\n" + written("{t},{y},{u}")),
+        EXPECT_THAT(faults_of("time," + std::string(name) + ",valve\n" + written("{t},{y},{u}")),
                     HasSubstr("columns/y: No heading is plainly y"));
         const auto read = read_csv_record("time," + std::string(name) + ",pv,op\n" + written("{t},7,{y},{u}"), {});
         ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
@@ -107,19 +110,20 @@ TEST(Csv, ASetPointIsChosenLikeAnyColumn) {
     EXPECT_THAT(std::get<CsvRecord>(read_csv_record("t,u,y,SP,Ramp\n0,1,2,5,6\n1,1,3,5,7\n", options)).r,
                 ElementsAre(6, 7));
     options.columns.r = "none";
-    EXPECT_THAT(told("t,u,y,SP\n0,1,2,5\n", options), HasSubstr("columns/r: r is \"none\", which is not a heading"));
+    EXPECT_THAT(faults_of("t,u,y,SP\n0,1,2,5\n", options),
+                HasSubstr("columns/r: r is \"none\", which is not a heading"));
 }
 
 TEST(Csv, InputAndOutputWithoutASetPointAreToldByWhatTheyDo) {
     EXPECT_THAT(
-        told("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
+        faults_of("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
         HasSubstr(
             "\"input\" and \"output\" may be the plant's or the controller's, and the numbers do not show which."));
 }
 
 TEST(Csv, WordsBesideNumbersAreNoLevels) {
-    EXPECT_THAT(told("t,u,y\n0,50,2\n1,OFF,3\n"), HasSubstr("Line 3, column \"u\": \"OFF\" is not a number."));
-    EXPECT_THAT(told("t,u,y\n0,50,ON\n1,51,OFF\n"), HasSubstr("is not a number."));
+    EXPECT_THAT(faults_of("t,u,y\n0,50,2\n1,OFF,3\n"), HasSubstr("Line 3, column \"u\": \"OFF\" is not a number."));
+    EXPECT_THAT(faults_of("t,u,y\n0,50,ON\n1,51,OFF\n"), HasSubstr("is not a number."));
 }
 
 TEST(Csv, AClockOfTwoPartsIsSaidToBeHoursAndMinutes) {
@@ -141,9 +145,9 @@ TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
     };
     EXPECT_THAT(notes({}),
                 Contains(HasSubstr("The file names no unit of time: the times are read as s, 20 or more apart.")));
-    CsvOptions told;
-    told.time_unit_given = true;
-    EXPECT_THAT(notes(told), IsEmpty());
+    CsvOptions given;
+    given.time_unit_given = true;
+    EXPECT_THAT(notes(given), IsEmpty());
 }
 
 TEST(Csv, PlainTablesGetNoRemarks) {

@@ -60,20 +60,20 @@ double relative_error(const Json& wanted, const std::optional<double>& got) {
 }
 
 /// One index: within its tolerance of the reference, and within what the answer says of itself.
-void hold(const Json& wanted, const std::optional<double>& got, const std::optional<double>& told, double tolerance,
+void hold(const Json& wanted, const std::optional<double>& got, const std::optional<double>& stated, double tolerance,
           const char* name) {
     const double error = relative_error(wanted, got);
     EXPECT_LE(error, tolerance) << name;
-    ASSERT_TRUE(told) << name;
-    EXPECT_LE(error, std::max(*told, 1e-6)) << name;
+    ASSERT_TRUE(stated) << name;
+    EXPECT_LE(error, std::max(*stated, 1e-6)) << name;
 }
 
 template <class Figures>
-void hold_indices(const Json& wanted, const Figures& figures, const IndexErrors& told) {
-    hold(wanted["IAE"], figures.IAE, told.IAE, kPromisedIae, "IAE");
-    hold(wanted["ISE"], figures.ISE, told.ISE, kPromisedIse, "ISE");
-    hold(wanted["ITAE"], figures.ITAE, told.ITAE, kPromisedItae, "ITAE");
-    hold(wanted["TV"], figures.TV, told.TV, kPromisedTv, "TV");
+void hold_indices(const Json& wanted, const Figures& figures, const IndexErrors& stated) {
+    hold(wanted["IAE"], figures.IAE, stated.IAE, kPromisedIae, "IAE");
+    hold(wanted["ISE"], figures.ISE, stated.ISE, kPromisedIse, "ISE");
+    hold(wanted["ITAE"], figures.ITAE, stated.ITAE, kPromisedItae, "ITAE");
+    hold(wanted["TV"], figures.TV, stated.TV, kPromisedTv, "TV");
 }
 
 /// A figure that exists in both or in neither.

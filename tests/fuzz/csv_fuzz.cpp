@@ -39,7 +39,7 @@ void require_readable(const Problem& problem) {
     require(!problem.detail.empty() && is_utf8(to_json(problem)), "a readable problem", problem.detail);
 }
 
-std::string told(const std::vector<BatchEntry>& entries) {
+std::string shown(const std::vector<BatchEntry>& entries) {
     std::string text;
     for (const BatchEntry& entry : entries) {
         require(is_utf8(entry.name), "a readable name");
@@ -72,7 +72,7 @@ std::string read_batch(const BatchQuestion& question, std::string_view body, uns
         return to_json(*problem);
     }
     require(is_utf8(reader.name()) && reader.count() == entries.size(), "a name and a count");
-    return reader.name() + "\n" + told(entries);
+    return reader.name() + "\n" + shown(entries);
 }
 
 void read_record(std::string_view bytes) {

@@ -211,7 +211,7 @@ const LevelOneRow* row_of(const EmulationReport& report, const std::string& meth
     return nullptr;
 }
 
-// Printed: -1342.7, 0.95, 0.0524, the step of its test not told.
+// Printed: -1342.7, 0.95, 0.0524, the step of its test is not given.
 TEST(Mhaskar, ImcOnTheDefaultStepTestIsTableIIIsFirstRow) {
     MethodOptions options = loop_options(false, 0.05, 2);
     options.set("formulation", std::string("remark6"));

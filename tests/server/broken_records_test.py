@@ -129,7 +129,7 @@ def identify(given, arguments):
 
 class BrokenRecordsTest(unittest.TestCase):
     def test_each_is_refused_or_answered_with_a_warning_that_names_the_line_or_the_reason(self):
-        for name, (given, arguments, told) in BROKEN.items():
+        for name, (given, arguments, expected) in BROKEN.items():
             with self.subTest(name):
                 done = identify(given, arguments)
                 self.assertIn(done.returncode, (0, 1), done.stderr)
@@ -141,7 +141,7 @@ class BrokenRecordsTest(unittest.TestCase):
                     model = json.loads(done.stdout)["model"]
                     self.assertTrue(model["warnings"], "a model without a warning")
                     said = json.dumps(model["warnings"]).replace('\\"', '"')
-                self.assertIn(told, said)
+                self.assertIn(expected, said)
 
     def test_the_record_that_they_are_made_of_is_answered_without_a_warning(self):
         done = identify(text(step()), ())

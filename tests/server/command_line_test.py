@@ -126,12 +126,12 @@ class CommandLineTest(unittest.TestCase):
                     file.write("%d,40,%.3f,%d\n" % (k, 20 + max(0, k - 12) * 0.4, 20 if k < 10 else 50))
             done = run("identify", path, "--r", "Ramp", "--u-limits", "0", "100")
             self.assertEqual(done.returncode, 0, done.stderr)
-            told = json.loads(run("identify", path, "--r", "Rump").stderr)
-            self.assertEqual(told["errors"][0]["pointer"], "/record/columns/r")
-            told = json.loads(run("identify", path, "--u-limits", "100", "0").stderr)
-            self.assertEqual(told["errors"][0]["pointer"], "/record/u_limits")
-            told = json.loads(run("identify", path, "--u-limits", "low", "0").stderr)
-            self.assertEqual(told["errors"][0]["pointer"], "/record/u_limits/0")
+            problem = json.loads(run("identify", path, "--r", "Rump").stderr)
+            self.assertEqual(problem["errors"][0]["pointer"], "/record/columns/r")
+            problem = json.loads(run("identify", path, "--u-limits", "100", "0").stderr)
+            self.assertEqual(problem["errors"][0]["pointer"], "/record/u_limits")
+            problem = json.loads(run("identify", path, "--u-limits", "low", "0").stderr)
+            self.assertEqual(problem["errors"][0]["pointer"], "/record/u_limits/0")
 
     def test_a_record_without_a_model_is_shown_by_three_rows(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-// What the process is told at its start: sizes, times, and options that do not go together.
+// What the process is given at its start: sizes, times, and options that do not go together.
 #include "server/config.h"
 
 #include <gmock/gmock.h>

@@ -220,7 +220,7 @@ const Description<IdentifiedModel>& model_contract() {
             .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
                    "Of the model; left out where no gain makes it oscillate.")
             .field("excited_band", &M::excited_band, maybe(answer(band_contract())),
-                   "The frequencies that the record tells something about.")
+                   "The frequencies at which the record determines the plant's response.")
             .field("region", &M::region, maybe(answer(region_contract())),
                    "The best-ranked controller on the 95 % confidence region; each entry has its own.")
             .field("choice_reason", &M::choice_reason, words(), "Why this structure.")

@@ -66,7 +66,7 @@ public:
         const double a = swings_[last], d = 0.5 * (levels_.u_plus - levels_.u_minus), h = levels_.hysteresis;
         if (a < kBeyondHysteresis * h)
             return unsupported("The output turns as soon as the relay switches, at y = " + text(h) +
-                               ": the hysteresis alone makes the period, and it tells no ultimate gain. Plants that "
+                               ": the hysteresis alone makes the period, which shows no ultimate gain. Plants that "
                                "answer at once, without dead time, have none.");
         test.Ku = 4 * d / (std::numbers::pi * std::sqrt(a * a - h * h));
         test.reversed = direction_ < 0;

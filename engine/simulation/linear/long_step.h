@@ -4,7 +4,7 @@
 // at the end, all three from the states there. Once the dead time and the plant's lags are short beside the step, an
 // integrating mode sees the Pade approximant of numerator degree 1 and denominator degree 3: of order 4 and L-stable
 // (Ehle 1973; Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, section IV.4), so what is too fast
-// for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive for ever.
+// for the step dies out. A cubic through w and w' at both ends has the same order but keeps such modes alive.
 // w' and w'' come from the states' derivatives, carried over the step like the states: as F x + G v at its end they
 // would be differences of large numbers, whose rounding the step's length magnifies. What they come to is a fixed row
 // for the states at the start, worked out once.

@@ -7,7 +7,7 @@
 
 namespace tunewright {
 
-/// u is u_plus for t_plus, then u_minus for t_minus, and so on for ever.
+/// u is u_plus for t_plus, then u_minus for t_minus, and so on.
 struct SteadyRelayCycle {
     double direction = 1;  ///< -1: the relay acts on -y (reversed)
     double t_plus = 0, t_minus = 0;

@@ -43,7 +43,7 @@ public:
           bulk_(address, tag, nullptr) {}
 
     bool shared() const override { return true; }
-    void watch(std::function<void(const StoreNotice&)> told) override { listener_.watch(std::move(told)); }
+    void watch(std::function<void(const StoreNotice&)> notify) override { listener_.watch(std::move(notify)); }
     bool healthy() const override { return writer_.healthy() && bulk_.healthy() && listener_.connected(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {

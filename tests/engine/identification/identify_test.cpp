@@ -98,7 +98,7 @@ TEST(Identify, StepBeforeTheFirstSampleNeedsU0) {
 }
 
 TEST(Identify, GivenY0DecidesWhatAResponseUnderWayLeavesOpen) {
-    // The first sample comes 6 s after the step: gain, dead time and offset of an exponential cannot be told apart
+    // The first sample comes 6 s after the step: gain, dead time and offset of an exponential cannot be separated
     // without y0.
     Record record = simulate(even_times(120, 0.5), 1, 5, {}, first_order(1, 1, 0));
     for (std::size_t i = 0; i < record.t.size(); ++i) record.y[i] += first_order(2, 8, 0)(record.t[i]);

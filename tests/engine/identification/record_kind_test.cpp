@@ -1,4 +1,4 @@
-// Records of every kind, told apart by u and by what y does when u moves.
+// Records of every kind, distinguished by u and by what y does when u moves.
 #include "engine/identification/record/record_kind.h"
 
 #include <gtest/gtest.h>

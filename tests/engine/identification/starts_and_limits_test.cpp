@@ -145,9 +145,9 @@ TEST(Records, FalseReadingsBesideAStepAreNamedAndLeftOut) {
     ASSERT_TRUE(model);
     const auto& plant = std::get<Fopdt>(model->plant);
     EXPECT_NEAR(plant.T, 0.057, 0.003);
-    const auto told = std::ranges::find(model->warnings, "removed-outliers", &Warning::code);
-    ASSERT_NE(told, model->warnings.end());
-    EXPECT_THAT(told->detail, HasSubstr("line 103 (t = 2.02), line 104 (t = 2.04)"));
+    const auto removed = std::ranges::find(model->warnings, "removed-outliers", &Warning::code);
+    ASSERT_NE(removed, model->warnings.end());
+    EXPECT_THAT(removed->detail, HasSubstr("line 103 (t = 2.02), line 104 (t = 2.04)"));
 }
 
 TEST(Records, APulseThatTheProcessAnswersIsNoFalseReading) {

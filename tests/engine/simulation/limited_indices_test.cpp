@@ -41,13 +41,13 @@ std::vector<Case> cases() {
 }
 
 template <class Figures>
-void hold(const Case& c, const Figures& figures, const IndexErrors& told) {
+void hold(const Case& c, const Figures& figures, const IndexErrors& stated) {
     ASSERT_TRUE(figures.IAE && figures.ISE && figures.ITAE && figures.TV);
     EXPECT_NEAR(*figures.IAE / c.IAE, 1, 1e-6);
     EXPECT_NEAR(*figures.ISE / c.ISE, 1, 1e-6);
     EXPECT_NEAR(*figures.ITAE / c.ITAE, 1, 1e-6);
     EXPECT_NEAR(*figures.TV / c.TV, 1, 1e-6);
-    ASSERT_TRUE(told.IAE && told.ISE && told.ITAE && told.TV);
+    ASSERT_TRUE(stated.IAE && stated.ISE && stated.ITAE && stated.TV);
 }
 
 TEST(LimitedIndices, AgreeWithAFixedStepProgram) {

@@ -269,7 +269,7 @@ TEST(LimitedResponse, EscapesEndFinitelyAndSaySo) {
         StepInputs in;
         ActuatorLimits limits;
     } escapes[] = {
-        {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // pushed out for ever
+        {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // pushed out without end
         {Fopdt{.K = -1, .T = -1, .L = 0}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},
         {Ipdt{.K = 1, .L = 0.5}, {.Kp = 0.8, .Ki = 0.2}, {0, 1}, {-0.5, 0.5}},  // a ramp without end
         {Ipdt{.K = 1, .L = 1e-6}, {.Kp = 0.8, .Ki = 0.2}, {0, 1}, {-0.5, 0.5}},

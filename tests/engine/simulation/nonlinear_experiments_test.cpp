@@ -190,7 +190,7 @@ TEST(NonlinearRelayTest, SaysWhyThereIsNone) {
     EXPECT_NE(message(simulate_relay_test(tank, 5, 0, {})).find("Give it a hysteresis"), std::string::npos);
     EXPECT_NE(message(simulate_relay_test(tank, 5, 3, {})).find("Lower the hysteresis below"), std::string::npos)
         << message(simulate_relay_test(tank, 5, 3, {}));
-    EXPECT_NE(message(simulate_relay_test(tank, 5, 0.1, {})).find("tells no ultimate gain"), std::string::npos);
+    EXPECT_NE(message(simulate_relay_test(tank, 5, 0.1, {})).find("shows no ultimate gain"), std::string::npos);
     NonlinearPlant one_sided = cstr("T");
     one_sided.input.min = one_sided.input.nominal;
     EXPECT_NE(message(simulate_relay_test(made_system(one_sided), 5, 0.1, {})).find("room on both sides"),

@@ -126,14 +126,14 @@ TEST(BodySource, RefusesWhatIsTooLongOrMalformedAndCloses) {
 }
 
 TEST(BodySource, TellsTheReaderOfARefusal) {
-    std::promise<State> told;
+    std::promise<State> seen;
     Loopback server([&](Request request,
-                        Reply) { request.source->read([&](BodySource::Piece piece) { told.set_value(piece.state); }); },
+                        Reply) { request.source->read([&](BodySource::Piece piece) { seen.set_value(piece.state); }); },
                     {}, at_batches);
     Client client(server);
     client.send(post(kChunked) + "no size\r\n");
     EXPECT_THAT(client.read_all(), StartsWith("HTTP/1.1 400"));
-    EXPECT_EQ(told.get_future().get(), State::refused);
+    EXPECT_EQ(seen.get_future().get(), State::refused);
 }
 
 TEST(BodySource, TellsAReaderThatTheClientLeftEvenLater) {
@@ -226,13 +226,13 @@ TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
 }
 
 TEST(BodySource, EndsWithTheService) {
-    std::promise<State> told;
+    std::promise<State> seen;
     Limits limits;
     limits.stopping = 1ms;
     std::promise<void> reading;
     Loopback server(
         [&](Request request, Reply) {
-            request.source->read([&](BodySource::Piece piece) { told.set_value(piece.state); });
+            request.source->read([&](BodySource::Piece piece) { seen.set_value(piece.state); });
             reading.set_value();
         },
         limits, at_batches);
@@ -240,7 +240,7 @@ TEST(BodySource, EndsWithTheService) {
     client.send(post("Content-Length: 5\r\n"));
     reading.get_future().wait();
     server.stop();
-    EXPECT_EQ(told.get_future().get(), State::gone);
+    EXPECT_EQ(seen.get_future().get(), State::gone);
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ public:
 
     void hear(const StoreNotice& notice) {
         const std::lock_guard lock(mutex_);
-        if (!deaf && told_) told_(notice);
+        if (!deaf && notify_) notify_(notice);
     }
 
     bool shared() const override { return true; }
-    void watch(std::function<void(const StoreNotice&)> told) override {
+    void watch(std::function<void(const StoreNotice&)> notify) override {
         const std::lock_guard lock(mutex_);
-        told_ = std::move(told);
+        notify_ = std::move(notify);
     }
     bool healthy() const override { return !broken && store_.healthy(); }
     /// Whoever recovers while others are at work must leave theirs alone: the leases tell.
@@ -135,7 +135,7 @@ private:
     JobStore& store_;
     NoticeBoard& board_;
     std::mutex mutex_;
-    std::function<void(const StoreNotice&)> told_;
+    std::function<void(const StoreNotice&)> notify_;
 };
 
 inline void NoticeBoard::add(SharedStore* view) {

@@ -1,4 +1,4 @@
-// A file system without room: told as such, read as before, and as good as new when there is room again.
+// A file system without room: reported as such, read as before, and as good as new when there is room again.
 #include <sys/mount.h>
 
 #include <thread>
@@ -56,12 +56,12 @@ TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAg
 
         disk.grow();
         while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        const auto claimed = completed<std::vector<JobRecord>>([&](auto told) {
-            store->claim({"worker", 1, std::chrono::minutes(1), 1}, told);
+        const auto claimed = completed<std::vector<JobRecord>>([&](auto callback) {
+            store->claim({"worker", 1, std::chrono::minutes(1), 1}, callback);
         });
         ASSERT_EQ(claimed.size(), 1U);
         const JobEnd end{claimed[0].id, 1, JobStatus::succeeded, std::string(100'000, 'r'), "", "1", 2};
-        EXPECT_TRUE(completed<bool>([&](auto told) { store->finish(end, told); }));
+        EXPECT_TRUE(completed<bool>([&](auto callback) { store->finish(end, callback); }));
         EXPECT_EQ(store->find(claimed[0].id).value().result.size(), 100'000U);
     }
     EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA integrity_check"), "ok");
@@ -75,9 +75,9 @@ TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     const auto store = open_sqlite_store(folder.file());
     NewJob job;
     job.id = "a";
-    completed<Accepted>([&](auto told) { store->accept(job, told); });
-    completed<std::vector<JobRecord>>([&](auto told) {
-        store->claim({"worker", 1, std::chrono::minutes(1), 1}, told);
+    completed<Accepted>([&](auto callback) { store->accept(job, callback); });
+    completed<std::vector<JobRecord>>([&](auto callback) {
+        store->claim({"worker", 1, std::chrono::minutes(1), 1}, callback);
     });
     const JobEnd end{"a", 1, JobStatus::succeeded, std::string(4'000'000, 'r'), "", "1", 2};
     std::promise<Outcome<bool>> answer;
@@ -87,7 +87,7 @@ TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     EXPECT_EQ(std::get<StoreFault>(refused).kind, StoreFault::Kind::full);
     EXPECT_EQ(store->find("a").value().status, JobStatus::running);
     disk.grow();
-    EXPECT_TRUE(completed<bool>([&](auto told) { store->finish(end, told); }));
+    EXPECT_TRUE(completed<bool>([&](auto callback) { store->finish(end, callback); }));
     EXPECT_EQ(store->find("a").value().result, end.result);
 }
 

@@ -32,8 +32,8 @@ TEST(SqliteSchema, AFileOfTheFirstVersionKeepsEverythingItHolds) {
     EXPECT_EQ(store->find("waiting").value().timeout_s, 12.5);
     std::string order;
     for (int i = 0; i < 3; i++)
-        order += completed<std::vector<JobRecord>>([&](auto told) {
-                     store->claim({"worker", 9001, std::chrono::minutes(1), 1}, told);
+        order += completed<std::vector<JobRecord>>([&](auto callback) {
+                     store->claim({"worker", 9001, std::chrono::minutes(1), 1}, callback);
                  })
                      .at(0)
                      .id +
@@ -45,9 +45,9 @@ TEST(SqliteSchema, AFileOfTheFirstVersionKeepsEverythingItHolds) {
     again.id = "again";
     again.request_hash = "h1";
     again.idempotency_key = "key";
-    EXPECT_EQ(completed<Accepted>([&](auto told) { store->accept(again, told); }).job.id, "done");
+    EXPECT_EQ(completed<Accepted>([&](auto callback) { store->accept(again, callback); }).job.id, "done");
     again.idempotency_key = "";
-    EXPECT_EQ(completed<Accepted>([&](auto told) { store->accept(again, told); }).job.seq, 10)
+    EXPECT_EQ(completed<Accepted>([&](auto callback) { store->accept(again, callback); }).job.seq, 10)
         << "a number that was given once is not given again";
     EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA foreign_key_check"), "");
     EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA integrity_check"), "ok");
@@ -59,10 +59,14 @@ TEST(SqliteSchema, TheFileItselfRefusesWhatTheStatesDoNotAllow) {
     for (const char* id : {"ended", "running", "waiting"}) {
         NewJob job;
         job.id = id;
-        completed<Accepted>([&](auto told) { store->accept(job, told); });
+        completed<Accepted>([&](auto callback) { store->accept(job, callback); });
     }
-    completed<std::vector<JobRecord>>([&](auto told) { store->claim({"w", 1, std::chrono::minutes(1), 2}, told); });
-    completed<bool>([&](auto told) { store->finish({"ended", 1, JobStatus::succeeded, "{}", "", "1", 2}, told); });
+    completed<std::vector<JobRecord>>([&](auto callback) {
+        store->claim({"w", 1, std::chrono::minutes(1), 2}, callback);
+    });
+    completed<bool>([&](auto callback) {
+        store->finish({"ended", 1, JobStatus::succeeded, "{}", "", "1", 2}, callback);
+    });
     for (const char* change : kForbiddenChanges)
         EXPECT_ANY_THROW(run_sqlite(folder.file(), std::string("UPDATE jobs SET ") + change)) << change;
     EXPECT_EQ(run_sqlite(folder.file(), "SELECT group_concat(status, ' ') FROM (SELECT status FROM jobs ORDER BY seq)"),

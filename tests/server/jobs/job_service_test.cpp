@@ -178,10 +178,10 @@ TEST_F(JobServiceTest, CancellingAQueuedJobTellsWhoWaitsForIt) {
     const std::string running = submit("wait").job.id;
     const std::string queued = submit("a").job.id;
     until_running(running);
-    std::promise<void> told;
-    service_->wait(queued, std::chrono::seconds(60), [&] { told.set_value(); });
+    std::promise<void> notified;
+    service_->wait(queued, std::chrono::seconds(60), [&] { notified.set_value(); });
     EXPECT_EQ(cancel(queued), CancelEffect::cancelled);
-    told.get_future().get();
+    notified.get_future().get();
     EXPECT_EQ(service_->queued(), 0U);
     gate_.open();
     EXPECT_EQ(ended(running).status, JobStatus::succeeded);
@@ -203,9 +203,9 @@ TEST_F(JobServiceTest, AFullQueueRefusesAndTakesAgainWhenThereIsRoom) {
 TEST_F(JobServiceTest, AWaitThatIsOverIsToldWhileTheJobRuns) {
     start();
     const std::string id = submit("wait").job.id;
-    std::promise<void> told;
-    service_->wait(id, std::chrono::milliseconds(5), [&] { told.set_value(); });
-    told.get_future().get();
+    std::promise<void> notified;
+    service_->wait(id, std::chrono::milliseconds(5), [&] { notified.set_value(); });
+    notified.get_future().get();
     EXPECT_FALSE(has_ended(service_->find(id)->job.status));
 }
 
@@ -214,9 +214,9 @@ TEST_F(JobServiceTest, WaitingForAnEndedOrUnknownJobIsToldAtOnce) {
     const std::string id = submit("a").job.id;
     ended(id);
     for (const std::string& asked : {id, std::string("nothing")}) {
-        std::promise<void> told;
-        service_->wait(asked, std::chrono::hours(1), [&] { told.set_value(); });
-        told.get_future().get();
+        std::promise<void> notified;
+        service_->wait(asked, std::chrono::hours(1), [&] { notified.set_value(); });
+        notified.get_future().get();
     }
 }
 
@@ -236,10 +236,10 @@ TEST_F(JobServiceTest, DrainingWithoutGraceGivesRunningJobsBackToTheQueueAndTell
     start();
     const std::string id = submit("partial").job.id;
     until_running(id);
-    std::promise<void> told;
-    service_->wait(id, std::chrono::hours(1), [&] { told.set_value(); });
+    std::promise<void> notified;
+    service_->wait(id, std::chrono::hours(1), [&] { notified.set_value(); });
     EXPECT_TRUE(service_->drain(std::chrono::seconds(0)));
-    told.get_future().get();
+    notified.get_future().get();
     EXPECT_EQ(store_->find(id)->status, JobStatus::queued);
     EXPECT_EQ(store_->find(id)->attempts, 1);
 }

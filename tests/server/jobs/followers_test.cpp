@@ -14,10 +14,10 @@ namespace {
 using Kind = JobNews::Kind;
 using namespace std::chrono_literals;
 
-/// Keeps what one follower was told.
+/// Keeps what one follower has heard.
 class Ear {
 public:
-    Followers::Listener told() {
+    Followers::Listener listener() {
         return [this](const JobNews& news) {
             const std::lock_guard lock(mutex_);
             news_.push_back(news);
@@ -67,14 +67,17 @@ protected:
         NewJob job;
         job.id = id;
         job.request = "{}";
-        done<Accepted>([&](auto told) { store_->accept(job, told); });
+        done<Accepted>([&](auto callback) { store_->accept(job, callback); });
     }
     JobRecord claim() {
-        return done<std::vector<JobRecord>>([&](auto told) { store_->claim({"worker", 0, 10s, 1}, told); }).at(0);
+        return done<std::vector<JobRecord>>([&](auto callback) {
+                   store_->claim({"worker", 0, 10s, 1}, callback);
+               })
+            .at(0);
     }
     void finish(const JobRecord& job) {
-        done<bool>([&](auto told) {
-            store_->finish({job.id, job.attempts, JobStatus::succeeded, "{\"of\":1}", "", "1", 5}, told);
+        done<bool>([&](auto callback) {
+            store_->finish({job.id, job.attempts, JobStatus::succeeded, "{\"of\":1}", "", "1", 5}, callback);
         });
     }
 
@@ -88,12 +91,14 @@ protected:
 TEST_F(FollowersTest, AWaitingJobIsToldAtOnceThenItsStartItsProgressAndItsEnd) {
     accept("a");
     Ear ear;
-    followers_->follow("a", ear.told());
+    followers_->follow("a", ear.listener());
     EXPECT_EQ(ear.next().view->job.status, JobStatus::queued);
     // Claimed by another process, which tells its progress through the store.
     const JobRecord job = claim();
     EXPECT_EQ(ear.next().view->job.status, JobStatus::running);
-    done<std::vector<Renewed>>([&](auto told) { store_->renew({{"a", 1, R"({"fraction":0.5})"}}, 0, 10s, told); });
+    done<std::vector<Renewed>>([&](auto callback) {
+        store_->renew({{"a", 1, R"({"fraction":0.5})"}}, 0, 10s, callback);
+    });
     EXPECT_EQ(ear.next().view->job.progress, R"({"fraction":0.5})");
     finish(job);
     const JobNews last = ear.next();
@@ -107,7 +112,7 @@ TEST_F(FollowersTest, ProgressOfAJobOfThisProcessNeedsNoStore) {
     const auto held = held_.add(claim());
     held->enter(HeldJob::Stage::computing);
     Ear ear;
-    followers_->follow("a", ear.told());
+    followers_->follow("a", ear.listener());
     EXPECT_FALSE(ear.next().view->progress);
     held->report({0.25, "tune", "A quarter.", {}});
     EXPECT_EQ(ear.next().view->progress->fraction, 0.25);
@@ -118,13 +123,13 @@ TEST_F(FollowersTest, WhatDoesNotChangeIsToldOnce) {
     accept("b");
     Ear a;
     Ear b;
-    followers_->follow("a", a.told());
+    followers_->follow("a", a.listener());
     a.next();
     // Looked at again and again, and after a hint.
     followers_->changed("a");
-    followers_->follow("b", b.told());
+    followers_->follow("b", b.listener());
     b.next();
-    done<CancelEffect>([&](auto told) { store_->cancel("b", 0, told); });
+    done<CancelEffect>([&](auto callback) { store_->cancel("b", 0, callback); });
     EXPECT_EQ(b.next().kind, Kind::ended);
     EXPECT_EQ(a.count(), 1U);
 }
@@ -133,9 +138,9 @@ TEST_F(FollowersTest, WhoComesLaterHearsHowTheJobStandsAndOthersNothing) {
     accept("a");
     Ear first;
     Ear second;
-    followers_->follow("a", first.told());
+    followers_->follow("a", first.listener());
     first.next();
-    followers_->follow("a", second.told());
+    followers_->follow("a", second.listener());
     EXPECT_EQ(second.next().view->job.status, JobStatus::queued);
     EXPECT_EQ(first.count(), 1U);
 }
@@ -144,10 +149,10 @@ TEST_F(FollowersTest, EndedUnknownAndDeletedJobsAreTheLastNews) {
     accept("a");
     finish(claim());
     Ear ended;
-    followers_->follow("a", ended.told());
+    followers_->follow("a", ended.listener());
     EXPECT_EQ(ended.next().kind, Kind::ended);
     Ear unknown;
-    followers_->follow("b", unknown.told());
+    followers_->follow("b", unknown.listener());
     EXPECT_EQ(unknown.next().kind, Kind::gone);
     EXPECT_EQ(followers_->count(), 0U);
 }
@@ -156,11 +161,11 @@ TEST_F(FollowersTest, ClosingTellsEverybodyNowAndLater) {
     accept("a");
     Ear before;
     Ear after;
-    followers_->follow("a", before.told());
+    followers_->follow("a", before.listener());
     before.next();
     followers_->close();
     EXPECT_EQ(before.next().kind, Kind::closing);
-    followers_->follow("a", after.told());
+    followers_->follow("a", after.listener());
     EXPECT_EQ(after.next().kind, Kind::closing);
 }
 
@@ -168,10 +173,10 @@ TEST_F(FollowersTest, WhoLeavesIsForgotten) {
     accept("a");
     Ear gone;
     Ear there;
-    const auto key = followers_->follow("a", gone.told());
+    const auto key = followers_->follow("a", gone.listener());
     gone.next();
     followers_->leave(key);
-    followers_->follow("a", there.told());
+    followers_->follow("a", there.listener());
     there.next();
     claim();
     EXPECT_EQ(there.next().view->job.status, JobStatus::running);

@@ -8,12 +8,6 @@
 
 namespace tunewright {
 
-Cubic hermite_taylor(double h, Signal start, Signal end) {
-    const double difference = end.value - start.value;
-    return {start.value, start.slope, (6 * difference - h * (4 * start.slope + 2 * end.slope)) / (h * h),
-            (-12 * difference + 6 * h * (start.slope + end.slope)) / (h * h * h)};
-}
-
 std::optional<double> first_rise(const Cubic& c, double h, double noise) {
     std::array<double, 4> mark = {0, h, h, h};
     int n = 1;

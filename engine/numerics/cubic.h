@@ -19,7 +19,11 @@ struct Signal {
 
 /// The cubic through values and slopes at both ends of a step of length h > 0 (Hermite), its value halfway, its
 /// integral over the step.
-Cubic hermite_taylor(double h, Signal start, Signal end);
+inline Cubic hermite_taylor(double h, Signal start, Signal end) {
+    const double difference = end.value - start.value;
+    return {start.value, start.slope, (6 * difference - h * (4 * start.slope + 2 * end.slope)) / (h * h),
+            (-12 * difference + 6 * h * (start.slope + end.slope)) / (h * h * h)};
+}
 inline double hermite_midpoint(double h, Signal start, Signal end) {
     return 0.5 * (start.value + end.value) + h * (start.slope - end.slope) / 8;
 }

@@ -36,6 +36,7 @@ struct Config {
     std::string keys;                        ///< the file of keys
     bool allow_anonymous = false;            ///< beyond loopback without keys
     double rate_limit = 0;                   ///< calls a second of one client; 0: none
+    std::vector<std::string> allowed_hosts;  ///< names that it answers to, beside its address
     std::vector<std::string> cors_origins;
     bool behind_proxy = false;
 };

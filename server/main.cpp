@@ -101,6 +101,9 @@ void add_port_options(CLI::App& app, Config& config) {
     option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
         ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
+    option(app, "allowed-host", config.allowed_hosts,
+           "A name by which it is called, beside its address; may be repeated")
+        ->type_name("NAME");
     option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
         ->delimiter(',');
     flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");

@@ -154,14 +154,14 @@ private:
         if (config.auth == "keys") made.keys_file = config.keys;
         made.rate = config.rate_limit;
         made.burst = 2 * config.rate_limit;
-        made.cors_origins = config.cors_origins;
+        made.sites = {parse_listen(config.listen).host, config.allowed_hosts, config.cors_origins};
         made.behind_proxy = config.behind_proxy;
         return made;
     }
 
     void add_routes() {
         router_.guard([this](http::Request& request) { return gate_.admit(request); });
-        add_health_routes(router_, jobs_, *store_, metrics_);
+        add_health_routes(router_, jobs_, *store_, gate_, metrics_);
         if (parse_role(config_.role) != Role::worker) add_public_routes();
         router_.observe([this](const http::Exchange& exchange) {
             metrics_.count(exchange);

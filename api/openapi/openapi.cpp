@@ -18,6 +18,7 @@ void add_refusals(Json& operation, bool changes) {
     add("401", "Unauthorized");
     add("403", "Forbidden");
     add("406", "NotAcceptable");
+    add("421", "Misdirected");
     add("429", "TooMany");
     add("503", "Unavailable");
     add("default", "Refused");

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "server/http/problems.h"
 
@@ -65,11 +64,7 @@ Response preflight() {
 
 }  // namespace
 
-Gate::Gate(const GateSettings& settings) : settings_(settings) {
-    for (const std::string& origin : settings_.cors_origins)
-        if (origin != "*" && (origin.find("://") == std::string::npos || origin.ends_with('/')))
-            throw std::invalid_argument("--cors-origin is \"" + origin +
-                                        "\"; it must be SCHEME://HOST[:PORT] without a slash at the end, or *.");
+Gate::Gate(const GateSettings& settings) : settings_(settings), sites_(settings.sites) {
     if (!settings_.keys_file.empty()) keys_ = std::make_unique<KeyRing>(settings_.keys_file);
     if (settings_.rate > 0) rate_ = std::make_unique<RateLimit>(settings_.rate, settings_.burst);
     process_ = new_key().substr(3, 8);
@@ -77,6 +72,7 @@ Gate::Gate(const GateSettings& settings) : settings_(settings) {
 
 std::optional<Response> Gate::admit(Request& request) {
     name(request);
+    if (auto refusal = check_host(request)) return refusal;
     if (auto refusal = check_site(request)) return refusal;
     auto no_key = check_key(request);
     // Who tries keys is slowed down too, under his address.
@@ -97,26 +93,34 @@ void Gate::name(Request& request) {
     request.client = client.empty() ? request.remote_addr : std::string(client);
 }
 
-bool Gate::allowed_origin(const Request& request) const {
-    const std::string_view origin = request.header("Origin");
-    return !origin.empty() && std::ranges::any_of(settings_.cors_origins, [&](const std::string& allowed) {
-        return allowed == "*" || allowed == origin;
-    });
+/// A page on a name that was rebound to this machine could otherwise use the service as its visitor. It has no key, so
+/// where keys are asked for any name will do, unless names are given.
+std::optional<Response> Gate::check_host(const Request& request) const {
+    const bool any = keys_ && settings_.sites.allowed_hosts.empty();
+    if (any || is_probe(request) || !request.has_header("Host") || sites_.serves(request.header("Host")))
+        return std::nullopt;
+    return problem_response(421,
+                            "This service does not answer to the name in the field Host. Call it by its address, or "
+                            "start it with --allowed-host and that name.");
 }
 
 std::optional<Response> Gate::check_site(Request& request) const {
-    if (!settings_.cors_origins.empty()) request.answer_headers.emplace_back("Vary", "Origin");
-    if (allowed_origin(request)) {
-        request.answer_headers.emplace_back("Access-Control-Allow-Origin", request.header("Origin"));
+    if (!settings_.sites.cors_origins.empty()) request.answer_headers.emplace_back("Vary", "Origin");
+    const std::string_view origin = request.header("Origin");
+    if (!origin.empty() && sites_.is_allowed_site(origin)) {
+        request.answer_headers.emplace_back("Access-Control-Allow-Origin", origin);
         request.answer_headers.emplace_back("Access-Control-Expose-Headers", kExposed);
         if (request.method == "OPTIONS" && request.has_header("Access-Control-Request-Method")) return preflight();
         return std::nullopt;
     }
-    // A browser says so itself when another site's page makes it send something to us.
+    const bool foreign = !origin.empty() && !sites_.may_call(origin, request.header("Host"));
+    // A browser that names no origin says so itself when another site's page makes it send something to us.
     const std::string_view site = request.header("Sec-Fetch-Site");
-    if (changes(request) && (site == "cross-site" || site == "same-site"))
-        return problem_response(403, "Pages of other sites may not use this service through a visitor's browser.");
-    return std::nullopt;
+    const bool crossing = changes(request) && (site == "cross-site" || site == "same-site");
+    if (!foreign && !crossing) return std::nullopt;
+    return problem_response(403,
+                            "Pages of other sites may not use this service through a visitor's browser. "
+                            "--cors-origin allows a site.");
 }
 
 std::optional<Response> Gate::check_key(Request& request) {

@@ -9,6 +9,7 @@
 
 #include "server/access/keys.h"
 #include "server/access/rate_limit.h"
+#include "server/access/sites.h"
 #include "server/http/message.h"
 
 namespace tunewright::server {
@@ -17,8 +18,7 @@ struct GateSettings {
     std::string keys_file;  ///< "": no keys are asked for
     double rate = 0;        ///< calls a second of one client; 0: no limit
     double burst = 0;       ///< at once, after a pause
-    /// Other sites whose pages may call ("https://plant.example"); empty: none.
-    std::vector<std::string> cors_origins;
+    SiteSettings sites;
     bool behind_proxy = false;  ///< the client is the last address of X-Forwarded-For, which the proxy has added
 };
 
@@ -28,18 +28,22 @@ public:
     explicit Gate(const GateSettings& settings);
 
     /// Fills in client, owner, request_id and answer_headers. The refusal where he may not: 401 without a known key
-    /// (below /v1, and /metrics), 403 for another site's page, 429 beyond the rate. A preflight of an allowed site is
-    /// answered here too.
+    /// (below /v1, and /metrics), 421 for a Host that is not ours, 403 for another site's page, 429 beyond the rate. A
+    /// preflight of an allowed site is answered here too.
     std::optional<http::Response> admit(http::Request& request);
+
+    /// Whether the file of keys can be used; true where no keys are asked for.
+    bool ready() { return !keys_ || keys_->usable(); }
 
 private:
     void name(http::Request& request);
-    bool allowed_origin(const http::Request& request) const;
+    std::optional<http::Response> check_host(const http::Request& request) const;
     std::optional<http::Response> check_site(http::Request& request) const;
     std::optional<http::Response> check_key(http::Request& request);
     std::optional<http::Response> check_rate(const http::Request& request);
 
     GateSettings settings_;
+    Sites sites_;
     std::unique_ptr<KeyRing> keys_;
     std::unique_ptr<RateLimit> rate_;
     std::string process_;  ///< begins the ids of requests, so that those of several processes differ

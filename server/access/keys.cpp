@@ -43,23 +43,19 @@ KeyLine parse_line(std::string_view line, std::size_t number) {
     return {std::string(name), std::string(digest)};
 }
 
-/// Looks at every character, whatever it finds, so that the time does not show where two digests differ.
-bool equal_in_constant_time(std::string_view a, std::string_view b) {
-    if (a.size() != b.size()) return false;
-    unsigned char difference = 0;
-    for (std::size_t i = 0; i < a.size(); i++)
-        difference = static_cast<unsigned char>(difference |
-                                                (static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i])));
-    return difference == 0;
+/// The text of the file; nothing where it cannot be read.
+std::optional<std::string> read_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return std::nullopt;
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad()) return std::nullopt;
+    return text;
 }
 
-std::vector<KeyLine> read_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::invalid_argument("it cannot be read");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    std::vector<KeyLine> lines = parse_keys(text);
-    if (lines.empty()) throw std::invalid_argument("it has no key; `tunewright key NAME --keys FILE` adds one");
-    return lines;
+std::unordered_map<std::string, std::string> names_by_digest(std::string_view text) {
+    std::unordered_map<std::string, std::string> names;
+    for (KeyLine& line : parse_keys(text)) names.insert_or_assign(std::move(line.digest), std::move(line.name));
+    return names;
 }
 
 constexpr int kFailed = 1;
@@ -106,40 +102,76 @@ std::string new_key() {
     return key;
 }
 
-KeyRing::KeyRing(std::string path) : path_(std::move(path)), looked_(std::chrono::steady_clock::now()) {
+KeyRing::KeyRing(std::string path, std::function<Clock::time_point()> now)
+    : path_(std::move(path)), now_(std::move(now)), looked_(now_()) {
+    const auto refuse = [&](const std::string& why) {
+        throw std::invalid_argument("The file of keys " + path_ + " cannot be used: " + why + ".");
+    };
+    stamp_ = stamp_of(path_);
+    const auto text = read_file(path_);
+    if (!text) refuse("it cannot be read");
     try {
-        lines_ = read_file(path_);
+        names_ = names_by_digest(*text);
     } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument("The file of keys " + path_ + " cannot be used: " + error.what() + ".");
+        refuse(error.what());
     }
-    std::error_code error;
-    modified_ = std::filesystem::last_write_time(path_, error);
+    if (names_.empty()) refuse("it has no key; `tunewright key NAME --keys FILE` adds one");
 }
 
-void KeyRing::reload_if_changed() {
-    const auto now = std::chrono::steady_clock::now();
+std::optional<KeyRing::Stamp> KeyRing::stamp_of(const std::string& path) {
+    std::error_code error;
+    Stamp stamp{std::filesystem::last_write_time(path, error)};
+    if (!error) stamp.size = std::filesystem::file_size(path, error);
+    return error ? std::nullopt : std::optional(stamp);
+}
+
+void KeyRing::look() {
+    const auto now = now_();
     if (now - looked_ < kLookInterval) return;
     looked_ = now;
-    std::error_code error;
-    const auto modified = std::filesystem::last_write_time(path_, error);
-    if (error || modified == modified_) return;
-    modified_ = modified;
+    const auto stamp = stamp_of(path_);
+    // What cannot be read may be readable again without having changed.
+    if (!stamp || stamp != stamp_ || !usable_) read_again(stamp);
+    if (broken_since_ && now - *broken_since_ >= kPatience)
+        admit_nobody("it has had a line that is no key's for " + std::to_string(kPatience.count()) + " s");
+}
+
+void KeyRing::read_again(const std::optional<Stamp>& stamp) {
+    stamp_ = stamp;
+    const auto text = stamp ? read_file(path_) : std::nullopt;
+    if (!text) return admit_nobody("it cannot be read");
     try {
-        lines_ = read_file(path_);
-        log_info("the file of keys has changed: " + std::to_string(lines_.size()) + " keys");
+        auto names = names_by_digest(*text);
+        log_info("the file of keys has changed: " + std::to_string(names.size()) + " keys");
+        names_ = std::move(names);
+        usable_ = true;
+        broken_since_.reset();
     } catch (const std::invalid_argument& fault) {
+        if (!usable_) return;
+        if (!broken_since_) broken_since_ = looked_;
         log_error(std::string("the file of keys has changed and is not used: ") + fault.what());
     }
+}
+
+void KeyRing::admit_nobody(const std::string& why) {
+    if (usable_) log_error("nobody is admitted: the file of keys " + path_ + " cannot be used, " + why);
+    names_.clear();
+    usable_ = false;
+    broken_since_.reset();
 }
 
 std::optional<std::string> KeyRing::name_of(std::string_view key) {
     const std::string digest = api::sha256_hex(key);
     const std::lock_guard lock(mutex_);
-    reload_if_changed();
-    const KeyLine* found = nullptr;
-    for (const KeyLine& line : lines_)
-        if (equal_in_constant_time(line.digest, digest)) found = &line;
-    return found == nullptr ? std::nullopt : std::optional<std::string>(found->name);
+    look();
+    const auto found = names_.find(digest);
+    return found == names_.end() ? std::nullopt : std::optional<std::string>(found->second);
+}
+
+bool KeyRing::usable() {
+    const std::lock_guard lock(mutex_);
+    look();
+    return usable_;
 }
 
 int make_key(const KeyCommand& command) {

@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace tunewright::server {
@@ -37,23 +39,49 @@ struct KeyCommand {
 /// Returns the exit code of the process: 0; 1 where the file cannot be written; 2 for a name that is not allowed.
 int make_key(const KeyCommand& command);
 
+/// The keys that are in force. The file is looked at once a second at most, and read again when it has changed.
+///
+/// - A file without a key admits nobody.
+/// - A file that is gone or cannot be read admits nobody, and usable() is false: a revoked key never comes back because
+///   of a fault.
+/// - A file with a line that is no key's is perhaps being written: the last good keys stay in force for kPatience, then
+///   it admits nobody and usable() is false.
 class KeyRing {
 public:
-    /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or used.
-    explicit KeyRing(std::string path);
+    static constexpr std::chrono::seconds kPatience{10};
+    using Clock = std::chrono::steady_clock;
 
-    /// The name of a key; nothing for one that is not known. Takes the same time wherever keys differ. A file that has
-    /// changed is read again, at most once a second; while the new one cannot be used the old keys stay.
+    /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or has no key.
+    explicit KeyRing(std::string path, std::function<Clock::time_point()> now = Clock::now);
+
+    /// The name of a key; nothing for one that is not known. The time that this takes depends on the digest alone,
+    /// of which nobody can choose a part.
     std::optional<std::string> name_of(std::string_view key);
 
+    /// Whether the file could be used when it was last looked at, which is now if that was a second ago.
+    bool usable();
+
 private:
-    void reload_if_changed();
+    /// What tells one state of the file from another.
+    struct Stamp {
+        std::filesystem::file_time_type modified;
+        std::uintmax_t size = 0;
+        bool operator==(const Stamp&) const = default;
+    };
+
+    static std::optional<Stamp> stamp_of(const std::string& path);
+    void look();
+    void read_again(const std::optional<Stamp>& stamp);
+    void admit_nobody(const std::string& why);
 
     std::string path_;
+    std::function<Clock::time_point()> now_;
     std::mutex mutex_;
-    std::vector<KeyLine> lines_;
-    std::filesystem::file_time_type modified_;
-    std::chrono::steady_clock::time_point looked_;
+    std::unordered_map<std::string, std::string> names_;  ///< by digest
+    std::optional<Stamp> stamp_;                          ///< of what was read last; empty: nothing could be
+    Clock::time_point looked_;
+    std::optional<Clock::time_point> broken_since_;  ///< a line that is no key's, the last good keys still in force
+    bool usable_ = true;
 };
 
 }  // namespace tunewright::server

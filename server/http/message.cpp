@@ -32,6 +32,7 @@ constexpr std::array kPhrases{
     Phrase{414, "URI Too Long"},
     Phrase{415, "Unsupported Media Type"},
     Phrase{417, "Expectation Failed"},
+    Phrase{421, "Misdirected Request"},
     Phrase{422, "Unprocessable Content"},
     Phrase{429, "Too Many Requests"},
     Phrase{431, "Request Header Fields Too Large"},
@@ -41,6 +42,9 @@ constexpr std::array kPhrases{
     Phrase{505, "HTTP Version Not Supported"},
     Phrase{507, "Insufficient Storage"},
 };
+
+/// What would end a header's line, or is forbidden in it.
+bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 127; }
 
 /// IMF-fixdate, made once a second for each thread.
 const std::string& http_date() {
@@ -89,7 +93,8 @@ std::string render_head(const Response& response, bool keep_alive, Framing frami
     out.reserve(512);
     out.append("HTTP/1.1 ").append(std::to_string(response.status)).append(" ");
     out.append(reason_phrase(response.status)).append("\r\nDate: ").append(http_date()).append("\r\n");
-    for (const auto& [name, value] : response.headers) out.append(name).append(": ").append(value).append("\r\n");
+    for (const auto& [name, value] : response.headers)
+        if (std::ranges::none_of(value, is_control)) out.append(name).append(": ").append(value).append("\r\n");
     if (framing == Framing::chunked)
         out.append("Transfer-Encoding: chunked\r\n");
     else if (framing == Framing::length && response.status != 204 && response.status != 304)

@@ -45,7 +45,7 @@ struct Request {
 
 struct Response {
     int status = 200;
-    std::vector<std::pair<std::string, std::string>> headers;  ///< values must be free of control characters
+    std::vector<std::pair<std::string, std::string>> headers;  ///< one whose value has a control character is left out
     std::string body;
     std::shared_ptr<BodyStream> stream;  ///< instead of `body`: sent as it is written
     bool close = false;                  ///< close the connection after this answer

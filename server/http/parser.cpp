@@ -70,6 +70,21 @@ std::vector<std::string> split_path(std::string_view path) {
     }
 }
 
+/// The fields of a head that has passed read_head, as they were sent. The library decodes percent signs in values,
+/// after they were checked: what it makes of them is not used.
+void add_fields(std::string_view head, Request& request) {
+    head.remove_prefix(head.find("\r\n") + 2);  // the request line
+    while (!head.empty() && !head.starts_with("\r\n")) {
+        const std::string_view line = head.substr(0, head.find("\r\n"));
+        head.remove_prefix(line.size() + 2);
+        const std::size_t colon = line.find(':');
+        const std::size_t first = line.find_first_not_of(" \t", colon + 1);
+        const std::size_t last = line.find_last_not_of(" \t");
+        request.headers.emplace(line.substr(0, colon),
+                                first == std::string_view::npos ? "" : line.substr(first, last - first + 1));
+    }
+}
+
 }  // namespace
 
 class Parser::Front : public httplib::Server {
@@ -116,9 +131,9 @@ public:
             parsed->method = std::move(raw.method);
             parsed->target = std::move(raw.target);
             for (auto& [name, value] : raw.params) parsed->query.emplace(name, std::move(value));
-            while (!raw.headers.empty()) parsed->headers.insert(raw.headers.extract(raw.headers.begin()));
             parsed->segments = split_path(parsed->path());
         });
+        if (parsed) add_fields(head, *parsed);
         return parsed;
     }
 };

@@ -8,19 +8,22 @@ namespace {
 using http::Call;
 using http::Response;
 
-Response ready(const JobService& jobs, const JobStore& store) {
+Response ready(const JobService& jobs, const JobStore& store, Gate& gate) {
     if (jobs.draining()) return http::problem_response(503, "The service is being stopped.");
     if (!store.healthy())
         return http::problem_response(503, "The store could not be written to when it was last tried.");
+    if (!gate.ready())
+        return http::problem_response(503, "The file of keys cannot be used, so nobody is admitted; the log says why.");
     return http::json_response(R"({"status":"ready"})");
 }
 
 }  // namespace
 
-void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Metrics& metrics) {
+void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
+                       Metrics& metrics) {
     const std::string alive = std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
     router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
-    router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store); });
+    router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate); });
     router.pooled("GET", "/metrics", [&](const Call&) {
         Response response;
         response.body = metrics.text(jobs);

@@ -3,6 +3,7 @@
 
 #include <stop_token>
 
+#include "server/access/gate.h"
 #include "server/executor.h"
 #include "server/http/router.h"
 #include "server/jobs/batch/batches.h"
@@ -38,6 +39,7 @@ void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, 
 void add_description_routes(http::Router& router);
 
 /// /healthz, /readyz, /metrics.
-void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Metrics& metrics);
+void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
+                       Metrics& metrics);
 
 }  // namespace tunewright::server

@@ -1,5 +1,6 @@
 """Who may call: keys, whose jobs are whose, rates, other sites, and what a port beyond loopback asks for."""
 
+import json
 import os
 import re
 import subprocess
@@ -117,6 +118,7 @@ class PortTest(unittest.TestCase):
     def test_other_sites_are_kept_out_unless_they_are_named(self):
         with Service() as service:
             answer = service.get("/v1/methods", {"Origin": "https://a.example"})
+            self.assertEqual(answer.status, 403)
             self.assertIsNone(answer.headers["Access-Control-Allow-Origin"])
         with Service("--cors-origin", "https://a.example") as service:
             answer = service.get("/v1/methods", {"Origin": "https://a.example"})
@@ -125,6 +127,35 @@ class PortTest(unittest.TestCase):
                 "Origin": "https://a.example", "Access-Control-Request-Method": "POST"})
             self.assertEqual(preflight.status, 204)
             self.assertIn("POST", preflight.headers["Access-Control-Allow-Methods"])
+
+    def test_a_rebound_name_reads_and_posts_nothing(self):
+        body = json.dumps({"plant": {"type": "fopdt", "K": 1, "T": 1, "L": 1}, "tune": "simc"}).encode()
+        form = {"Content-Type": "application/x-www-form-urlencoded"}
+        with Service() as service:
+            evil = {"Host": "evil.example:%d" % service.port}
+            same = {**evil, "Origin": "http://evil.example:%d" % service.port}
+            for headers in (evil, same):
+                for method, path in (("GET", "/v1/jobs"), ("GET", "/"), ("POST", "/v1/jobs"), ("OPTIONS", "/v1/jobs")):
+                    answer = service.call(method, path, body=body if method == "POST" else None,
+                                          headers={**headers, **form})
+                    self.assertEqual(answer.status, 421, (method, path, headers))
+            self.assertEqual(service.get("/healthz", evil).status, 200)
+            own = "localhost:%d" % service.port
+            self.assertEqual(service.get("/v1/jobs", {"Host": own, "Origin": "http://" + own}).status, 200)
+            for origin in ("http://evil.example", "null", "http://localhost:1"):
+                for method in ("GET", "POST", "DELETE"):
+                    answer = service.call(method, "/v1/jobs", headers={"Host": own, "Origin": origin})
+                    self.assertEqual(answer.status, 403, (method, origin))
+        with Service("--allowed-host", "Plant.example") as service:
+            for host in ("plant.example", "plant.example:8443"):
+                self.assertEqual(service.get("/v1/jobs", {"Host": host, "Origin": "https://" + host}).status, 200)
+
+    def test_a_header_is_sent_back_as_it_came_or_not_at_all(self):
+        with Service("--cors-origin", "*") as service:
+            self.assertNotEqual(service.get("/v1/methods", {"X-Request-Id": "abc%2Ddef"}).headers["X-Request-Id"], "abc-def")
+            answer = service.get("/v1/methods", {"Origin": "http://x%0d%0aSet-Cookie:a=b"})
+            self.assertIsNone(answer.headers["Set-Cookie"])
+            self.assertEqual(answer.headers["Access-Control-Allow-Origin"], "http://x%0d%0aSet-Cookie:a=b")
 
     def test_answers_and_log_name_the_request(self):
         with Service("--log-format", "json") as service:

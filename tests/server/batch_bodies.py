@@ -37,7 +37,7 @@ class Upload:
     def __init__(self, service, headers=NDJSON, path="/v1/batches"):
         self.socket = socket.create_connection(("127.0.0.1", service.port), timeout=60)
         head = "".join("%s: %s\r\n" % item for item in headers.items())
-        self.socket.sendall(("POST %s HTTP/1.1\r\nHost: x\r\n%sTransfer-Encoding: chunked\r\n\r\n" % (path, head)).encode())
+        self.socket.sendall(("POST %s HTTP/1.1\r\nHost: localhost\r\n%sTransfer-Encoding: chunked\r\n\r\n" % (path, head)).encode())
 
     def send(self, text):
         data = text.encode()

@@ -45,7 +45,7 @@ class BatchFaultsTest(unittest.TestCase):
                 upload.send(lines(3000))
             batch = service.post("/v1/batches", "".join(json.dumps(LONG) + "\n" for _ in range(20)), NDJSON).json["id"]
             follower = socket.create_connection(("127.0.0.1", service.port), timeout=60)
-            follower.sendall(("GET /v1/batches/%s/results?follow=true HTTP/1.1\r\nHost: x\r\n\r\n" % batch).encode())
+            follower.sendall(("GET /v1/batches/%s/results?follow=true HTTP/1.1\r\nHost: localhost\r\n\r\n" % batch).encode())
             self.assertEqual(service.stop(), 0, service.read_log()[-2000:])
             for connection in [follower] + [upload.socket for upload in uploads]:
                 connection.close()

@@ -279,7 +279,7 @@ class BatchesTest(unittest.TestCase):
         for _ in range(20):
             reader = socket.create_connection(("127.0.0.1", self.service.port), timeout=30)
             reader.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-            reader.sendall(("GET /v1/batches/%s/results HTTP/1.1\r\nHost: x\r\n\r\n" % batch).encode())
+            reader.sendall(("GET /v1/batches/%s/results HTTP/1.1\r\nHost: localhost\r\n\r\n" % batch).encode())
             readers.append(reader)
         self.assertEqual(len(rows_of(self.follow(batch))), 3000)
         self.assertEqual(self.service.post_job(QUICK, wait=30)["status"], "succeeded")

@@ -75,7 +75,7 @@ def main():
             if answer.status == 500 or b'"internal"' in answer.body:
                 print("a fault of ours:", path, body[:2000], answer.body[:500])
                 return 1
-            head = b"POST /v1/jobs HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: 2\r\n\r\n{}"
+            head = b"POST /v1/jobs HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: 2\r\n\r\n{}"
             service.raw(bent_bytes(head, chance), patience=0.05)
             if service.process.poll() is not None:
                 print("the service died:", path, body[:2000], service.read_log()[-3000:])

@@ -206,9 +206,9 @@ TEST(Gate, BeyondTheRateClientsAreToldWhenToComeBackAndProbesPass) {
     for (int i = 0; i < 10; i++) EXPECT_FALSE(gate.admit(probe));
 }
 
-TEST(Gate, PagesOfOtherSitesMayNotChangeAnythingUnlessTheyAreNamed) {
+TEST(Gate, PagesOfOtherSitesMayNotCallUnlessTheyAreNamed) {
     GateSettings settings;
-    settings.cors_origins = {"https://plant.example"};
+    settings.sites.cors_origins = {"https://plant.example"};
     Gate gate(settings);
     for (const std::string site : {"cross-site", "same-site"}) {
         http::Request call = with(request("POST", "/v1/jobs"), "Sec-Fetch-Site", site);
@@ -222,7 +222,9 @@ TEST(Gate, PagesOfOtherSitesMayNotChangeAnythingUnlessTheyAreNamed) {
     EXPECT_FALSE(gate.admit(named));
     EXPECT_EQ(header(named.answer_headers, "Access-Control-Allow-Origin"), "https://plant.example");
     http::Request other = with(request("GET", "/v1/jobs"), "Origin", "https://plant.example.evil.example");
-    EXPECT_FALSE(gate.admit(other));
+    const auto refusal = gate.admit(other);
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->status, 403);
     EXPECT_EQ(header(other.answer_headers, "Access-Control-Allow-Origin"), "");
     EXPECT_EQ(header(other.answer_headers, "Vary"), "Origin");
 }
@@ -231,7 +233,7 @@ TEST(Gate, APreflightOfANamedSiteIsAnsweredWithoutAKey) {
     const File file(line_of("line-1", "tw_1"));
     GateSettings settings;
     settings.keys_file = file.path;
-    settings.cors_origins = {"https://plant.example"};
+    settings.sites.cors_origins = {"https://plant.example"};
     Gate gate(settings);
     http::Request call = with(with(request("OPTIONS", "/v1/jobs"), "Origin", "https://plant.example"),
                               "Access-Control-Request-Method", "POST");

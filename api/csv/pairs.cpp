@@ -92,8 +92,7 @@ bool is_unit(std::string_view word) {
                                                   "K",
                                                   "degC",
                                                   "degF",
-                                                  "\xC2\xB0"
-                                                  "C",
+                                                  "\u00b0C",
                                                   "\xC2\xB0"
                                                   "F",
                                                   "V",
@@ -227,7 +226,9 @@ void split_pairs(std::string_view line, std::vector<Pair>& out) {
             at = sign + 1;
             continue;
         }
-        out.push_back({line[sign] == '=' && !group.empty() ? group + "." + key : key, value});
+        std::string name = key;
+        if (line[sign] == '=' && !group.empty()) name.insert(0, group + ".");
+        out.push_back({std::move(name), value});
         consumed = value_from;
         std::size_t slash = consumed;
         skip_blanks(line, slash);

@@ -108,7 +108,7 @@ private:
         std::vector<double>& r = record_.r;
         const auto known = std::find_if(r.begin(), r.end(), [](double value) { return !std::isnan(value); });
         if (known == r.end() && !r.empty())
-            columns_.notes.push_back("The column of the set point holds no number; there is none in the record.");
+            columns_.notes.emplace_back("The column of the set point holds no number; there is none in the record.");
         if (known == r.end()) return r.clear();
         double last = *known;
         for (double& value : r) last = value = std::isnan(value) ? last : value;
@@ -227,7 +227,8 @@ private:
         if (!low_word_.empty()) levels = quoted(low_word_) + " is 0";
         if (!high_word_.empty()) levels += (levels.empty() ? "" : " and ") + quoted(high_word_) + " is 1";
         if (!levels.empty())
-            record_.notes.push_back("u is two levels: " + levels + ". The gain is per switch, not per unit of power.");
+            record_.notes.emplace_back("u is two levels: " + levels +
+                                       ". The gain is per switch, not per unit of power.");
     }
 
     void note_unit(Role role, const std::string& given, const char* name) {
@@ -249,19 +250,19 @@ private:
             for (std::string& note : times->take_notes()) notes.push_back(std::move(note));
         }
         if (columns_.spacing)
-            notes.push_back("Times are made from column " + quoted(layout_.headings[*columns_.spacing]) +
-                            ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
+            notes.emplace_back("Times are made from column " + quoted(layout_.headings[*columns_.spacing]) +
+                               ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
         if (layout_.skipped > 0)
             notes.push_back(std::to_string(layout_.skipped) +
                             (layout_.skipped == 1 ? " line above the headings was" : " lines above the headings were") +
                             " skipped.");
-        if (layout_.pairs) notes.push_back("Each line names its values; lines without them were passed over.");
+        if (layout_.pairs) notes.emplace_back("Each line names its values; lines without them were passed over.");
         if (layout_.commented)
-            notes.push_back("The headings are those of the comment in line " + std::to_string(layout_.heading_line) +
-                            ".");
-        if (layout_.numbered) notes.push_back("The first column, which has no heading, numbers the rows.");
+            notes.emplace_back("The headings are those of the comment in line " + std::to_string(layout_.heading_line) +
+                               ".");
+        if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
         note_switch();
-        if (layout_.sign == DecimalSign::comma) notes.push_back("Numbers have a decimal comma.");
+        if (layout_.sign == DecimalSign::comma) notes.emplace_back("Numbers have a decimal comma.");
         if (!missing_word_.empty()) notes.push_back(quoted(missing_word_) + " and the like are read as no value.");
         note_unit(kInputRole, options_.unit_u, "u");
         note_unit(kOutputRole, options_.unit_y, "y");

@@ -80,7 +80,7 @@ Json number_schema(const NumberRule& rule) {
     return out;
 }
 
-Codec<double> number(NumberRule rule) {
+Codec<double> number(const NumberRule& rule) {
     return {[rule](const Json& value, double& target, Reader& reader) {
                 if (const auto read = read_number(value, rule, reader)) target = *read;
             },
@@ -88,9 +88,9 @@ Codec<double> number(NumberRule rule) {
             [rule](SchemaBook&) { return number_schema(rule); }};
 }
 
-Codec<double> engine_ruled(NumberRule rule) {
+Codec<double> engine_ruled(const NumberRule& rule) {
     Codec<double> codec = number();
-    codec.schema = number(std::move(rule)).schema;
+    codec.schema = number(rule).schema;
     return codec;
 }
 
@@ -146,7 +146,7 @@ Codec<std::string> words() {
             }};
 }
 
-Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null) {
+Codec<double> number_or_infinite(const NumberRule& rule, const std::string& meaning_of_null) {
     return {[rule](const Json& value, double& target, Reader& reader) {
                 if (value.is_null()) {
                     target = std::numeric_limits<double>::infinity();
@@ -163,7 +163,7 @@ Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null) {
             }};
 }
 
-Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRule rule) {
+Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const NumberRule& rule) {
     constexpr std::size_t kFaultsListed = 5;
     return {[least, most, rule](const Json& value, std::vector<double>& target, Reader& reader) {
                 if (!value.is_array()) return reader.fault(wrong_kind(value, "an array of numbers", reader));

@@ -49,10 +49,10 @@ Json number_schema(const NumberRule& rule);
 /// The sentence for a value of the wrong kind: "K is "2", a text; it must be a number. Write 2 without quotes."
 std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader);
 
-Codec<double> number(NumberRule rule = {});
+Codec<double> number(const NumberRule& rule = {});
 
 /// A number whose rule the engine holds, with its own sentence: the schema shows the rule, reading takes any number.
-Codec<double> engine_ruled(NumberRule rule);
+Codec<double> engine_ruled(const NumberRule& rule);
 Codec<int> integer(int minimum, int maximum);
 Codec<bool> boolean();
 Codec<std::string> text(std::size_t longest);
@@ -61,10 +61,10 @@ Codec<std::string> text(std::size_t longest);
 Codec<std::string> words();
 
 /// A number or null for "infinite", as with Ti.
-Codec<double> number_or_infinite(NumberRule rule, std::string meaning_of_null);
+Codec<double> number_or_infinite(const NumberRule& rule, const std::string& meaning_of_null);
 
 /// An array of numbers, `least` to `most` of them. The first five faults are listed.
-Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, NumberRule rule = {});
+Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const NumberRule& rule = {});
 
 /// Only in answers: six significant digits each.
 Codec<std::vector<double>> trace();

@@ -43,9 +43,9 @@ std::string Reader::pointer() const {
 
 std::string Reader::name() const {
     std::string indices;
-    for (auto segment = path_.rbegin(); segment != path_.rend(); ++segment) {
-        if (!segment->name.empty()) return std::string(segment->name) + indices;
-        indices.insert(0, "[" + std::to_string(segment->index) + "]");
+    for (std::size_t i = path_.size(); i-- > 0;) {
+        if (!path_[i].name.empty()) return std::string(path_[i].name) + indices;
+        indices.insert(0, "[" + std::to_string(path_[i].index) + "]");
     }
     return indices.empty() ? "the request" : indices;
 }

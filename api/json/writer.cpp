@@ -52,6 +52,7 @@ SixDigits split(double magnitude) {
         ++exponent;
         scaled = magnitude * kPowerOfTen(5 - exponent);
     }
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): between 1e5 and 1e6 it is right, and lround() is a call a number
     auto digits = static_cast<std::uint32_t>(scaled + 0.5);
     if (digits > 999999) {
         digits = 100000;

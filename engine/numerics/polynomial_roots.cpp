@@ -58,7 +58,7 @@ struct Product {
 
     explicit Product(const std::vector<Complex>& roots, double scale) {
         for (const Complex root : roots) {
-            coefficients.push_back(0);
+            coefficients.emplace_back(0);
             sizes.push_back(0);
             for (Index i = coefficients.size() - 1; i > 0; --i) {
                 coefficients[i] -= root / scale * coefficients[i - 1];

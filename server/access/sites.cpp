@@ -11,7 +11,8 @@ namespace {
 
 std::string lower(std::string_view text) {
     std::string result(text);
-    std::ranges::transform(result, result.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    std::ranges::transform(result, result.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
     return result;
 }
 
@@ -77,8 +78,7 @@ bool Sites::may_call(std::string_view origin, std::string_view host) const {
     const std::string_view authority = authority_of(origin);
     if (authority.empty()) return false;
     // Behind a proxy the service sees plain HTTP, and perhaps a Host of the proxy's own making.
-    return lower(authority) == lower(host) ||
-           std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;
+    return lower(authority) == lower(host) || std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;
 }
 
 }  // namespace tunewright::server

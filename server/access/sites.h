@@ -10,7 +10,7 @@
 namespace tunewright::server {
 
 struct SiteSettings {
-    std::string listen_host = "127.0.0.1";   ///< an address or a name, without brackets
+    std::string listen_host = "127.0.0.1";        ///< an address or a name, without brackets
     std::vector<std::string> allowed_hosts = {};  ///< further names, such as plant.example; "*": every name
     std::vector<std::string> cors_origins = {};   ///< sites whose pages may call: SCHEME://HOST[:PORT]; "*": every site
 };
@@ -21,8 +21,9 @@ public:
     /// Throws std::invalid_argument with a sentence where an allowed host or an origin is none.
     explicit Sites(SiteSettings settings);
 
-    /// Whether `host`, the field Host, names this service: the listen address, localhost, a loopback address, an allowed
-    /// host; any address (not a name) where the service listens on every one, since no page can have an address rebound.
+    /// Whether `host`, the field Host, names this service: the listen address, localhost, a loopback address, an
+    /// allowed host; any address (not a name) where the service listens on every one, since no page can have an address
+    /// rebound.
     bool serves(std::string_view host) const;
 
     /// Whether a page of `origin` may call what it reached as `host`: the service's own page, or an allowed site.

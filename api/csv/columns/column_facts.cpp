@@ -65,6 +65,7 @@ std::string ColumnFacts::shown(std::size_t column) const {
 
 std::string ColumnFacts::shown(const std::vector<std::size_t>& columns) const {
     std::vector<std::string> names;
+    names.reserve(columns.size());
     for (const std::size_t i : columns) names.push_back(shown(i));
     return listed(names, "and");
 }

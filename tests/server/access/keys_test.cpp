@@ -22,7 +22,9 @@ protected:
     ~KeyRingTest() override { std::filesystem::remove_all(folder_); }
 
     std::string path() const { return folder_ + "/keys"; }
-    static std::string line(const std::string& name) { return name + " sha256:" + api::sha256_hex("tw_" + name) + "\n"; }
+    static std::string line(const std::string& name) {
+        return name + " sha256:" + api::sha256_hex("tw_" + name) + "\n";
+    }
     void write(const std::string& text) const { std::ofstream(path(), std::ios::trunc) << text; }
     void later(std::chrono::seconds by = std::chrono::seconds(2)) { now_ += by; }
     bool admits(const std::string& name) { return ring_->name_of("tw_" + name) == name; }

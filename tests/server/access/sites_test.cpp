@@ -10,11 +10,11 @@ namespace {
 
 TEST(SitesTest, OnLoopbackItAnswersToItsAddressAndToLoopbackNames) {
     const Sites sites({.listen_host = "127.0.0.1"});
-    for (const char* host : {"127.0.0.1:8080", "127.0.0.1", "localhost:80", "LOCALHOST", "[::1]:8080", "127.1.2.3", "a.localhost",
-                             "localhost."})
+    for (const char* host : {"127.0.0.1:8080", "127.0.0.1", "localhost:80", "LOCALHOST", "[::1]:8080", "127.1.2.3",
+                             "a.localhost", "localhost."})
         EXPECT_TRUE(sites.serves(host)) << host;
-    for (const char* host : {"evil.example:8080", "10.0.0.7", "[fe80::1]", "127.evil.example", "localhost.evil.example", "",
-                             "[::1", "127.0.0.1.evil.example"})
+    for (const char* host : {"evil.example:8080", "10.0.0.7", "[fe80::1]", "127.evil.example", "localhost.evil.example",
+                             "", "[::1", "127.0.0.1.evil.example"})
         EXPECT_FALSE(sites.serves(host)) << host;
 }
 

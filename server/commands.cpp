@@ -127,14 +127,14 @@ struct Target {
 
 Target parse_url(const std::string& url) {
     constexpr std::string_view scheme = "http://";
-    const std::invalid_argument unusable("it must be http://HOST:PORT/PATH.");
-    if (!url.starts_with(scheme)) throw unusable;
+    const char* const rule = "it must be http://HOST:PORT/PATH.";
+    if (!url.starts_with(scheme)) throw std::invalid_argument(rule);
     const std::size_t slash = std::min(url.find('/', scheme.size()), url.size());
     Target target;
     try {
         target.address = parse_listen(url.substr(scheme.size(), slash - scheme.size()));
     } catch (const std::invalid_argument&) {
-        throw unusable;
+        throw std::invalid_argument(rule);
     }
     if (slash < url.size()) target.path = url.substr(slash);
     return target;

@@ -31,7 +31,7 @@ JsonObject& JsonObject::raw(std::string_view key, std::string_view json) {
 }
 
 std::string iso_time(std::int64_t unix_ms) {
-    const std::time_t seconds = static_cast<std::time_t>(unix_ms / 1000);
+    const auto seconds = static_cast<std::time_t>(unix_ms / 1000);
     std::tm utc{};
     gmtime_r(&seconds, &utc);
     std::array<char, 32> date{};

@@ -8,8 +8,8 @@
 
 #include "engine/loop/delay_system.h"
 #include "engine/loop/frequency_grid.h"
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/fast_complex.h"
-#include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
 namespace {

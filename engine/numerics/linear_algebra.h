@@ -1,5 +1,5 @@
-// Eigenvalues, exponentials and solutions of small dense systems as plain functions: the decompositions of Eigen are
-// compiled once, behind this header. Matrices are n x n, row by row.
+// Products, exponentials and solutions of small dense systems as plain functions: Eigen's LU, SVD and exponential are
+// compiled once, behind this header. Matrices are n x n, row by row. Eigenvalues: eigenvalues.h.
 #pragma once
 
 #include <complex>
@@ -33,31 +33,9 @@ std::vector<double> product(std::span<const double> A, std::span<const double> B
 /// The rows of a matrix one after another.
 std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);
 
-/// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
-/// None where an entry is not finite.
-std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
-
-/// Of a real symmetric matrix: vectors[k] has length one and belongs to values[k], in ascending order.
-struct SymmetricEigen {
-    std::vector<double> values;
-    std::vector<std::vector<double>> vectors;
-};
-SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
-
-/// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer
-/// function is 0.
-std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<const double> A,
-                                                                    std::span<const double> B,
-                                                                    std::span<const double> C, double D, int n);
-
 /// C (sI - A)^-1 B + D by solving the linear system.
 std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
                                         double D, int n, std::complex<double> s);
-
-/// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
-/// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
-/// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
-double balanced_norm(std::span<const double> matrix, int n);
 
 /// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n);

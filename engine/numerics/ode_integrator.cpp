@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/rosenbrock_stepper.h"
 
 namespace tunewright {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {

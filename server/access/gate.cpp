@@ -137,8 +137,8 @@ std::optional<Response> Gate::check_key(Request& request) {
     Response response =
         problem_response(401, key.empty() ? "This service asks for a key: send it as Authorization: Bearer KEY."
                                           : "The key is not known here. Ask whoever runs the service for one.");
-    return response.set("WWW-Authenticate", key.empty() ? "Bearer realm=\"tunewright\""
-                                                        : "Bearer realm=\"tunewright\", error=\"invalid_token\"");
+    return response.set("WWW-Authenticate", key.empty() ? R"(Bearer realm="tunewright")"
+                                                        : R"(Bearer realm="tunewright", error="invalid_token")");
 }
 
 std::optional<Response> Gate::check_rate(const Request& request) {

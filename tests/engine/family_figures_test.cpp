@@ -40,8 +40,8 @@ TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
     EXPECT_TRUE(evaluation->robustness.stable);
     EXPECT_FALSE(evaluation->region->worst_Ms);
     EXPECT_DOUBLE_EQ(evaluation->region->stable_fraction, 128.0 / 129);
-    const auto warning = std::ranges::find_if(
-        evaluation->warnings, [](const Warning& warning) { return warning.code == "unstable-in-region"; });
+    const auto warning = std::ranges::find_if(evaluation->warnings,
+                                              [](const Warning& each) { return each.code == "unstable-in-region"; });
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
     EXPECT_NE(warning->detail.find("99.2 % of those looked at"), std::string::npos) << warning->detail;
@@ -54,8 +54,8 @@ TEST(FamilyFigures, AShareIsNotRoundedToAll) {
     set.plants.emplace_back(Fopdt{100, 10, 1});
     const auto evaluation = evaluate(PlantModel(set), IdealPid{.Kp = 1, .Ti = 10}, without_traces());
     ASSERT_TRUE(evaluation && evaluation->region);
-    const auto warning = std::ranges::find_if(
-        evaluation->warnings, [](const Warning& warning) { return warning.code == "unstable-in-region"; });
+    const auto warning = std::ranges::find_if(evaluation->warnings,
+                                              [](const Warning& each) { return each.code == "unstable-in-region"; });
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
     EXPECT_NE(warning->detail.find("more than 99.9 %"), std::string::npos) << warning->detail;

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/polynomial_roots.h"
+#include "engine/numerics/transmission_zeros.h"
 
 namespace tunewright {
 namespace {

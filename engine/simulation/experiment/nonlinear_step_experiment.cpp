@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/number_text.h"
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/plant_run.h"

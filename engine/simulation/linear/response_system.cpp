@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/run/delayed_input.h"

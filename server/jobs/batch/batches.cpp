@@ -276,15 +276,16 @@ std::shared_ptr<BatchReceiver> Batches::receive(BatchOrder order, std::function<
 }
 
 void Batches::cancel(const std::string& id, Done<bool> done) {
-    store_.cancel_batch(id, now_(), [this, done](Outcome<std::optional<std::vector<std::string>>> outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const auto& running = std::get<std::optional<std::vector<std::string>>>(outcome);
-        if (running) {
-            jobs_.stop_running(*running);
-            jobs_.look_again();
-        }
-        done(running.has_value());
-    });
+    store_.cancel_batch(id, now_(),
+                        [this, done = std::move(done)](Outcome<std::optional<std::vector<std::string>>> outcome) {
+                            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
+                            const auto& running = std::get<std::optional<std::vector<std::string>>>(outcome);
+                            if (running) {
+                                jobs_.stop_running(*running);
+                                jobs_.look_again();
+                            }
+                            done(running.has_value());
+                        });
 }
 
 }  // namespace tunewright::server

@@ -1,0 +1,27 @@
+// Eigenvalues of small dense matrices, and what rests on them, as plain functions: Eigen's eigenvalue solvers are compiled
+// once, behind this header. Matrices are n x n, row by row.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <vector>
+
+namespace tunewright {
+
+/// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
+/// None where an entry is not finite.
+std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
+
+/// Of a real symmetric matrix: vectors[k] has length one and belongs to values[k], in ascending order.
+struct SymmetricEigen {
+    std::vector<double> values;
+    std::vector<std::vector<double>> vectors;
+};
+SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
+
+/// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
+/// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
+/// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
+double balanced_norm(std::span<const double> matrix, int n);
+
+}  // namespace tunewright

@@ -70,7 +70,7 @@ SealedBatch seal_batch(Session& session, const BatchSeal& seal) {
         "FOR UPDATE",
         Values().text(seal.batch));
     if (rows.empty()) return {};
-    const std::int64_t seq = rows[0][0].as<std::int64_t>();
+    const auto seq = rows[0][0].as<std::int64_t>();
     const std::string owner = rows[0][1].c_str();
     if (!seal.idempotency_key.empty()) {
         // Two replicas that seal with one key at the same time come here one after the other.

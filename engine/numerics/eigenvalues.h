@@ -1,5 +1,5 @@
-// Eigenvalues of small dense matrices, and what rests on them, as plain functions: Eigen's eigenvalue solvers are compiled
-// once, behind this header. Matrices are n x n, row by row.
+// Eigenvalues of small dense matrices, and what rests on them, as plain functions: Eigen's eigenvalue solvers are
+// compiled once, behind this header. Matrices are n x n, row by row.
 #pragma once
 
 #include <complex>

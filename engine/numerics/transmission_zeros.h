@@ -1,5 +1,5 @@
-// Transmission zeros of a small state-space system. Apart from eigenvalues.h, because Eigen's generalised solver takes as
-// long to compile as all of that.
+// Transmission zeros of a small state-space system. Apart from eigenvalues.h, because Eigen's generalised solver takes
+// as long to compile as all of that.
 #pragma once
 
 #include <complex>

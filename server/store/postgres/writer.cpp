@@ -37,6 +37,7 @@ void move_some(std::vector<T>& from, std::vector<T>& to, std::size_t most) {
 template <class In, class Out>
 std::vector<const In*> questions(const std::vector<Ask<In, Out>>& asks) {
     std::vector<const In*> list;
+    list.reserve(asks.size());
     for (const auto& ask : asks) list.push_back(&ask.in);
     return list;
 }

@@ -250,7 +250,8 @@ TEST(Gate, ARequestKeepsAPlainIdOfItsOwnAndElseGetsOne) {
     EXPECT_EQ(given.request_id, "trace-7.a_b");
     EXPECT_EQ(header(given.answer_headers, "X-Request-Id"), "trace-7.a_b");
     std::set<std::string> made;
-    for (const std::string bad : {"", "a b", "<script>", "x\"y", std::string(65, 'a').c_str()}) {
+    const std::vector<std::string> bad_ids = {"", "a b", "<script>", "x\"y", std::string(65, 'a')};
+    for (const std::string& bad : bad_ids) {
         http::Request call = with(request("GET", "/"), "X-Request-Id", bad);
         gate.admit(call);
         EXPECT_NE(call.request_id, bad);

@@ -1,6 +1,7 @@
 #include "server/http/body/body_source.h"
 
 #include <gmock/gmock.h>
+#include <cstdint>
 
 #include <atomic>
 
@@ -81,7 +82,7 @@ TEST(BodySource, GivesChunksAndReadsTheNextRequestBehindThem) {
 
 TEST(BodySource, CarriesMoreThanItHoldsAndLosesNothing) {
     std::string body;
-    for (int i = 0; body.size() < 20'000'000; i++) body += std::to_string(i * 7919) + "\n";
+    for (std::int64_t i = 0; body.size() < 20'000'000; i++) body += std::to_string(i * 7919) + "\n";
     const std::string answer = std::to_string(std::hash<std::string>{}(body)) + " end";
     Limits limits;
     limits.buffered = 1'000'000;

@@ -87,27 +87,9 @@ bool may_begin_key(char c) {
 }
 
 bool is_unit(std::string_view word) {
-    static constexpr std::string_view kUnits[] = {"C",
-                                                  "F",
-                                                  "K",
-                                                  "degC",
-                                                  "degF",
-                                                  "\u00b0C",
-                                                  "\xC2\xB0"
-                                                  "F",
-                                                  "V",
-                                                  "A",
-                                                  "W",
-                                                  "bar",
-                                                  "rpm",
-                                                  "s",
-                                                  "ms",
-                                                  "us",
-                                                  "Hz",
-                                                  "mA",
-                                                  "mV",
-                                                  "kPa",
-                                                  "Pa"};
+    static constexpr std::string_view kUnits[] = {"C",  "F",  "K",  "degC", "degF", "\u00b0C", "\u00b0F",
+                                                  "V",  "A",  "W",  "bar",  "rpm",  "s",       "ms",
+                                                  "us", "Hz", "mA", "mV",   "kPa",  "Pa"};
     return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits) || word == "%";
 }
 

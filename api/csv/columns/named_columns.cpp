@@ -43,7 +43,7 @@ std::optional<std::size_t> loosely(const ColumnFacts& facts, Role role, const st
 std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, const ColumnChoice& choice,
                                          std::vector<CsvFault>& faults) {
     if (const auto* number = std::get_if<int>(&choice)) return by_number(facts, role, *number, faults);
-    const std::string& text = std::get<std::string>(choice);
+    const auto& text = std::get<std::string>(choice);
     const auto& headings = facts.layout().headings;
     if (headings.empty()) {
         faults.push_back(column_fault(role, role_name(role) + " is " + quoted(text) +

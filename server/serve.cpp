@@ -154,7 +154,7 @@ private:
         if (config.auth == "keys") made.keys_file = config.keys;
         made.rate = config.rate_limit;
         made.burst = 2 * config.rate_limit;
-        made.sites = {parse_listen(config.listen).host, config.allowed_hosts, config.cors_origins};
+        made.sites = {parse_listen(config.listen).host, config.allowed_hosts, config.cors_origins, config.behind_proxy};
         made.behind_proxy = config.behind_proxy;
         return made;
     }

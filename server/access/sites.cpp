@@ -77,8 +77,9 @@ bool Sites::may_call(std::string_view origin, std::string_view host) const {
     if (is_allowed_site(origin)) return true;
     const std::string_view authority = authority_of(origin);
     if (authority.empty()) return false;
-    // Behind a proxy the service sees plain HTTP, and perhaps a Host of the proxy's own making.
-    return lower(authority) == lower(host) || std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;
+    // Behind a proxy the service sees plain HTTP, and a Host without its port or of the proxy's own making.
+    const bool same = settings_.behind_proxy ? host_of(authority) == host_of(host) : lower(authority) == lower(host);
+    return same || std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;
 }
 
 }  // namespace tunewright::server

@@ -13,9 +13,10 @@ struct SiteSettings {
     std::string listen_host = "127.0.0.1";        ///< an address or a name, without brackets
     std::vector<std::string> allowed_hosts = {};  ///< further names, such as plant.example; "*": every name
     std::vector<std::string> cors_origins = {};   ///< sites whose pages may call: SCHEME://HOST[:PORT]; "*": every site
+    bool behind_proxy = false;                    ///< a proxy may have taken the port out of Host
 };
 
-/// Names are compared without regard to letter case, ports not at all.
+/// Names are compared without regard to letter case. Ports count in origins alone, and there not behind a proxy.
 class Sites {
 public:
     /// Throws std::invalid_argument with a sentence where an allowed host or an origin is none.

@@ -42,6 +42,13 @@ TEST(SitesTest, APageMayCallWhereItCameFrom) {
         EXPECT_FALSE(sites.may_call(origin, "127.0.0.1:8080")) << origin;
 }
 
+TEST(SitesTest, BehindAProxyThePortMayBeLost) {
+    const Sites behind({.listen_host = "0.0.0.0", .behind_proxy = true}), direct({.listen_host = "0.0.0.0"});
+    EXPECT_TRUE(behind.may_call("https://plant.example:8443", "plant.example"));
+    EXPECT_FALSE(direct.may_call("https://plant.example:8443", "plant.example"));
+    EXPECT_FALSE(behind.may_call("https://evil.example", "plant.example"));
+}
+
 TEST(SitesTest, SitesThatAreAllowedMayCall) {
     const Sites sites({.cors_origins = {"https://a.example"}});
     EXPECT_TRUE(sites.may_call("https://a.example", "127.0.0.1:8080") && sites.is_allowed_site("https://a.example"));

@@ -170,19 +170,19 @@ void Loops::finish(std::vector<RawEntry>& entries) {
 }
 
 std::optional<Problem> Loops::read_headings(long number, std::string_view line) {
-    constexpr std::string_view kReportedIntervals = "sep=";
+    constexpr std::string_view kSeparatorPrefix = "sep=";
     const std::string_view content = trimmed(line);
-    if (!told_ && lower_case(content.substr(0, kReportedIntervals.size())) == kReportedIntervals &&
+    if (!separator_given_ && lower_case(content.substr(0, kSeparatorPrefix.size())) == kSeparatorPrefix &&
         line.find('=') + 1 < line.size()) {
         separator_ = line[line.find('=') + 1];
-        told_ = true;
+        separator_given_ = true;
         return std::nullopt;
     }
     // The separator that shows the most columns we know.
     std::size_t most = 0;
-    char best = told_ ? separator_ : ',';
+    char best = separator_given_ ? separator_ : ',';
     for (const char separator : {';', '\t', ',', '|', ' '}) {
-        if (told_) break;
+        if (separator_given_) break;
         separator_ = separator;
         split(line);
         const auto known =

@@ -51,8 +51,8 @@ private:
     std::string tail_;  ///< members of every request after the plant, as JSON text
     std::vector<std::string> names_given_twice_;
 
-    char separator_ = 0;  ///< 0: not known yet
-    bool told_ = false;   ///< by a line such as sep=;
+    char separator_ = 0;            ///< 0: not known yet
+    bool separator_given_ = false;  ///< by a line such as sep=;
     bool headed_ = false;
     std::array<std::size_t, kColumns> at_{};
     std::size_t width_ = 0;

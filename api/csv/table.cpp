@@ -110,8 +110,9 @@ CsvLayout pairs_layout(std::string_view text) {
 
 // The separator that a first line such as sep=; names; the line is then taken off.
 std::optional<char> named_separator(std::vector<Head>& heads) {
-    constexpr std::string_view kToldPrefix = "sep=";
-    if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kToldPrefix, 0) != 0) return std::nullopt;
+    constexpr std::string_view kSeparatorPrefix = "sep=";
+    if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kSeparatorPrefix, 0) != 0)
+        return std::nullopt;
     const std::string_view line = heads.front().content;
     const std::size_t sign = line.find('=') + 1;
     const char separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';

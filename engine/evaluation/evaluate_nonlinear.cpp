@@ -10,6 +10,7 @@
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
+#include "engine/simulation/linear/response_system.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 
@@ -37,12 +38,6 @@ Runs simulate(const NonlinearSystem& system, const Controller& controller, const
     const ParallelPid law = gains(controller);
     return {simulate_nonlinear(system, law, {o.setpoint_step, 0}, options),
             simulate_nonlinear(system, law, {0, o.load_step}, options)};
-}
-
-double own_time(const LinearPlant& plant) {
-    double time = plant.dead_time();
-    for (const auto pole : plant.poles()) time += 1 / std::abs(pole);
-    return time > 0 ? time : 1;
 }
 
 void drop_warnings(Evaluation& evaluation, std::initializer_list<const char*> codes) {

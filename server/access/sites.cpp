@@ -6,23 +6,18 @@
 #include <array>
 #include <stdexcept>
 
+#include "server/http/negotiation.h"
+
 namespace tunewright::server {
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::ranges::transform(result, result.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return result;
-}
 
 /// The host of HOST, HOST:PORT, [V6] or [V6]:PORT, in lower case and without a final dot.
 std::string host_of(std::string_view authority) {
     if (authority.starts_with('[')) {
         const std::size_t end = authority.find(']');
-        return end == std::string_view::npos ? std::string{} : lower(authority.substr(1, end - 1));
+        return end == std::string_view::npos ? std::string{} : http::lower_case(authority.substr(1, end - 1));
     }
-    std::string host = lower(authority.substr(0, authority.find(':')));
+    std::string host = http::lower_case(authority.substr(0, authority.find(':')));
     if (host.ends_with('.')) host.pop_back();
     return host;
 }
@@ -57,7 +52,7 @@ Sites::Sites(SiteSettings settings) : settings_(std::move(settings)) {
                                         "\"; it must be a name or an address, such as plant.example, or *.");
         host = host_of(host);
     }
-    settings_.listen_host = lower(settings_.listen_host);
+    settings_.listen_host = http::lower_case(settings_.listen_host);
     every_address_ = settings_.listen_host == "0.0.0.0" || settings_.listen_host == "::";
 }
 
@@ -78,7 +73,8 @@ bool Sites::may_call(std::string_view origin, std::string_view host) const {
     const std::string_view authority = authority_of(origin);
     if (authority.empty()) return false;
     // Behind a proxy the service sees plain HTTP, and a Host without its port or of the proxy's own making.
-    const bool same = settings_.behind_proxy ? host_of(authority) == host_of(host) : lower(authority) == lower(host);
+    const bool same = settings_.behind_proxy ? host_of(authority) == host_of(host)
+                                             : http::lower_case(authority) == http::lower_case(host);
     return same || std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;
 }
 

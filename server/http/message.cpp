@@ -37,7 +37,6 @@ constexpr std::array kPhrases{
     Phrase{429, "Too Many Requests"},
     Phrase{431, "Request Header Fields Too Large"},
     Phrase{500, "Internal Server Error"},
-    Phrase{501, "Not Implemented"},
     Phrase{503, "Service Unavailable"},
     Phrase{505, "HTTP Version Not Supported"},
     Phrase{507, "Insufficient Storage"},

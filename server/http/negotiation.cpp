@@ -28,17 +28,10 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
     }
 }
 
-std::string lower(std::string_view text) {
-    std::string out(text);
-    std::ranges::transform(out, out.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return out;
-}
-
 /// The weight among the parameters of one item of a list.
 double weight(const std::vector<std::string_view>& parts) {
     for (std::size_t i = 1; i < parts.size(); i++) {
-        const std::string parameter = lower(parts[i]);
+        const std::string parameter = lower_case(parts[i]);
         if (!parameter.starts_with("q=")) continue;
         double q = 0;
         const char* const end = parameter.data() + parameter.size();
@@ -55,12 +48,19 @@ std::string_view without_weakness(std::string_view tag) {
 
 bool has_zero_quality(const std::vector<std::string_view>& parameters) {
     return std::ranges::any_of(parameters, [](std::string_view parameter) {
-        const std::string text = lower(parameter);
+        const std::string text = lower_case(parameter);
         return text.starts_with("q=0") && text.find_first_not_of("0.", 2) == std::string::npos;
     });
 }
 
 }  // namespace
+
+std::string lower_case(std::string_view text) {
+    std::string out(text);
+    std::ranges::transform(out, out.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return out;
+}
 
 bool accepts(const Request& request, std::string_view type) {
     const std::string_view accept = request.header("Accept");
@@ -68,7 +68,7 @@ bool accepts(const Request& request, std::string_view type) {
     const std::string family = std::string(type.substr(0, type.find('/'))) + "/*";
     return std::ranges::any_of(split(accept, ','), [&](std::string_view range) {
         const auto parts = split(range, ';');
-        const std::string name = lower(parts.front());
+        const std::string name = lower_case(parts.front());
         return (name == "*/*" || name == family || name == type) && !has_zero_quality(parts);
     });
 }
@@ -77,7 +77,7 @@ std::optional<double> quality(std::string_view list, std::string_view name) {
     std::optional<double> of_rest;
     for (const std::string_view item : split(list, ',')) {
         const auto parts = split(item, ';');
-        if (lower(parts.front()) == name) return weight(parts);
+        if (lower_case(parts.front()) == name) return weight(parts);
         if (parts.front() == "*") of_rest = weight(parts);
     }
     return of_rest;
@@ -85,7 +85,7 @@ std::optional<double> quality(std::string_view list, std::string_view name) {
 
 std::string media_type(const Request& request) {
     const std::string_view header = request.header("Content-Type");
-    return lower(trim(header.substr(0, header.find(';'))));
+    return lower_case(trim(header.substr(0, header.find(';'))));
 }
 
 bool sends_json(const Request& request) {
@@ -100,7 +100,7 @@ std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
         for (const std::string_view preference : split(it->second, ',')) {
             const std::string_view word = split(preference, ';').front();
             const std::size_t equals = word.find('=');
-            if (equals == std::string_view::npos || lower(trim(word.substr(0, equals))) != "wait") continue;
+            if (equals == std::string_view::npos || lower_case(trim(word.substr(0, equals))) != "wait") continue;
             const std::string_view digits = trim(word.substr(equals + 1));
             int seconds = 0;
             const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), seconds);

@@ -10,6 +10,9 @@
 
 namespace tunewright::server::http {
 
+/// The text with the letters A to Z in lower case, whatever the locale.
+std::string lower_case(std::string_view text);
+
 /// True where the client takes `type` ("application/json"): no Accept, or a range of it with q > 0.
 bool accepts(const Request& request, std::string_view type);
 

@@ -24,6 +24,7 @@ constexpr double kSameSwitch = 1e-8;    // of the period: the run switches where
 constexpr double kOnCycle = 1e-6;       // of the period: nearer than this it need not come nearer from cycle to cycle
 constexpr double kFarOff = 0.2;         // of the period: the last run has gone elsewhere
 constexpr double kSameInstant = 1e-12;  // of the period
+constexpr double kMaxTurns = 10'000;    // periods in the dead time; a run holds as many before its relay is too fast
 
 struct Durations {
     double t_plus = 0, t_minus = 0;
@@ -182,12 +183,14 @@ std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem
 }
 
 // Runs one period from the fixed point: it must switch where it says. Adds the extremes of y.
-bool verify(RelayMotion& motion, double L, const RelayLevels& levels, SteadyRelayCycle& cycle) {
+bool verify(RelayMotion& motion, double L, const RelayLevels& levels, const RunControl& control,
+            SteadyRelayCycle& cycle) {
     RelayRun run(motion, L, levels, state_at_switch(motion, L, levels, cycle));
     const double tolerance = kSameSwitch * cycle.Pu();
     double top = run.y(), bottom = top;
     int switches = 0;
     while (const auto piece = run.next()) {
+        if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return false;
         for (const double y : {piece->y.at(0), piece->y.at(piece->h)}) {
             top = std::max(top, y);
             bottom = std::min(bottom, y);
@@ -250,12 +253,14 @@ private:
         const ShootingProblem problem(motion_, plant_.dead_time(), levels_, last.switching);
         const auto point = fixed_point(problem, {run_.state_at_rise(), last.durations});
         if (!point) return std::nullopt;
+        const double period = point->durations.t_plus + point->durations.t_minus;
+        if (plant_.dead_time() > kMaxTurns * period) return std::nullopt;
         SteadyRelayCycle cycle;
         cycle.direction = direction_;
         cycle.t_plus = point->durations.t_plus;
         cycle.t_minus = point->durations.t_minus;
         cycle.x = point->x;
-        if (!verify(motion_, plant_.dead_time(), levels_, cycle)) return std::nullopt;
+        if (!verify(motion_, plant_.dead_time(), levels_, control_, cycle)) return std::nullopt;
         return cycle;
     }
 

@@ -225,6 +225,17 @@ TEST(Relay, PlantsThatNoRelayHoldsAreRefusedWithTheReason) {
     EXPECT_FALSE(simulate_relay(Fopdt{-1, -1, 0.44}, relay(1.3, -0.7, 0), {}));
 }
 
+// Between switches y swings for a billionth of the dead time. A cycle that repeats after such a swing would hold
+// billions of switches in the dead time: it is not looked for.
+TEST(Relay, ADeadTimeOfBillionsOfSwingsIsRefusedWithoutCountingThem) {
+    const OscillatorySopdt ringing{.K = 1, .T = 1e-9, .zeta = 0.1, .L = 3};
+    const auto refused = simulate_relay(ringing, relay(1, -1, 0), {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::unsupported);
+    EXPECT_EQ(refused.error().where, "plant");
+    EXPECT_NE(refused.error().message.find("several oscillations"), std::string::npos);
+}
+
 TEST(Relay, ABiasOnAnIntegratingPlantIsAnsweredWithItsMeaning) {
     const RelayExperiment experiment = run(Ipdt{.K = 1, .L = 1}, relay(1.3, -0.7, 0.1));
     ASSERT_EQ(experiment.warnings.size(), 1u);

@@ -3,6 +3,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <exception>
+#include <future>
+#include <memory>
+#include <string>
+
+#include "server/log.h"
+
 namespace tunewright::server {
 
 void be_nice(int niceness) {
@@ -36,15 +43,20 @@ bool Executor::stop_within(std::chrono::duration<double> patience) {
     return true;
 }
 
-void Executor::post(std::function<void()> task) { post_within(static_cast<std::size_t>(-1), std::move(task)); }
-
-bool Executor::post_within(std::size_t most, std::function<void()> task) {
+bool Executor::post(std::function<void()> task) {
     {
         const std::lock_guard lock(mutex_);
-        if (stopping_ || tasks_.size() >= most) return false;
+        if (stopping_) return false;
         tasks_.push_back(std::move(task));
     }
     changed_.notify_one();
+    return true;
+}
+
+bool Executor::run(std::function<void()> task) {
+    const auto packed = std::make_shared<std::packaged_task<void()>>(std::move(task));
+    if (!post([packed] { (*packed)(); })) return false;
+    packed->get_future().get();
     return true;
 }
 
@@ -66,7 +78,11 @@ void Executor::run_tasks() {
             task = std::move(tasks_.front());
             tasks_.pop_front();
         }
-        task();
+        try {
+            task();
+        } catch (const std::exception& fault) {
+            log_error(std::string("a task met a fault: ") + fault.what());
+        }
     }
 }
 

@@ -25,10 +25,10 @@ public:
     /// must end without destroying this.
     bool stop_within(std::chrono::duration<double> patience);
 
-    /// The task must not throw.
-    void post(std::function<void()> task);
-    /// False where `most` tasks wait already, or none is taken any more.
-    bool post_within(std::size_t most, std::function<void()> task);
+    /// False where none is taken any more. What the task throws is logged.
+    bool post(std::function<void()> task);
+    /// Runs the task there and waits for it. False where none is taken any more. Throws what the task throws.
+    bool run(std::function<void()> task);
 
 private:
     void work(int niceness);

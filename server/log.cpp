@@ -18,9 +18,9 @@ constexpr std::size_t kWaitingLines = 8192;
 bool as_json = false;
 
 /// Probes come every few seconds; only the level debug shows them.
-spdlog::level::level_enum level_of(const http::Exchange& exchange) {
-    const bool probe = exchange.route == "/healthz" || exchange.route == "/readyz" || exchange.route == "/metrics";
-    if (exchange.status >= 500) return spdlog::level::warn;
+spdlog::level::level_enum level_of(const http::Answered& answered) {
+    const bool probe = answered.route == "/healthz" || answered.route == "/readyz" || answered.route == "/metrics";
+    if (answered.status >= 500) return spdlog::level::warn;
     return probe ? spdlog::level::debug : spdlog::level::info;
 }
 
@@ -57,20 +57,20 @@ void log_info(std::string_view message) { log_message(spdlog::level::info, messa
 
 void log_error(std::string_view message) { log_message(spdlog::level::err, message); }
 
-void log_exchange(const http::Exchange& exchange) {
-    const auto level = level_of(exchange);
+void log_answer(const http::Answered& answered) {
+    const auto level = level_of(answered);
     if (!spdlog::should_log(level)) return;
-    const double ms = static_cast<double>(exchange.duration.count()) * 1e-3;
-    const std::string target = json_string(exchange.target);
+    const double ms = static_cast<double>(answered.duration.count()) * 1e-3;
+    const std::string target = json_string(answered.target);
     if (as_json)
         spdlog::log(
             level,
             R"("event":"request","id":{},"method":{},"target":{},"status":{},"ms":{:.2f},"bytes":{},"client":{})",
-            json_string(exchange.request_id), json_string(exchange.method), target, exchange.status, ms, exchange.bytes,
-            json_string(exchange.client));
+            json_string(answered.request_id), json_string(answered.method), target, answered.status, ms, answered.bytes,
+            json_string(answered.client));
     else
-        spdlog::log(level, "request {} {} {} {} {:.2f} ms, {} bytes to {}", exchange.request_id, exchange.method,
-                    target, exchange.status, ms, exchange.bytes, exchange.client);
+        spdlog::log(level, "request {} {} {} {} {:.2f} ms, {} bytes to {}", answered.request_id, answered.method,
+                    target, answered.status, ms, answered.bytes, answered.client);
 }
 
 void log_job(const JobEnd& job, double seconds) {

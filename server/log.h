@@ -9,7 +9,7 @@
 namespace tunewright::server {
 
 namespace http {
-struct Exchange;
+struct Answered;
 }
 struct JobEnd;
 
@@ -24,7 +24,7 @@ void log_info(std::string_view message);
 void log_error(std::string_view message);
 /// One answered request: at the level warn where the status is 500 or more, debug for probes (/healthz, /readyz,
 /// /metrics), info otherwise.
-void log_exchange(const http::Exchange& exchange);
+void log_answer(const http::Answered& answered);
 /// One job that a worker has ended, after so many seconds of computing.
 void log_job(const JobEnd& job, double seconds);
 

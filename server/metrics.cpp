@@ -63,32 +63,32 @@ struct Metrics::Families {
 Metrics::Metrics() : families_(std::make_unique<Families>()) {}
 Metrics::~Metrics() = default;
 
-void Metrics::count(const http::Exchange& exchange) {
+void Metrics::count(const http::Answered& answered) {
     Families& all = *families_;
     Counter* counter = nullptr;
     Histogram* latency = nullptr;
     {
         const std::lock_guard lock(all.mutex);
-        const auto key = std::tie(exchange.route, exchange.method, exchange.status);
+        const auto key = std::tie(answered.route, answered.method, answered.status);
         const auto found = all.request_counters.find(key);
         if (found != all.request_counters.end()) {
             counter = found->second;
         } else {
-            const std::string& route = exchange.route.empty() ? "other" : exchange.route;
+            const std::string& route = answered.route.empty() ? "other" : answered.route;
             counter = &all.requests.Add(
-                {{"route", route}, {"method", exchange.method}, {"status", std::to_string(exchange.status)}});
+                {{"route", route}, {"method", answered.method}, {"status", std::to_string(answered.status)}});
             all.request_counters.emplace(key, counter);
         }
-        Histogram*& slot = all.latency_by_route[exchange.route];
+        Histogram*& slot = all.latency_by_route[answered.route];
         if (slot == nullptr) {
-            const std::string& route = exchange.route.empty() ? "other" : exchange.route;
+            const std::string& route = answered.route.empty() ? "other" : answered.route;
             slot = &all.latency.Add({{"route", route}}, Histogram::BucketBoundaries{0.0001, 0.0003, 0.001, 0.003, 0.01,
                                                                                     0.03, 0.1, 0.3, 1, 10});
         }
         latency = slot;
     }
     counter->Increment();
-    latency->Observe(static_cast<double>(exchange.duration.count()) * 1e-6);
+    latency->Observe(static_cast<double>(answered.duration.count()) * 1e-6);
 }
 
 void Metrics::count(JobStatus status, const std::string& method, double seconds) {

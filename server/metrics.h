@@ -17,7 +17,7 @@ public:
     Metrics(const Metrics&) = delete;
     Metrics& operator=(const Metrics&) = delete;
 
-    void count(const http::Exchange& exchange);
+    void count(const http::Answered& answered);
     /// `method` as in api::JobOutcome.
     void count(JobStatus status, const std::string& method, double seconds);
     void count_dropped();

@@ -1,10 +1,12 @@
 #include "server/serve.h"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <iostream>
@@ -28,8 +30,8 @@ namespace {
 constexpr int kBadConfiguration = 2;
 constexpr int kPortFailed = 3;
 constexpr int kStoreFailed = 4;
-constexpr std::size_t kHttpThreads = 4;
-constexpr std::chrono::seconds kStopPatience{2};  // for synchronous computations, which have been asked to stop
+constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
+constexpr std::size_t kWaitingComputations = 64;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
@@ -37,6 +39,13 @@ constexpr int kBatchNiceness = 5;
 UnixMs wall_clock() {
     return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
         .count();
+}
+
+/// Answers of some 100 KiB come and go on many threads. Returned to the system each time, they cost a fifth of all jobs
+/// a second in page faults; what is larger than a MiB is returned.
+void keep_small_memory() {
+    ::mallopt(M_MMAP_THRESHOLD, 1024 * 1024);
+    ::mallopt(M_TRIM_THRESHOLD, 64 * 1024 * 1024);
 }
 
 /// As many connections as the system allows this process.
@@ -51,7 +60,7 @@ std::size_t connection_limit() {
     constexpr std::size_t own_files = 64;
     rlimit limit{};
     ::getrlimit(RLIMIT_NOFILE, &limit);
-    return std::clamp<std::size_t>(limit.rlim_cur, 2 * own_files, 4000 + own_files) - own_files;
+    return std::clamp<std::size_t>(limit.rlim_cur, 2 * own_files, http::Limits().connections + own_files) - own_files;
 }
 
 sigset_t stop_signals() {
@@ -71,20 +80,13 @@ public:
               metered(open_store(config.store), [this](std::string_view operation, double seconds,
                                                        bool done) { metrics_.count_store(operation, seconds, done); })),
           jobs_(*store_, timer_, settings(config)),
-          lane_(core_count()),
+          turns_(core_count(), kWaitingComputations),
+          places_(places_of(limits(config))),
           batch_lane_(kBatchThreads, kBatchNiceness),
-          batches_(*store_, jobs_, timer_, batch_lane_, wall_clock),
-          pool_(kHttpThreads),
-          router_(pool_),
+          batches_(*store_, jobs_, batch_lane_, wall_clock),
           page_(config.web.empty() ? default_web_folder() : config.web),
           gate_(gate_settings(config)),
-          server_(
-              limits(config),
-              [this](http::Request request, http::Reply reply) { route(std::move(request), std::move(reply)); },
-              [this](int status, const std::string& detail, const std::string& from) {
-                  return refusal(status, detail, from);
-              },
-              [this](const http::Request& head) { return router_.streams(head); }) {
+          server_(limits(config), application()) {
         add_routes();
     }
 
@@ -108,12 +110,12 @@ public:
         const bool idle = jobs_.drain(std::chrono::duration<double>(config_.drain_timeout_s));
         server_.stop();
         loop_.join();
-        const bool free = lane_.stop_within(kStopPatience);
+        const bool free = server_.idle_within(kStopPatience);
+        if (!free) return false;
         batch_lane_.stop();
-        pool_.stop();
         timer_.stop();
-        if (idle && free) store_.reset();
-        return idle && free;
+        if (idle) store_.reset();
+        return idle;
     }
 
 private:
@@ -145,7 +147,8 @@ private:
         made.connections = connection_limit();
         made.max_body = config.max_body;
         made.max_batch_body = config.max_batch_body;
-        made.buffered = std::max(made.buffered, 2 * made.max_body);
+        made.bodies = std::max(made.bodies, 2 * made.max_body);
+        made.behind_proxy = config.behind_proxy;
         return made;
     }
 
@@ -163,33 +166,48 @@ private:
         router_.guard([this](http::Request& request) { return gate_.admit(request); });
         add_health_routes(router_, jobs_, *store_, gate_, metrics_);
         if (parse_role(config_.role) != Role::worker) add_public_routes();
-        router_.observe([this](const http::Exchange& exchange) {
-            metrics_.count(exchange);
-            log_exchange(exchange);
+        router_.observe([this](const http::Answered& answered) {
+            metrics_.count(answered);
+            log_answer(answered);
         });
     }
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, pool_, {config_.job_timeout_s, config_.max_timeout_s});
-        add_event_routes(router_, jobs_, timer_);
+        add_job_routes(router_, jobs_, places_, {config_.job_timeout_s, config_.max_timeout_s});
+        add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_);
-        add_batch_routes(router_, batches_, jobs_, timer_, pool_, batch_lane_,
+        add_batch_routes(router_, batches_, jobs_, places_, batch_lane_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
-        add_synchronous_routes(router_, lane_, timer_, closing_.get_token());
+        add_synchronous_routes(router_, turns_, timer_, closing_.get_token());
         add_description_routes(router_);
         router_.otherwise([this](const http::Request& request) { return page_.find(request); });
     }
 
-    void route(http::Request request, http::Reply reply) const { router_.handle(std::move(request), std::move(reply)); }
+    /// Some threads are always there for what is over soon; one client may have half of the others.
+    static std::array<std::size_t, 2> places_of(const http::Limits& limits) {
+        const std::size_t lasting = limits.connections * 3 / 4;
+        return {lasting, lasting / 2};
+    }
+
+    http::Application application() {
+        http::Application made;
+        made.admit = [this](http::Request& request) { return router_.admit(request); };
+        made.streams = [this](const http::Request& head) { return router_.streams(head); };
+        made.handle = [this](http::Request request) { return router_.handle(std::move(request)); };
+        made.refuse = [this](int status, const std::string& detail, const std::string& from) {
+            return refusal(status, detail, from);
+        };
+        return made;
+    }
 
     http::Response refusal(int status, const std::string& detail, const std::string& from) {
-        http::Exchange exchange;
-        exchange.method = "refused";
-        exchange.client = from;
-        exchange.status = status;
-        metrics_.count(exchange);
-        log_exchange(exchange);
+        http::Answered answered;
+        answered.method = "refused";
+        answered.client = from;
+        answered.status = status;
+        metrics_.count(answered);
+        log_answer(answered);
         http::Response response = http::problem_response(status, detail);
         http::add_common_headers(response);
         return response;
@@ -201,10 +219,10 @@ private:
     Metrics metrics_;
     std::unique_ptr<JobStore> store_;
     JobService jobs_;
-    Executor lane_;
+    Turns turns_;
+    Places places_;
     Executor batch_lane_;
     Batches batches_;
-    Executor pool_;
     http::Router router_;
     http::StaticFiles page_;
     Gate gate_;
@@ -246,6 +264,7 @@ int serve(const Config& config) {
         return failed(kBadConfiguration, error.what());
     }
     raise_file_limit();
+    keep_small_memory();
 
     std::unique_ptr<Service> service;
     int port = 0;

@@ -1,140 +1,223 @@
 #include "server/http/connection.h"
 
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <utility>
+#include <charconv>
+#include <cstring>
 
 namespace tunewright::server::http {
 namespace {
 
-constexpr std::size_t kChunk = 64 * 1024;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr std::size_t kGathered = 16 * 1024;
 constexpr std::size_t kKeptCapacity = 32 * 1024;
-constexpr std::size_t kLingerAllowance = 256 * 1024;
+constexpr std::size_t kSlowestBytesPerMs = 16;
+constexpr std::size_t kDroppedMost = 256 * 1024;
 constexpr std::size_t kLingerBodyMost = 64 * 1024 * 1024;
+constexpr std::size_t kMaxSizeDigits = 8;
 
-thread_local std::array<char, kChunk> received;
-
-bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+/// Errors and the end of the stream count as ready. False where the time is over.
+bool wait_for(int fd, short what, nanoseconds patience) {
+    pollfd entry{fd, what, 0};
+    const auto whole = std::chrono::duration_cast<milliseconds>(patience) + milliseconds(1);
+    return patience.count() > 0 && ::poll(&entry, 1, static_cast<int>(whole.count())) > 0;
+}
 
 }  // namespace
 
-Connection::~Connection() {
-    if (incoming) incoming->finish(BodySource::State::gone);
-    ::close(fd_);
-}
+Connection::Connection(int fd, std::string client, std::string of_network, const Limits& limits,
+                       std::function<bool(const Connection&)> gives_way)
+    : address(std::move(client)),
+      network(std::move(of_network)),
+      since(Clock::now()),
+      fd_(fd),
+      limits_(limits),
+      gives_way_(std::move(gives_way)) {}
 
-Io Connection::receive() {
-    for (;;) {
-        const bool in_body = head_.state == Head::State::complete;
-        const std::size_t whole = head_.size + head_.content_length;
-        const std::size_t want = in_body && whole > in_.size() ? whole - in_.size() : 0;
-        const std::size_t room = std::clamp<std::size_t>(want, 4096, received.size());
-        const ssize_t n = ::recv(fd_, received.data(), room, 0);
-        if (n == 0) return Io::gone;
-        if (n < 0) {
-            if (errno == EINTR) continue;
-            readable = false;
-            return would_block() ? Io::again : Io::gone;
-        }
-        in_.append(received.data(), static_cast<std::size_t>(n));
-        // A short read has emptied the socket, unless the end of the stream is waiting behind it.
-        readable = static_cast<std::size_t>(n) == room || peer_closed;
-        if (in_body ? request_ready() : frame().state != Head::State::incomplete) return Io::done;
-        if (!readable) return Io::again;
+Connection::~Connection() { ::close(fd_); }
+
+// ---- reading ----
+
+/// Waits for bytes and takes what is there; false where the client has gone or the time is over.
+bool Connection::receive(nanoseconds patience) {
+    std::array<char, 64 * 1024> piece;
+    for (const auto end = Clock::now() + patience;;) {
+        // The socket itself waits for as long as kLook, which saves a call for every request.
+        const bool long_wait = end - Clock::now() > kLook;
+        const ssize_t n = ::recv(fd_, piece.data(), piece.size(), long_wait ? 0 : MSG_DONTWAIT);
+        if (n > 0) return in_.append(piece.data(), static_cast<std::size_t>(n)), true;
+        if (n == 0 || (errno != EAGAIN && errno != EINTR)) return gone_ = true, false;
+        if (!long_wait && !wait_for(fd_, POLLIN, end - Clock::now())) return false;
     }
 }
 
-const Head& Connection::frame() {
-    if (head_.state != Head::State::incomplete || in_.empty()) return head_;
-    const bool ended = in_.find("\r\n\r\n", scanned_) != std::string::npos;
-    if (ended || in_.size() > kMaxLineBytes) head_ = read_head(in_);
-    scanned_ = in_.size() < 3 ? 0 : in_.size() - 3;
-    return head_;
-}
-
-void Connection::admit(Request request, bool streamed, std::size_t body_limit) {
-    refuse_body(head_, streamed, body_limit);
-    if (head_.state != Head::State::complete) return;
-    request_ = std::move(request);
-    streamed_ = streamed;
-    wants_continue_ = head_.expects_continue;
-    chunks_ = !head_.http_1_0;
-    keep_alive_ = head_.keep_alive;
-    if (!streamed) in_.reserve(head_.size + head_.content_length);
-}
-
-void Connection::refuse(int status, std::string detail) {
-    head_.state = Head::State::refused;
-    head_.status = status;
-    head_.detail = std::move(detail);
-}
-
-bool Connection::request_ready() const {
-    return request_ && (streamed_ || in_.size() >= head_.size + head_.content_length);
-}
-
-Request Connection::take_request() {
-    Request request = *std::exchange(request_, std::nullopt);
-    const std::size_t total = head_.size + (streamed_ ? 0 : head_.content_length);
-    if (!streamed_) request.body = in_.substr(head_.size, head_.content_length);
-    in_.erase(0, total);
+std::optional<Head> Connection::next_head() {
     if (in_.capacity() > kKeptCapacity) in_.shrink_to_fit();
-    head_ = {};
-    scanned_ = 0;
-    return request;
-}
-
-Io Connection::receive_body(std::string& piece) {
-    BodyDecoder& decoder = incoming->decoder;
-    for (;;) {
-        in_.erase(0, decoder.decode(in_, piece, IncomingBody::kPiece - piece.size()));
-        if (decoder.state() != BodyDecoder::State::more || piece.size() == IncomingBody::kPiece) return Io::done;
-        const ssize_t n = readable ? ::recv(fd_, received.data(), received.size(), 0) : -1;
-        if (n < 0 && readable && errno == EINTR) continue;
-        if (n == 0 || (n < 0 && readable && !would_block())) return piece.empty() ? Io::gone : Io::done;
-        if (n < 0) {
-            readable = false;
-            return piece.empty() ? Io::again : Io::done;
+    rest();
+    if (in_.empty() && !receive(limits_.idle)) return std::nullopt;
+    begun = true;
+    const auto end = Clock::now() + limits_.head;
+    for (std::size_t scanned = 0;;) {
+        const bool ended = in_.find("\r\n\r\n", scanned) != std::string::npos;
+        const Head head = ended || in_.size() > kMaxLineBytes ? read_head(in_) : Head();
+        if (head.state == Head::State::incomplete) {
+            scanned = in_.size() < 3 ? 0 : in_.size() - 3;
+            if (receive(end - Clock::now())) continue;
+            if (gone_) return std::nullopt;
         }
-        readable = static_cast<std::size_t>(n) == received.size() || peer_closed;
-        in_.append(received.data(), static_cast<std::size_t>(n));
+        since = Clock::now();
+        waiting = false;
+        in_.erase(0, head.size);
+        return head.state == Head::State::incomplete ? refuse(408, "The request did not arrive in time.") : head;
     }
 }
 
-void Connection::start_answer(Response response, bool keep_alive, const std::function<void()>& wake) {
-    const bool body_left = incoming && incoming->decoder.state() != BodyDecoder::State::done;
-    keep_alive_ = keep_alive && keep_alive_ && !body_left && (chunks_ || !response.stream);
-    out.start(std::move(response), keep_alive_, chunks_, wake);
-    state = State::writing;
+void Connection::rest() {
+    since = Clock::now();
+    waiting = true;
+    begun = !in_.empty();
 }
 
-void Connection::send_continue() {
-    if (!std::exchange(wants_continue_, false) || request_ready() || (!request_ && !in_.empty())) return;
-    constexpr std::string_view text = "HTTP/1.1 100 Continue\r\n\r\n";
-    [[maybe_unused]] const ssize_t n = ::send(fd_, text.data(), text.size(), MSG_NOSIGNAL);
+void Connection::start(const Head& head, std::string_view text) {
+    head_ = text;
+    chunked_ = first_chunk_ = head.transfer == Head::Transfer::chunked;
+    left_ = head.content_length;
+    room_ = limits_.max_batch_body;
+    asks_first_ = head.expects_continue;
+    failed_ = false;
+    gathers_ = true;
 }
 
-void Connection::start_lingering() {
-    const std::size_t announced = incoming ? incoming->decoder.remaining() : head_.content_length;
-    linger_left_ = announced <= kLingerBodyMost ? std::max(announced, kLingerAllowance) : kLingerAllowance;
-    state = State::lingering;
-    in_ = {};
-    incoming.reset();
+void Connection::expect_body(bool as_it_arrives) {
+    at_pace_ = as_it_arrives;
+    patience_ = at_pace_ ? limits_.pace_time : limits_.body_time;
+    come_ = 0;
+}
+
+bool Connection::fail(int status, std::string detail) {
+    failed_ = true;
+    failed_status_ = gone_ ? 0 : status;
+    failed_detail_ = std::move(detail);
+    return false;
+}
+
+ssize_t Connection::read(char* to, size_t size) {
+    if (!head_.empty()) {
+        const size_t n = std::min(size, head_.size());
+        std::memcpy(to, head_.data(), n);
+        head_.remove_prefix(n);
+        return static_cast<ssize_t>(n);
+    }
+    if (failed_ || (left_ == 0 && chunked_ && !next_chunk())) return -1;
+    if (left_ == 0) return 0;
+    if (in_.empty() && !receive_body()) return -1;
+    const std::size_t n = std::min({size, left_, in_.size()});
+    std::memcpy(to, in_.data(), n);
+    in_.erase(0, n);
+    left_ -= n;
+    return static_cast<ssize_t>(n);
+}
+
+bool Connection::receive_body() {
+    if (std::exchange(asks_first_, false) && !send("HTTP/1.1 100 Continue\r\n\r\n")) return fail(0, {});
+    const auto start = Clock::now();
+    const std::size_t before = in_.size();
+    if (!receive(patience_))
+        return fail(408, at_pace_ ? "The body arrives too slowly." : "The body did not arrive in time.");
+    patience_ -= Clock::now() - start;
+    come_ += in_.size() - before;
+    if (!at_pace_ || come_ < limits_.pace_bytes) return true;
+    come_ = 0;
+    patience_ = limits_.pace_time;
+    return true;
+}
+
+/// The next line of the body without its CR LF, of at most so many bytes.
+bool Connection::take_line(std::string& line, std::size_t most, const char* rule) {
+    for (std::size_t end = 0; (end = in_.find('\n')) == std::string::npos || end > most + 1;) {
+        if (in_.size() > most + 1) return fail(400, rule);
+        if (!receive_body()) return false;
+    }
+    line = in_.substr(0, in_.find('\n'));
+    in_.erase(0, line.size() + 1);
+    if (line.empty() || line.back() != '\r') return fail(400, rule);
+    line.pop_back();
+    return true;
+}
+
+/// Strict: no extensions, no trailers. What two readers could see differently is refused.
+bool Connection::next_chunk() {
+    constexpr const char* ends = "A chunk must end with CR LF, without extensions or trailers.";
+    constexpr const char* sizes = "The size of a chunk must be 1 to 8 hexadecimal digits, without extensions.";
+    std::string line;
+    if (!std::exchange(first_chunk_, false) && !take_line(line, 0, ends)) return false;
+    if (!take_line(line, kMaxSizeDigits, sizes)) return false;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), left_, 16);
+    if (error != std::errc{} || end != line.data() + line.size()) return fail(400, sizes);
+    if (left_ > room_) return fail(413, "The chunks are more than is accepted in one body.");
+    room_ -= left_;
+    chunked_ = left_ > 0;
+    return chunked_ || take_line(line, 0, ends);
+}
+
+bool Connection::drop_body() {
+    if (left_ > kDroppedMost || (asks_first_ && !body_done())) return false;
+    std::array<char, 4096> piece;
+    for (std::size_t dropped = 0; !failed_ && !body_done() && dropped <= kDroppedMost;)
+        dropped += static_cast<std::size_t>(std::max<ssize_t>(read(piece.data(), piece.size()), 0));
+    return !failed_ && body_done();
+}
+
+// ---- writing ----
+
+ssize_t Connection::write(const char* from, size_t size) {
+    const std::string_view bytes(from, size);
+    const bool fits = gathers_ && out_.size() + size <= kGathered;
+    if (fits) out_.append(bytes);
+    return fits || (flush() && send(bytes)) ? static_cast<ssize_t>(size) : -1;
+}
+
+bool Connection::flush() { return out_.empty() || send(std::exchange(out_, {})); }
+
+bool Connection::send(std::string_view bytes) {
+    const auto end = Clock::now() + limits_.writing + milliseconds(bytes.size() / kSlowestBytesPerMs);
+    while (!bytes.empty() && !gone_) {
+        const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n >= 0) {
+            bytes.remove_prefix(static_cast<std::size_t>(n));
+        } else if (errno == EAGAIN) {
+            unsent = bytes.size();
+            const auto left = end - Clock::now();
+            gone_ = !wait_for(fd_, POLLOUT, std::min<nanoseconds>(left, kLook)) && (left <= kLook || gives_way_(*this));
+        } else {
+            gone_ = errno != EINTR;
+        }
+    }
+    unsent = 0;
+    return !gone_;
+}
+
+bool Connection::gone() const {
+    pollfd entry{fd_, POLLRDHUP, 0};
+    return gone_ || (::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0);
+}
+
+void Connection::linger() {
     ::shutdown(fd_, SHUT_WR);
+    in_.clear();
+    rest();
+    std::size_t allowance = std::max(left_ <= kLingerBodyMost ? left_ : 0, kDroppedMost);
+    const auto end = Clock::now() + limits_.lingering;
+    for (; !gone_ && receive(end - Clock::now()) && in_.size() <= allowance; in_.clear()) allowance -= in_.size();
 }
 
-Io Connection::discard() {
-    for (;;) {
-        const ssize_t n = ::recv(fd_, received.data(), received.size(), 0);
-        if (n == 0 || (n < 0 && !would_block())) return Io::gone;
-        if (n < 0) return Io::again;
-        if (static_cast<std::size_t>(n) > linger_left_) return Io::gone;
-        linger_left_ -= static_cast<std::size_t>(n);
-    }
-}
+void Connection::cut_off() const { ::shutdown(fd_, SHUT_RDWR); }
 
 }  // namespace tunewright::server::http

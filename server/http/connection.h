@@ -1,93 +1,106 @@
-// One client's connection: bytes in, bytes out, never blocking. Belongs to the thread of the event loop alone.
+// One client's connection, as the serving library reads and writes it: the head that the guard has checked, then the
+// body, freed of its chunks; never a byte of the next request. Every wait has an end.
 #pragma once
 
+#include <httplib.h>
+
+#include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "server/http/body/incoming_body.h"
 #include "server/http/head.h"
-#include "server/http/message.h"
-#include "server/http/outgoing.h"
-#include "server/http/pace.h"
+#include "server/http/server.h"
 
 namespace tunewright::server::http {
 
-using SteadyTime = std::chrono::steady_clock::time_point;
-
-class Connection {
+class Connection : public httplib::Stream {
 public:
-    /// reading: waits for a whole request. handling: a handler has it, and may be reading its body. writing: the answer
-    /// is on its way. lingering: the answer is out, what the client still sends is read and dropped so that the answer
-    /// survives.
-    enum class State { reading, handling, writing, lingering };
+    using Clock = std::chrono::steady_clock;
 
-    Connection(int fd, std::string remote_addr) : fd_(fd), remote_addr_(std::move(remote_addr)) {}
-    ~Connection();
+    /// `gives_way` is asked each second in which the client takes nothing of an answer.
+    Connection(int fd, std::string address, std::string network, const Limits& limits,
+               std::function<bool(const Connection&)> gives_way);
+    ~Connection() override;
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
-    /// Reads what is there, until there is news for frame(). done: a head or a whole request may be there; again:
-    /// nothing more for now; gone: the client has closed or failed.
-    Io receive();
+    /// Waits for the next head, which may be a refusal; nothing where the client has gone or sends none.
+    std::optional<Head> next_head();
 
-    /// Looks for a head at the front of the buffer; the state of the result says what was found.
-    const Head& frame();
-    /// What is to become of a complete head: its request, and whether its body is gathered first.
-    void admit(Request request, bool streamed, std::size_t body_limit);
-    bool admitted() const { return request_.has_value(); }
-    void refuse(int status, std::string detail);
-    /// The request, with its body unless that is streamed, can be handled.
-    bool request_ready() const;
-    /// Takes the request, and the bytes that were gathered for it, out of the connection.
-    Request take_request();
+    /// The library reads this from now on, and behind it the body that `head` announces.
+    void start(const Head& head, std::string_view text);
+    /// The body is gathered within `body_time`, or comes as it is read, at a pace.
+    void expect_body(bool as_it_arrives);
+    /// Drops what is left of the body, if it is little and comes soon. False: some may still be on its way.
+    bool drop_body();
+    bool body_done() const { return left_ == 0 && !chunked_; }
+    bool body_failed() const { return failed_; }
+    /// Where the body did not come to its end: status and sentence for the client; 0 where the client has gone.
+    int failed_status() const { return failed_status_; }
+    const std::string& failed_detail() const { return failed_detail_; }
+    bool has_more() const { return !in_.empty(); }
 
-    /// A piece of the streamed body, from what is here and what the socket has. done: `piece` has something, or the
-    /// decoder has ended; again and gone as with receive().
-    Io receive_body(std::string& piece);
+    /// From now on each write goes out at once.
+    void pass_on() { gathers_ = false; }
+    bool flush();
+    bool gone() const;
+    /// The last answer is out. What still comes is dropped for a while, so that the answer survives.
+    void linger();
+    /// From any thread: wakes who waits on the socket.
+    void cut_off() const;
 
-    void start_answer(Response response, bool keep_alive, const std::function<void()>& wake);
-    /// Sends as much as the socket takes.
-    Io send() { return out.send(fd_); }
-    /// Interim answer 100, once, where it was asked for; small enough to be sent or lost at once.
-    void send_continue();
-    /// No more answers; the client learns that, and what it still sends is dropped by discard().
-    void start_lingering();
-    Io discard();
+    ssize_t read(char* to, size_t size) override;
+    ssize_t write(const char* from, size_t size) override;
+    bool is_readable() const override { return true; }
+    bool is_writable() const override { return !gone_; }
+    void get_remote_ip_and_port(std::string&, int&) const override {}
+    void get_local_ip_and_port(std::string&, int&) const override {}
+    socket_t socket() const override { return fd_; }
 
-    int fd() const { return fd_; }
-    const std::string& remote_addr() const { return remote_addr_; }
-    std::size_t buffered() const { return in_.size(); }
-    bool idle() const { return state == State::reading && in_.empty(); }
-    bool fresh() const { return ticket == 0; }
-    bool keeps_alive() const { return keep_alive_; }
-    bool streamed() const { return streamed_; }
+    const std::string address;             ///< of the client, as text
+    const std::string network;             ///< the same, of IPv6 its first 64 bits, which is what one customer gets
+    std::atomic<bool> waiting = true;      ///< for a head, or lingering: no request is under way
+    std::atomic<bool> begun = false;       ///< and some of the head has come
+    bool leaving = false;                  ///< gives way to another; of the guard
+    std::atomic<Clock::time_point> since;  ///< when the wait, or else the request, began
+    std::atomic<std::size_t> unsent = 0;   ///< bytes of an answer that the client does not take
 
-    State state = State::reading;
-    std::uint64_t ticket = 0;  ///< of the request under way; an answer to another one is too late
-    SteadyTime deadline{};     ///< when the present state has lasted too long
-    SteadyTime since{};        ///< when the present state began
-    bool readable = false;     ///< the socket had more when we stopped reading
-    bool peer_closed = false;  ///< the client has sent all that it will send
-
-    Outgoing out;
-    std::shared_ptr<IncomingBody> incoming;  ///< of a streamed request under way
-    Pace pace;                               ///< of that body
+    /// What its socket waits for by itself (SO_RCVTIMEO).
+    static constexpr std::chrono::milliseconds kLook{1000};
 
 private:
-    int fd_;
-    std::string remote_addr_;
-    std::string in_;
-    std::size_t scanned_ = 0;  ///< the end of the head is not before this offset
-    Head head_;
-    std::optional<Request> request_;
-    bool streamed_ = false;
-    bool wants_continue_ = false;
-    bool chunks_ = true;
-    bool keep_alive_ = true;
-    std::size_t linger_left_ = 0;
+    void rest();
+    bool receive(std::chrono::nanoseconds patience);
+    bool receive_body();
+    bool next_chunk();
+    bool take_line(std::string& line, std::size_t most, const char* rule);
+    bool send(std::string_view bytes);
+    bool fail(int status, std::string detail);
+
+    const int fd_;
+    const Limits& limits_;
+    const std::function<bool(const Connection&)> gives_way_;
+    std::string in_;  ///< received and not used up
+
+    std::string_view head_;  ///< what the library has not read of it
+    std::size_t left_ = 0;   ///< of the body, or of its present chunk
+    bool chunked_ = false;   ///< and another chunk follows
+    bool first_chunk_ = false;
+    std::size_t room_ = 0;     ///< for chunks
+    bool asks_first_ = false;  ///< the client waits for 100 Continue
+    bool at_pace_ = false;
+    std::chrono::nanoseconds patience_{};  ///< left of the body's time, or of the present window of its pace
+    std::size_t come_ = 0;                 ///< in that window
+    bool failed_ = false;
+    int failed_status_ = 0;
+    std::string failed_detail_;
+
+    std::string out_;
+    bool gathers_ = true;
+    bool gone_ = false;
 };
 
 }  // namespace tunewright::server::http

@@ -1,170 +1,198 @@
-// What a Server does with one connection: request, answer, next request.
-#include <algorithm>
-#include <utility>
+#include "server/http/exchange.h"
 
-#include "server/http/server.h"
+#include <algorithm>
+#include <array>
+#include <ctime>
 
 namespace tunewright::server::http {
 namespace {
 
-constexpr std::size_t kSlowestBytesPerMs = 16;
+constexpr std::size_t kPiece = 256 * 1024;
+
+using HandlerResponse = httplib::Server::HandlerResponse;
+
+/// What would end a header's line, or is forbidden in it.
+bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 127; }
+
+/// IMF-fixdate, made once a second for each thread.
+const std::string& http_date() {
+    thread_local std::time_t made_at = 0;
+    thread_local std::string text;
+    const std::time_t now = std::time(nullptr);
+    if (now != made_at) {
+        std::tm utc{};
+        gmtime_r(&now, &utc);
+        std::array<char, 40> buffer{};
+        text.assign(buffer.data(), std::strftime(buffer.data(), buffer.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc));
+        made_at = now;
+    }
+    return text;
+}
+
+/// The library's sink as our handlers see it.
+class SinkWriter : public BodyWriter {
+public:
+    SinkWriter(httplib::DataSink& sink, const Connection& stream) : sink_(sink), stream_(stream) {}
+    // An empty chunk would be the end of the body.
+    bool write(std::string_view piece) override { return piece.empty() || sink_.write(piece.data(), piece.size()); }
+    bool gone() const override { return stream_.gone(); }
+
+private:
+    httplib::DataSink& sink_;
+    const Connection& stream_;
+};
 
 }  // namespace
 
-void Server::pump(Id id) {
-    const auto found = connections_.find(id);
-    if (found == connections_.end()) return;
-    Connection& connection = *found->second;
-    switch (connection.state) {
-        case Connection::State::reading:
-            if (read_step(id, connection)) dispatch(id, connection);
-            return;
-        case Connection::State::handling:
-            if (connection.incoming) body_step(id, connection);
-            return;
-        case Connection::State::writing: return flush(id, connection);
-        case Connection::State::lingering:
-            if (!std::exchange(connection.readable, false)) return;
-            if (connection.discard() == Io::gone) drop(id);
-            return;
-    }
+Exchange::Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
+                   Budget& bodies, const std::atomic<bool>& stopping)
+    : connection_(connection),
+      head_(head),
+      application_(application),
+      limits_(limits),
+      bodies_(bodies),
+      stopping_(stopping),
+      keep_(head.keep_alive && head.state == Head::State::complete) {
+    // The library never sees a head that is refused, but writes the refusal as an answer to this.
+    constexpr std::string_view nothing = "GET / HTTP/1.1\r\n\r\n";
+    connection_.start(head_, head.state == Head::State::complete ? std::string_view(head_.clean) : nothing);
 }
 
-/// True when a request is ready to be handled.
-bool Server::read_step(Id id, Connection& connection) {
-    const std::size_t before = connection.buffered();
-    Io io = Io::done;
-    while (io == Io::done) {
-        if (connection.frame().state == Head::State::complete && !connection.admitted()) admit(connection);
-        if (connection.frame().state == Head::State::refused || connection.request_ready()) break;
-        io = connection.readable ? connection.receive() : Io::again;
-    }
-    buffered_ += connection.buffered() - before;
-    if (io == Io::gone) {
-        drop(id);
-        return false;
-    }
-    const Head& head = connection.frame();
-    if (head.state == Head::State::refused) {
-        refuse(id, connection, head.status, head.detail);
-        return false;
-    }
-    if (connection.request_ready()) return true;
-    if (buffered_ > limits_.buffered) {
-        refuse(id, connection, 503, "Too many unfinished requests are being received; try again in a moment.");
-        return false;
-    }
-    // The clock of a request runs from its first byte, and once more for its body.
-    if (connection.buffered() > 0 && before == 0) enter(connection, Connection::State::reading, limits_.head);
-    if (connection.admitted()) {
-        connection.deadline = connection.since + limits_.head + limits_.body_time;
-        connection.send_continue();
-    }
-    return false;
+Exchange*& Exchange::current() {
+    thread_local Exchange* exchange = nullptr;
+    return exchange;
 }
 
-void Server::admit(Connection& connection) {
-    std::optional<Request> request = parser_.parse(connection.frame().clean);
-    if (!request) return connection.refuse(400, "The request line or a header field cannot be read.");
-    const bool streamed = streams_ && streams_(*request);
-    connection.admit(*std::move(request), streamed, streamed ? limits_.max_batch_body : limits_.max_body);
+void Exchange::take(httplib::Request& raw) {
+    request_.method = std::move(raw.method);
+    request_.target = std::move(raw.target);
+    for (auto& [name, value] : raw.params) request_.query.emplace(name, std::move(value));
+    request_.segments = path_segments(request_.path());
+    for (auto& [name, value] : head_.fields) request_.headers.emplace(std::move(name), std::move(value));
+    request_.remote_addr = connection_.address;
+    taken_ = true;
+    request_.left = [this] { return connection_.gone(); };
+    // What is left is what the library routes by: whether there is a body, and our one handler of each method.
+    raw.method = request_.method;
+    raw.path = "/";
 }
 
-void Server::dispatch(Id id, Connection& connection) {
-    connection.ticket = next_ticket_++;
-    const Mailbox::Address address{id, connection.ticket};
-    if (connection.streamed()) {
-        const Head& head = connection.frame();
-        const BodyDecoder how = head.transfer == Head::Transfer::chunked
-                                    ? BodyDecoder::of_chunks(limits_.max_batch_body)
-                                    : BodyDecoder::of_length(head.content_length);
-        connection.incoming = std::make_shared<IncomingBody>(how, mailbox_, address);
-        connection.pace = Pace(limits_.pace_bytes, limits_.pace_time);
+HandlerResponse Exchange::begin(httplib::Response& out) {
+    if (auto refusal = refuse_early()) {
+        give(*std::move(refusal), out);
+        return HandlerResponse::Handled;
     }
-    const std::size_t before = connection.buffered();
-    Request request = connection.take_request();
-    buffered_ -= before - connection.buffered();
-    request.source = connection.incoming;
-    request.remote_addr = connection.remote_addr();
-    enter(connection, Connection::State::handling, limits_.handling);
-    const bool is_head = request.method == "HEAD";
-    handler_(std::move(request), [mailbox = mailbox_, address, is_head](Response response) {
-        response.body_omitted = is_head;
-        const std::shared_ptr<BodyStream> stream = response.stream;
-        if (!mailbox->put(address, std::move(response))) Outgoing::abandon(stream, false);
-    });
+    const bool bodiless = head_.content_length == 0 && head_.transfer == Head::Transfer::length && !streamed_;
+    if (!bodiless && (request_.method == "POST" || request_.method == "DELETE")) return HandlerResponse::Unhandled;
+    give(handled(), out);
+    return HandlerResponse::Handled;
 }
 
-/// Gives the handler the next piece of the body, if it asks and there is one.
-void Server::body_step(Id id, Connection& connection) {
-    IncomingBody& body = *connection.incoming;
-    if (!body.asked()) return;
-    const std::size_t before = connection.buffered();
-    std::string piece;
-    const Io io = connection.receive_body(piece);
-    buffered_ += connection.buffered() - before;
-    if (!piece.empty()) {
-        connection.pace.arrived(piece.size(), now_);
-        enter(connection, Connection::State::handling, limits_.handling);
-        return body.give(std::move(piece));
+/// All that can be said against the request before any of its body is read.
+std::optional<Response> Exchange::refuse_early() {
+    if (head_.state == Head::State::refused) return refused(head_.status, head_.detail);
+    streamed_ = application_.streams && application_.streams(request_);
+    connection_.expect_body(streamed_);
+    refuse_body(head_, streamed_, streamed_ ? limits_.max_batch_body : limits_.max_body);
+    if (head_.state == Head::State::refused) return refused(head_.status, head_.detail);
+    if (application_.admit) {
+        if (auto refusal = application_.admit(request_)) return refusal;
     }
-    if (io == Io::gone) return drop(id);
-    if (body.decoder.state() == BodyDecoder::State::refused)
-        return refuse(id, connection, body.decoder.status(), body.decoder.detail());
-    if (body.decoder.state() == BodyDecoder::State::done) {
-        enter(connection, Connection::State::handling, limits_.handling);
-        return body.finish(BodySource::State::end);
-    }
-    connection.send_continue();
-    connection.pace.wait(now_);
-    connection.deadline = connection.pace.end();
+    const std::size_t most = streamed_ ? limits_.arriving : limits_.max_body;
+    const bool chunked = head_.transfer == Head::Transfer::chunked;
+    const std::size_t bytes = chunked ? most : std::min(head_.content_length, most);
+    if (bytes > 0 && !bodies_.take(bytes, limits_.room, share_))
+        return refused(503, "Too many requests are being received; try again in a moment.");
+    return std::nullopt;
 }
 
-void Server::refuse(Id id, Connection& connection, int status, const std::string& detail) {
-    Response response = refusal_(status, detail, connection.remote_addr());
-    response.close = true;
-    answer(id, connection, std::move(response));
-}
-
-void Server::answer(Id id, Connection& connection, Response response) {
-    const bool keep_alive = !response.close && !stopping_;
-    const std::chrono::milliseconds for_size(response.body.size() / kSlowestBytesPerMs);
-    std::function<void()> wake;
-    if (response.stream)
-        wake = [mailbox = mailbox_, to = Mailbox::Address{id, connection.ticket}] { mailbox->nudge(to); };
-    enter(connection, Connection::State::writing, limits_.writing + for_size);
-    connection.start_answer(std::move(response), keep_alive, wake);
-    if (connection.incoming) connection.incoming->finish(BodySource::State::refused);
-    if (stopping_ && connection.out.endless()) connection.out.end_stream();
-    if (connection.peer_closed && connection.out.streams()) return drop(id);
-    flush(id, connection);
-}
-
-void Server::flush(Id id, Connection& connection) {
-    const std::size_t before = connection.out.progress();
-    const Io io = connection.send();
-    const bool moved = connection.out.progress() != before || connection.deadline == SteadyTime::max();
-    switch (io) {
-        case Io::done: return after_answer(id, connection);
-        case Io::gone: return drop(id);
-        case Io::idle: connection.deadline = SteadyTime::max(); return;
-        case Io::more: ready_.push_back(id); [[fallthrough]];
-        case Io::again:
-            if (connection.out.streams() && moved) connection.deadline = now_ + limits_.writing;
-    }
-}
-
-void Server::after_answer(Id id, Connection& connection) {
-    if (connection.keeps_alive()) {
-        connection.incoming.reset();
-        enter(connection, Connection::State::reading, connection.buffered() > 0 ? limits_.head : limits_.idle);
+void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body) {
+    // The library reads in small pieces; they are handed on when there are no more at hand.
+    const auto read = [this, &body](const BodyTaker& take) {
+        std::string piece;
+        const auto pass_on = [&] { return piece.empty() || take(std::exchange(piece, {})); };
+        const bool whole = body([&](const char* data, std::size_t size) {
+            piece.append(data, size);
+            return (connection_.has_more() && piece.size() < kPiece) || pass_on();
+        });
+        return whole && pass_on() && !connection_.body_failed();
+    };
+    bool whole = true;
+    if (streamed_) {
+        request_.read_body = read;
     } else {
-        buffered_ -= connection.buffered();
-        connection.start_lingering();
-        enter(connection, Connection::State::lingering, limits_.lingering);
-        connection.readable = true;
+        request_.body.reserve(head_.content_length);
+        whole = body([this](const char* data, std::size_t size) {
+            request_.body.append(data, size);
+            return true;
+        });
     }
-    ready_.push_back(id);
+    // The library sets a status of its own where it was not given the whole body.
+    Response response = whole ? handled() : Response();
+    out.status = 200;
+    if (connection_.body_failed()) response = refused(connection_.failed_status(), connection_.failed_detail());
+    give(std::move(response), out);
+}
+
+Response Exchange::handled() {
+    Response response = application_.handle(std::move(request_));
+    share_ = {};
+    return response;
+}
+
+Response Exchange::refused(int status, const std::string& detail) {
+    keep_ = false;
+    // Nobody is there to read it.
+    if (status == 0) return {};
+    return application_.refuse(status, detail, connection_.address);
+}
+
+void Exchange::give(Response response, httplib::Response& out) {
+    keep_ = keep_ && !response.close && !stopping_ && (!response.stream || !head_.http_1_0);
+    out.status = response.status;
+    std::string type;
+    for (auto& [name, value] : response.headers) {
+        if (std::ranges::any_of(value, is_control)) continue;
+        if (response.stream && name == "Content-Type")
+            type = std::move(value);
+        else
+            out.headers.emplace(std::move(name), std::move(value));
+    }
+    if (response.stream)
+        give_stream(std::move(response.stream), type, out);
+    else
+        out.body = std::move(response.body);
+}
+
+void Exchange::give_stream(BodyProducer producer, const std::string& type, httplib::Response& out) {
+    const auto provider = [this, producer = std::move(producer)](std::size_t, httplib::DataSink& sink) {
+        SinkWriter writer(sink, connection_);
+        if (!connection_.flush()) return false;
+        connection_.pass_on();
+        const bool whole = producer(writer);
+        if (whole) sink.done();
+        keep_ = keep_ && whole;
+        return whole;
+    };
+    if (head_.http_1_0)
+        out.set_content_provider(type, provider);
+    else
+        out.set_chunked_content_provider(type, provider);
+}
+
+/// The library's own fields about the connection say what it would do; here they say what is done.
+void Exchange::finish(httplib::Response& out) {
+    if (!taken_) {
+        give(refused(400, "The request line or a header field cannot be read."), out);
+        out.headers.erase("Content-Length");
+        out.headers.emplace("Content-Length", std::to_string(out.body.size()));
+    }
+    // What a handler did not want of a body that is read as it arrives may be long.
+    keep_ = keep_ && (streamed_ ? connection_.body_done() : connection_.drop_body());
+    for (const char* name : {"Keep-Alive", "Connection", "Accept-Ranges"}) out.headers.erase(name);
+    if (out.status == 204 || out.status == 304) out.headers.erase("Content-Length");
+    out.headers.emplace("Date", http_date());
+    out.headers.emplace("Connection", keep_ ? "keep-alive" : "close");
 }
 
 }  // namespace tunewright::server::http

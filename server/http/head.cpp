@@ -39,14 +39,6 @@ bool has_word(std::string_view list, std::string_view word) {
     return false;
 }
 
-Head refuse(int status, std::string detail) {
-    Head head;
-    head.state = Head::State::refused;
-    head.status = status;
-    head.detail = std::move(detail);
-    return head;
-}
-
 /// What has been seen so far of one request's fields.
 struct Fields {
     int hosts = 0;
@@ -55,12 +47,6 @@ struct Fields {
     std::size_t count = 0;
     std::string_view connection;
 };
-
-/// The parsing library acts upon these itself (ranges, its own address fields) or the loop has dealt with them.
-bool is_kept(std::string_view name) {
-    return !equals(name, "Range") && !equals(name, "Expect") && !equals(name, "REMOTE_ADDR") &&
-           !equals(name, "REMOTE_PORT") && !equals(name, "LOCAL_ADDR") && !equals(name, "LOCAL_PORT");
-}
 
 bool read_length(std::string_view value, std::size_t& length) {
     if (value.empty() || value.size() > 18) return false;
@@ -148,14 +134,22 @@ bool read_fields(std::string_view rest, Fields& seen, Head& head) {
             head = refuse(400, "A header field must be NAME: VALUE on one line, without a space before the colon.");
             return false;
         }
-        const std::string_view name = line.substr(0, colon);
-        if (!take_field(name, trim(line.substr(colon + 1)), seen, head)) return false;
-        if (is_kept(name)) head.clean.append(line).append("\r\n");
+        const std::string_view name = line.substr(0, colon), value = trim(line.substr(colon + 1));
+        if (!take_field(name, value, seen, head)) return false;
+        head.fields.emplace_back(name, value);
     }
     return head.state != Head::State::refused;
 }
 
 }  // namespace
+
+Head refuse(int status, std::string detail) {
+    Head head;
+    head.state = Head::State::refused;
+    head.status = status;
+    head.detail = std::move(detail);
+    return head;
+}
 
 Head read_head(std::string_view input) {
     // Each of these limits is found at the same byte however the input is cut.
@@ -174,8 +168,10 @@ Head read_head(std::string_view input) {
     if (!next_line(rest, line, head)) return head;
     if (line.size() > kMaxLineBytes) return refuse(414, "The request line may have at most 8,000 bytes.");
     if (!read_request_line(line, head)) return head;
-    head.clean.append(line).append("\r\n");
+    head.clean.assign(line.substr(0, line.rfind(' '))).append(" HTTP/1.1\r\n");
     if (!read_fields(rest, seen, head)) return head;
+    if (head.content_length > 0)
+        head.clean.append("Content-Length: ").append(std::to_string(head.content_length)).append("\r\n");
     head.clean.append("\r\n");
 
     if (seen.hosts > 1 || (seen.hosts == 0 && !head.http_1_0)) return refuse(400, "Exactly one Host field is needed.");

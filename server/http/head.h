@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace tunewright::server::http {
 
 inline constexpr std::size_t kMaxHeadBytes = 16 * 1024;
-inline constexpr std::size_t kMaxLineBytes = 8000;  ///< below the parsing library's own 8192
+inline constexpr std::size_t kMaxLineBytes = 8000;  ///< below the library's own 8192
 inline constexpr std::size_t kMaxHeaders = 100;
 
 struct Head {
@@ -25,7 +27,10 @@ struct Head {
     bool keep_alive = true;
     bool http_1_0 = false;
     bool expects_continue = false;
-    std::string clean;  ///< the head as the parsing library gets it: without the fields that it would act upon itself
+    std::vector<std::pair<std::string, std::string>> fields;  ///< as sent, in their order
+    /// The head as the serving library gets it: the request line as of HTTP/1.1, and the length of the body. What else
+    /// the library would act upon itself (ranges, codings, its own address fields) it never sees.
+    std::string clean;
 };
 
 /// Reads the head at the start of `input`. Refused are: more than 16 KiB or 100 fields (431), a target over 8,000 bytes
@@ -33,6 +38,9 @@ struct Head {
 /// folded lines, spaces before a colon, control characters, a missing or double Host, a Content-Length that is repeated
 /// or not a number, and a Content-Length beside a Transfer-Encoding.
 Head read_head(std::string_view input);
+
+/// A refusal: status, and a sentence for the client.
+Head refuse(int status, std::string detail);
 
 /// Turns a complete head into a refusal where its body is not taken: over `limit` bytes (413); with a Transfer-Encoding
 /// where bodies are not `streamed` (411); with one that is not just `chunked` where they are (400).

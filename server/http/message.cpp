@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 
 namespace tunewright::server::http {
 namespace {
@@ -42,22 +41,22 @@ constexpr std::array kPhrases{
     Phrase{507, "Insufficient Storage"},
 };
 
-/// What would end a header's line, or is forbidden in it.
-bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 127; }
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
 
-/// IMF-fixdate, made once a second for each thread.
-const std::string& http_date() {
-    thread_local std::time_t made_at = 0;
-    thread_local std::string text;
-    const std::time_t now = std::time(nullptr);
-    if (now != made_at) {
-        std::tm utc{};
-        gmtime_r(&now, &utc);
-        std::array<char, 40> buffer{};
-        text.assign(buffer.data(), std::strftime(buffer.data(), buffer.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc));
-        made_at = now;
+std::string percent_decode(std::string_view text) {
+    std::string out;
+    for (size_t i = 0; i < text.size(); i++) {
+        const bool coded =
+            text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0;
+        out.push_back(coded ? static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2])) : text[i]);
+        if (coded) i += 2;
     }
-    return text;
+    return out;
 }
 
 }  // namespace
@@ -77,6 +76,18 @@ std::string_view Request::path() const {
     return whole.substr(0, whole.find('?'));
 }
 
+std::vector<std::string> path_segments(std::string_view path) {
+    std::vector<std::string> segments;
+    if (path.size() <= 1) return segments;
+    path.remove_prefix(1);
+    for (;;) {
+        const size_t slash = path.find('/');
+        segments.push_back(percent_decode(path.substr(0, slash)));
+        if (slash == std::string_view::npos) return segments;
+        path.remove_prefix(slash + 1);
+    }
+}
+
 Response& Response::set(std::string name, std::string value) {
     headers.emplace_back(std::move(name), std::move(value));
     return *this;
@@ -85,21 +96,6 @@ Response& Response::set(std::string name, std::string value) {
 std::string_view reason_phrase(int status) {
     const auto it = std::ranges::find(kPhrases, status, &Phrase::status);
     return it == kPhrases.end() ? std::string_view{"Status"} : it->text;
-}
-
-std::string render_head(const Response& response, bool keep_alive, Framing framing) {
-    std::string out;
-    out.reserve(512);
-    out.append("HTTP/1.1 ").append(std::to_string(response.status)).append(" ");
-    out.append(reason_phrase(response.status)).append("\r\nDate: ").append(http_date()).append("\r\n");
-    for (const auto& [name, value] : response.headers)
-        if (std::ranges::none_of(value, is_control)) out.append(name).append(": ").append(value).append("\r\n");
-    if (framing == Framing::chunked)
-        out.append("Transfer-Encoding: chunked\r\n");
-    else if (framing == Framing::length && response.status != 204 && response.status != 304)
-        out.append("Content-Length: ").append(std::to_string(response.body.size())).append("\r\n");
-    out.append(keep_alive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n");
-    return out;
 }
 
 Response json_response(std::string body, int status) {

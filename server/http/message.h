@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,14 +10,28 @@
 
 namespace tunewright::server::http {
 
-class BodySource;
-class BodyStream;
-
 /// Compares header names without regard to case.
 struct CaseInsensitive {
     using is_transparent = void;
     bool operator()(std::string_view a, std::string_view b) const;
 };
+
+/// Where an answer's body goes while it is made.
+class BodyWriter {
+public:
+    virtual ~BodyWriter() = default;
+    /// Returns when the client or its socket has taken the piece; false where the client has gone, or takes nothing for
+    /// too long: nothing more is sent then.
+    virtual bool write(std::string_view piece) = 0;
+    /// True where the client has gone. The end of what it sends counts as that.
+    virtual bool gone() const = 0;
+};
+
+/// Writes a whole body; false where it is broken off, which the client sees, as the body then lacks its end.
+using BodyProducer = std::function<bool(BodyWriter&)>;
+
+/// Takes the next piece of a body; false where no more is wanted.
+using BodyTaker = std::function<bool(std::string_view)>;
 
 struct Request {
     std::string method;
@@ -27,7 +40,11 @@ struct Request {
     std::multimap<std::string, std::string> query;
     std::multimap<std::string, std::string, CaseInsensitive> headers;
     std::string body;
-    std::shared_ptr<BodySource> source;  ///< of a call that reads its body as it arrives; `body` is then empty
+    /// Of a call that reads its body as it arrives (`body` is then empty): gives piece after piece; false where the
+    /// body does not come to its end (too large, malformed, too slow, or the client has gone): the answer is then the
+    /// transport's.
+    std::function<bool(const BodyTaker&)> read_body;
+    std::function<bool()> left;  ///< true where the client has gone and nobody waits for the answer; may be empty
     std::string remote_addr;
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all
@@ -43,33 +60,21 @@ struct Request {
     std::string_view path() const;
 };
 
+/// "/v1/jobs" -> {"v1", "jobs"}; "/" -> {}; "/v1/" -> {"v1", ""}. Percent codes are decoded in each segment by itself.
+std::vector<std::string> path_segments(std::string_view path);
+
 struct Response {
     int status = 200;
     std::vector<std::pair<std::string, std::string>> headers;  ///< one whose value has a control character is left out
     std::string body;
-    std::shared_ptr<BodyStream> stream;  ///< instead of `body`: sent as it is written
-    bool close = false;                  ///< close the connection after this answer
-    bool body_omitted = false;           ///< answer to HEAD: Content-Length is sent, the body is not
+    BodyProducer stream;  ///< instead of `body`: sent as it is written
+    bool close = false;   ///< close the connection after this answer
 
     Response& set(std::string name, std::string value);
 };
 
-/// Gives the answer to one request, once, from any thread, now or later. Calling it again, or after the client has
-/// gone, does nothing.
-using Reply = std::function<void(Response)>;
-
-/// Takes a complete request. Runs on the thread of the event loop: whatever takes longer than some tens of
-/// microseconds goes elsewhere and replies from there.
-using Handler = std::function<void(Request, Reply)>;
-
 /// "Not Found" for 404 and so on.
 std::string_view reason_phrase(int status);
-
-/// How the client learns where a body ends.
-enum class Framing { length, chunked, until_close };
-
-/// Status line, headers and the blank line of a response, ready to be sent.
-std::string render_head(const Response& response, bool keep_alive, Framing framing = Framing::length);
 
 /// 200 with a JSON body.
 Response json_response(std::string body, int status = 200);

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "server/executor.h"
-#include "server/http/body/compression.h"
+#include "server/http/compression.h"
 #include "server/http/problems.h"
 #include "server/log.h"
 
@@ -48,17 +47,6 @@ std::string allow_text(std::vector<std::string> methods) {
     return text;
 }
 
-/// Runs a handler; what it throws becomes a 500 that says nothing about our insides.
-void run_guarded(const AsyncHandler& handler, Call call, const Reply& reply) {
-    const std::string target = call.request.method + " " + std::string(call.request.path());
-    try {
-        handler(std::move(call), reply);
-    } catch (const std::exception& fault) {
-        log_error(target + " failed: " + fault.what());
-        reply(problem_response(500, "The service failed to handle this request; its log says more."));
-    }
-}
-
 }  // namespace
 
 void add_common_headers(Response& response) {
@@ -71,62 +59,60 @@ void add_common_headers(Response& response) {
         response.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
 }
 
-void Router::quick(const std::string& method, const std::string& pattern, SyncHandler handler) {
-    add(method, pattern, Lane::quick,
-        [handler = std::move(handler)](const Call& call, const Reply& reply) { reply(handler(call)); });
+void Router::quick(const std::string& method, const std::string& pattern, Handler handler) {
+    routes_.push_back({method, pattern, split_pattern(pattern), false, false, std::move(handler)});
 }
 
-void Router::pooled(const std::string& method, const std::string& pattern, SyncHandler handler) {
-    add(method, pattern, Lane::pooled,
-        [handler = std::move(handler)](const Call& call, const Reply& reply) { reply(handler(call)); });
+void Router::add(const std::string& method, const std::string& pattern, Handler handler) {
+    routes_.push_back({method, pattern, split_pattern(pattern), true, false, std::move(handler)});
 }
 
-void Router::deferred(const std::string& method, const std::string& pattern, AsyncHandler handler) {
-    add(method, pattern, Lane::pooled, std::move(handler));
+void Router::streamed(const std::string& method, const std::string& pattern, Handler handler) {
+    routes_.push_back({method, pattern, split_pattern(pattern), true, true, std::move(handler)});
 }
 
-void Router::streamed(const std::string& method, const std::string& pattern, AsyncHandler handler) {
-    add(method, pattern, Lane::pooled, std::move(handler)).streamed = true;
+const Router::Route* Router::find(const Request& request) const {
+    const auto found = std::ranges::find_if(routes_, [&](const Route& route) {
+        return serves(route.method, request.method) && matches(route.parts, request.segments);
+    });
+    return found == routes_.end() ? nullptr : &*found;
 }
 
 bool Router::streams(const Request& head) const {
-    return std::ranges::any_of(routes_, [&](const Route& route) {
-        return route.streamed && serves(route.method, head.method) && matches(route.parts, head.segments);
-    });
+    const Route* route = find(head);
+    return route != nullptr && route->streamed;
 }
 
-Router::Route& Router::add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler) {
-    routes_.push_back({method, pattern, split_pattern(pattern), lane, false, std::move(handler)});
-    return routes_.back();
+std::optional<Response> Router::admit(Request& request) const {
+    const auto start = std::chrono::steady_clock::now();
+    if (!admit_) return std::nullopt;
+    std::optional<Response> refusal = admit_(request);
+    if (!refusal) return std::nullopt;
+    return observed(request, nullptr, start, *std::move(refusal));
 }
 
-void Router::handle(Request request, Reply reply) const {
-    if (admit_) {
-        if (std::optional<Response> refusal = admit_(request))
-            return observed(request, "", false, std::move(reply))(*std::move(refusal));
+Response Router::handle(Request request) const {
+    const auto start = std::chrono::steady_clock::now();
+    const Route* route = find(request);
+    Call call{std::move(request), {}};
+    if (route != nullptr) call.path = values_of(route->parts, call.request.segments);
+    return observed(call.request, route, start, answer(route, call));
+}
+
+/// What a handler throws becomes a 500 that says nothing about our insides.
+Response Router::answer(const Route* route, const Call& call) const {
+    try {
+        return route != nullptr ? route->handler(call) : unrouted(call.request);
+    } catch (const std::exception& fault) {
+        log_error(call.request.method + " " + std::string(call.request.path()) + " failed: " + fault.what());
+        return problem_response(500, "The service failed to handle this request; its log says more.");
     }
-    std::vector<std::string> allowed;
-    for (const Route& route : routes_) {
-        if (!matches(route.parts, request.segments)) continue;
-        if (!serves(route.method, request.method)) {
-            allowed.push_back(route.method);
-            continue;
-        }
-        Reply answer = observed(request, route.pattern, route.lane == Lane::pooled, std::move(reply));
-        Call call{std::move(request), {}};
-        call.path = values_of(route.parts, call.request.segments);
-        if (route.lane == Lane::quick) return run_guarded(route.handler, std::move(call), answer);
-        pool_.post([handler = &route.handler, call = std::move(call), answer = std::move(answer)]() mutable {
-            run_guarded(*handler, std::move(call), answer);
-        });
-        return;
-    }
-    const Reply answer = observed(request, "", false, std::move(reply));
-    answer(unrouted(request, allowed));
 }
 
-Response Router::unrouted(const Request& request, const std::vector<std::string>& allowed) const {
-    std::vector<std::string> methods = allowed;
+Response Router::unrouted(const Request& request) const {
+    std::vector<std::string> methods;
+    for (const Route& route : routes_)
+        if (matches(route.parts, request.segments)) methods.push_back(route.method);
     if (methods.empty() && fallback_) {
         std::optional<Response> file = fallback_(request);
         if (file && serves("GET", request.method)) return *std::move(file);
@@ -135,35 +121,27 @@ Response Router::unrouted(const Request& request, const std::vector<std::string>
     if (methods.empty() && request.target != "*")
         return problem_response(
             404, "There is nothing at " + std::string(request.path()) + "; /openapi.json lists what there is.");
-    if (request.method == "OPTIONS") {
-        Response response;
-        response.status = 204;
-        return response.set("Allow", allow_text(methods));
-    }
     const std::string allow = allow_text(methods);
-    Response response = problem_response(
-        405, request.method + " is not possible at " + std::string(request.path()) + "; use one of " + allow + ".");
+    Response response;
+    response.status = 204;
+    if (request.method != "OPTIONS")
+        response = problem_response(
+            405, request.method + " is not possible at " + std::string(request.path()) + "; use one of " + allow + ".");
     return response.set("Allow", allow);
 }
 
-/// `may_compress`: the answer is made on a thread that has the time.
-Reply Router::observed(const Request& request, const std::string& route, bool may_compress, Reply reply) const {
-    Exchange exchange{request.method, request.target, route, request.client, request.request_id, 0, 0, {}};
-    return [this, exchange = std::move(exchange), reply = std::move(reply), headers = request.answer_headers,
-            takes_gzip = may_compress && accepts_gzip(request), may_compress,
-            start = std::chrono::steady_clock::now()](Response response) mutable {
-        if (may_compress) compress(response, takes_gzip);
-        for (const auto& [name, value] : headers) response.set(name, value);
-        add_common_headers(response);
-        if (observer_) {
-            exchange.status = response.status;
-            exchange.bytes = response.body.size();
-            exchange.duration =
-                std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
-            observer_(exchange);
-        }
-        reply(std::move(response));
-    };
+/// The answer with what every answer carries, after logs and metrics have heard of it.
+Response Router::observed(const Request& request, const Route* route, std::chrono::steady_clock::time_point start,
+                          Response response) const {
+    if (route != nullptr && route->compresses) compress(response, accepts_gzip(request));
+    for (const auto& [name, value] : request.answer_headers) response.set(name, value);
+    add_common_headers(response);
+    if (!observer_) return response;
+    using std::chrono::microseconds;
+    observer_({request.method, request.target, route == nullptr ? "" : route->pattern, request.client,
+               request.request_id, response.status, response.body.size(),
+               std::chrono::duration_cast<microseconds>(std::chrono::steady_clock::now() - start)});
+    return response;
 }
 
 }  // namespace tunewright::server::http

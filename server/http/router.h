@@ -10,10 +10,6 @@
 
 #include "server/http/message.h"
 
-namespace tunewright::server {
-class Executor;
-}
-
 namespace tunewright::server::http {
 
 /// The values of a pattern's {parts}.
@@ -24,11 +20,11 @@ struct Call {
     PathValues path;
 };
 
-using SyncHandler = std::function<Response(const Call&)>;
-using AsyncHandler = std::function<void(Call, Reply)>;
+/// Gives the answer. Runs on the request's own thread and may wait.
+using Handler = std::function<Response(const Call&)>;
 
 /// What logs and metrics learn about each answered request.
-struct Exchange {
+struct Answered {
     std::string method;
     std::string target;
     std::string route;       ///< the pattern, never user text; "" where none matched
@@ -45,51 +41,46 @@ void add_common_headers(Response& response);
 
 class Router {
 public:
-    explicit Router(Executor& pool) : pool_(pool) {}
-
-    /// Pattern: "/v1/jobs/{id}". The handler answers at once on the event loop: only for what takes microseconds.
-    void quick(const std::string& method, const std::string& pattern, SyncHandler handler);
-    /// The handler runs on the pool.
-    void pooled(const std::string& method, const std::string& pattern, SyncHandler handler);
-    /// The handler runs on the pool and replies whenever it can, from any thread.
-    void deferred(const std::string& method, const std::string& pattern, AsyncHandler handler);
-
-    /// The same for a call whose body is read as it arrives (Request::source): the handler runs as soon as the head is
-    /// there.
-    void streamed(const std::string& method, const std::string& pattern, AsyncHandler handler);
-    /// True where the head belongs to a route of streamed(): what the server asks before it gathers a body.
-    bool streams(const Request& head) const;
+    /// Pattern: "/v1/jobs/{id}". For what is small, or compressed once and for all.
+    void quick(const std::string& method, const std::string& pattern, Handler handler);
+    /// Its answers are compressed for those who take it.
+    void add(const std::string& method, const std::string& pattern, Handler handler);
+    /// The same for a call whose body is read as it arrives (Request::read_body).
+    void streamed(const std::string& method, const std::string& pattern, Handler handler);
 
     /// Asked on GET and HEAD where no pattern matches: files.
     void otherwise(std::function<std::optional<Response>(const Request&)> fallback) { fallback_ = std::move(fallback); }
     /// Asked first about every request; what it returns is the answer.
     void guard(std::function<std::optional<Response>(Request&)> admit) { admit_ = std::move(admit); }
     /// Called once for each answer, on the thread that gave it.
-    void observe(std::function<void(const Exchange&)> observer) { observer_ = std::move(observer); }
+    void observe(std::function<void(const Answered&)> observer) { observer_ = std::move(observer); }
 
-    /// A Handler for the Server.
-    void handle(Request request, Reply reply) const;
+    // For the Server (Application).
+    /// The refusal of a request of which only the head is known: by the guard, or as no route takes it.
+    std::optional<Response> admit(Request& request) const;
+    bool streams(const Request& head) const;
+    Response handle(Request request) const;
 
 private:
-    enum class Lane { quick, pooled };
     struct Route {
         std::string method;
         std::string pattern;
         std::vector<std::string> parts;
-        Lane lane = Lane::quick;
+        bool compresses = false;
         bool streamed = false;
-        AsyncHandler handler;
+        Handler handler;
     };
 
-    Route& add(const std::string& method, const std::string& pattern, Lane lane, AsyncHandler handler);
-    Reply observed(const Request& request, const std::string& route, bool may_compress, Reply reply) const;
-    Response unrouted(const Request& request, const std::vector<std::string>& allowed) const;
+    const Route* find(const Request& request) const;
+    Response answer(const Route* route, const Call& call) const;
+    Response unrouted(const Request& request) const;
+    Response observed(const Request& request, const Route* route, std::chrono::steady_clock::time_point start,
+                      Response response) const;
 
-    Executor& pool_;
     std::vector<Route> routes_;
     std::function<std::optional<Response>(Request&)> admit_;
     std::function<std::optional<Response>(const Request&)> fallback_;
-    std::function<void(const Exchange&)> observer_;
+    std::function<void(const Answered&)> observer_;
 };
 
 }  // namespace tunewright::server::http

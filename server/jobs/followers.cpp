@@ -120,7 +120,8 @@ void Followers::look_here(std::vector<Message>& messages, std::vector<std::strin
             const bool known = sight == followed.last && followed.view;
             seen(followed, sight, known ? followed.view : view_of(*held), messages);
         } else if (poll || followed.due) {
-            elsewhere.push_back(id);
+            // While the store takes what came out it still says "running", with the progress of a while ago.
+            if (!held || held->stage() != HeldJob::Stage::ending) elsewhere.push_back(id);
         }
         followed.due = false;
     }

@@ -1,11 +1,10 @@
 // Sends the results of a batch while it reads them from the store: page by page, as fast as the client takes them.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "server/executor.h"
-#include "server/http/body/body_stream.h"
+#include "server/http/message.h"
 #include "server/jobs/batch/batches.h"
 
 namespace tunewright::server {
@@ -17,14 +16,12 @@ struct ResultsQuestion {
     std::int64_t from = 0;  ///< index of the first row
 };
 
-/// Answers GET /v1/batches/{id}/results. Writes to `stream` from `lane` until all rows are out or the client has gone.
-/// Returns at once.
+/// The body of GET /v1/batches/{id}/results: rows until all are out, the client has gone or the store fails, which the
+/// client sees, because the answer then lacks its end; the log says why. Pages are read on `lane`.
 ///
-/// Memory stays bounded however large the batch is: the next page is read only when the stream has room for it. A fault
-/// of the store breaks the stream off early, which the client sees, because the answer lacks its end; the log says why.
+/// Memory stays bounded however large the batch is: the next page is read when the client has taken the one before.
 /// With `follow`, rows come in the order of the batch: a row waits for the jobs before it. All that is passed by
-/// reference must outlive the stream.
-void send_results(ResultsQuestion question, std::shared_ptr<http::BodyStream> stream, Batches& batches,
-                  JobService& jobs, Timer& timer, Executor& lane);
+/// reference must outlive the answer.
+http::BodyProducer results_of(ResultsQuestion question, Batches& batches, JobService& jobs, Executor& lane);
 
 }  // namespace tunewright::server

@@ -1,10 +1,11 @@
 #include <memory>
+#include <optional>
 
 #include "api/csv/text.h"
 #include "api/json/json.h"
-#include "server/http/body/body_source.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
+#include "server/jobs/await.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
@@ -14,11 +15,8 @@
 namespace tunewright::server {
 namespace {
 
-using http::BodySource;
-using http::BodyStream;
 using http::Call;
 using http::problem_response;
-using http::Reply;
 using http::Response;
 
 constexpr std::size_t kMaxKeyLength = 200;
@@ -125,30 +123,12 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     return store_failed(receipt.fault);
 }
 
-/// Hands the body's pieces over, each when the one before has been worked on.
-void pass_on(const std::shared_ptr<BodySource>& source, const std::shared_ptr<BatchReceiver>& receiver) {
-    source->read([source, receiver](BodySource::Piece piece) {
-        switch (piece.state) {
-            case BodySource::State::more:
-                return receiver->feed(std::move(piece.bytes), [source, receiver] { pass_on(source, receiver); });
-            case BodySource::State::end: return receiver->finish();
-            case BodySource::State::refused:
-            case BodySource::State::gone: return receiver->abandon();
-        }
-    });
-}
-
-void post_batch(Batches& batches, Executor& pool, const BatchLimits& limits, const Call& call, const Reply& reply) {
+Response post_batch(Batches& batches, Places& places, const BatchLimits& limits, const Call& call) {
     BatchOrder order;
-    if (auto refusal = read_order(call.request, limits, order)) return reply(*std::move(refusal));
-    const auto done = [&batches, &pool, reply, owner = call.request.owner](BatchReceipt receipt) {
-        pool.post([&batches, reply, owner, receipt = std::move(receipt)] {
-            http::Request asker;
-            asker.owner = owner;
-            reply(receipt_response(batches, asker, receipt));
-        });
-    };
-    pass_on(call.request.source, batches.receive(std::move(order), done));
+    if (auto refusal = read_order(call.request, limits, order)) return *std::move(refusal);
+    const auto place = places.take(call.request.client);
+    if (!place) return problem_response(503, "Too many batches are being received. Try again in a moment.");
+    return receipt_response(batches, call.request, batches.receive(std::move(order), call.request.read_body));
 }
 
 // ---- everything else -------------------------------------------------------------------------------------------
@@ -211,7 +191,7 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
     return std::nullopt;
 }
 
-Response get_results(Batches& batches, JobService& jobs, Timer& timer, Executor& lane, const Call& call) {
+Response get_results(Batches& batches, JobService& jobs, Places& places, Executor& lane, const Call& call) {
     ResultsQuestion question;
     question.batch = call.path.at("id");
     if (auto refusal = read_results_question(call.request, question)) return *std::move(refusal);
@@ -223,61 +203,56 @@ Response get_results(Batches& batches, JobService& jobs, Timer& timer, Executor&
     } else {
         response.set("Content-Type", "application/x-ndjson");
     }
-    if (call.request.method == "HEAD") return response;
-    response.stream = std::make_shared<BodyStream>();
-    send_results(std::move(question), response.stream, batches, jobs, timer, lane);
+    const auto place = std::make_shared<std::optional<Places::Place>>(places.take(call.request.client));
+    if (!*place) return problem_response(503, "Too many results are being sent. Try again in a moment.");
+    response.stream = [place, send = results_of(std::move(question), batches, jobs, lane)](http::BodyWriter& out) {
+        return send(out);
+    };
     return response;
 }
 
-void cancel_batch(Batches& batches, Executor& pool, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_form(call.request)) return reply(*std::move(refusal));
-    if (auto refusal = refuse_stranger(batches, call)) return reply(*std::move(refusal));
+Response cancel_batch(Batches& batches, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    batches.cancel(id, [&batches, &pool, id, owner = call.request.owner, reply](const Outcome<bool>& outcome) {
-        pool.post([&batches, id, owner, reply, outcome] {
-            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
-            http::Request asker;
-            asker.owner = owner;
-            reply(batch_response(batches, asker, id, 202));
-        });
-    });
+    const auto outcome = await<Outcome<bool>>([&](const Done<bool>& done) { batches.cancel(id, done); });
+    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    return batch_response(batches, call.request, id, 202);
 }
 
-void delete_batch(Batches& batches, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_form(call.request)) return reply(*std::move(refusal));
-    if (auto refusal = refuse_stranger(batches, call)) return reply(*std::move(refusal));
+Response delete_batch(Batches& batches, const Call& call) {
+    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    batches.remove(id, [id, reply](const Outcome<RemoveEffect>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
-        Response response;
-        response.status = 204;
-        switch (std::get<RemoveEffect>(outcome)) {
-            case RemoveEffect::not_ended:
-                return reply(problem_response(
-                    409, "The batch has not ended. Cancel it first: POST /v1/batches/" + id + "/cancel."));
-            case RemoveEffect::none:
-            case RemoveEffect::in_batch: return reply(no_such_batch(id));
-            case RemoveEffect::removed: break;
-        }
-        reply(std::move(response));
-    });
+    const auto outcome =
+        await<Outcome<RemoveEffect>>([&](const Done<RemoveEffect>& done) { batches.remove(id, done); });
+    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    Response response;
+    switch (std::get<RemoveEffect>(outcome)) {
+        case RemoveEffect::not_ended:
+            return problem_response(409,
+                                    "The batch has not ended. Cancel it first: POST /v1/batches/" + id + "/cancel.");
+        case RemoveEffect::none:
+        case RemoveEffect::in_batch: return no_such_batch(id);
+        case RemoveEffect::removed: break;
+    }
+    response.status = 204;
+    return response;
 }
 
 }  // namespace
 
-void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Timer& timer, Executor& pool,
-                      Executor& lane, const BatchLimits& limits) {
-    router.streamed("POST", "/v1/batches", [&batches, &pool, limits](const Call& call, const Reply& reply) {
-        post_batch(batches, pool, limits, call, reply);
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
+                      const BatchLimits& limits) {
+    router.streamed("POST", "/v1/batches", [&batches, &places, limits](const Call& call) {
+        return post_batch(batches, places, limits, call);
     });
-    router.pooled("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, call); });
-    router.pooled("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
-    router.deferred("DELETE", "/v1/batches/{id}",
-                    [&](const Call& call, const Reply& reply) { delete_batch(batches, call, reply); });
-    router.pooled("GET", "/v1/batches/{id}/results",
-                  [&](const Call& call) { return get_results(batches, jobs, timer, lane, call); });
-    router.deferred("POST", "/v1/batches/{id}/cancel",
-                    [&](const Call& call, const Reply& reply) { cancel_batch(batches, pool, call, reply); });
+    router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, call); });
+    router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
+    router.add("DELETE", "/v1/batches/{id}", [&](const Call& call) { return delete_batch(batches, call); });
+    router.add("GET", "/v1/batches/{id}/results",
+               [&](const Call& call) { return get_results(batches, jobs, places, lane, call); });
+    router.add("POST", "/v1/batches/{id}/cancel", [&](const Call& call) { return cancel_batch(batches, call); });
 }
 
 }  // namespace tunewright::server

@@ -1,5 +1,5 @@
 #include "api/service.h"
-#include "server/http/body/compression.h"
+#include "server/http/compression.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 
@@ -10,7 +10,7 @@ using http::Call;
 using http::Response;
 
 /// A text that does not change while the process lives.
-http::SyncHandler constant(std::string body) {
+http::Handler constant(std::string body) {
     return [text = http::ConstantBody(std::move(body), "application/json")](const Call& call) {
         if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
         return text.respond(call.request).set("Cache-Control", "no-cache");
@@ -32,7 +32,7 @@ void add_description_routes(http::Router& router) {
     router.quick("GET", "/openapi.json", constant(api::openapi_json()));
     router.quick("GET", "/v1/methods", constant(api::methods_json()));
     router.quick("GET", "/v1/examples", constant(api::examples_json()));
-    router.pooled("GET", "/v1/methods/{id}", method);
+    router.add("GET", "/v1/methods/{id}", method);
 }
 
 }  // namespace tunewright::server

@@ -1,11 +1,12 @@
+#include <condition_variable>
 #include <cstdint>
-#include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "server/http/body/body_stream.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 #include "server/routes/job_access.h"
@@ -15,14 +16,11 @@
 namespace tunewright::server {
 namespace {
 
-using http::BodyStream;
 using http::Call;
-using http::Reply;
 using http::Response;
 
-constexpr std::chrono::seconds kHeartbeat{15};
-// A client that does not read gets no more progress until it does; the end always goes out.
-constexpr std::size_t kSlow = 16 * 1024;
+constexpr std::chrono::milliseconds kLook{1000};  // for clients that have gone
+constexpr int kHeartbeat = 15;                    // looks
 constexpr const char* kRetry = "retry: 2000\n\n";
 
 /// Names one state of progress alike in every process: attempt and a sum of the text (FNV-1a, 64 bits).
@@ -38,69 +36,67 @@ std::string event(std::string_view name, const std::string& id, const std::strin
     return text;
 }
 
-/// One client that follows one job. Used by the followers' thread alone, once it is known to it.
-class EventStream {
+/// What the followers have to say to one client, until its thread has sent it. Of progress only the latest is kept, so
+/// that a client that reads slowly gets less of it; the end always goes out.
+class News {
 public:
-    EventStream(std::shared_ptr<BodyStream> body, std::string known)
-        : body_(std::move(body)), known_(std::move(known)) {}
-
-    void send(const JobNews& news) {
-        if (news.kind == JobNews::Kind::present) return tell_progress(*news.view);
-        if (news.kind == JobNews::Kind::ended) body_->write(event("done", "done", job_news_json(*news.view)));
-        body_->end();
+    void put(const JobNews& news) {
+        const std::lock_guard lock(mutex_);
+        if (latest_ && latest_->kind != JobNews::Kind::present) return;
+        latest_ = news;
+        come_.notify_one();
+    }
+    /// Nothing where none has come within `patience`.
+    std::optional<JobNews> wait(std::chrono::milliseconds patience) {
+        std::unique_lock lock(mutex_);
+        come_.wait_for(lock, patience, [this] { return latest_.has_value(); });
+        return std::exchange(latest_, std::nullopt);
     }
 
 private:
-    void tell_progress(const JobView& view) {
-        const std::string progress = job_progress_json(view);
-        std::string id = state_id(view.job.attempts, progress);
-        if (id == known_ || body_->waiting() > kSlow) return;
-        body_->write(event("progress", id, progress));
-        known_ = std::move(id);
-    }
-
-    std::shared_ptr<BodyStream> body_;
-    std::string known_;  ///< what the client has
+    std::mutex mutex_;
+    std::condition_variable come_;
+    std::optional<JobNews> latest_;
 };
 
-/// A comment to each open stream now and then: proxies close connections on which nothing comes.
-class Heartbeats : public std::enable_shared_from_this<Heartbeats> {
+/// One client that follows one job, for as long as it is there.
+class EventStream {
 public:
-    Heartbeats(JobService& jobs, Timer& timer) : jobs_(jobs), timer_(timer) {}
+    EventStream(JobService& jobs, std::string job, std::string known)
+        : jobs_(jobs), job_(std::move(job)), known_(std::move(known)) {}
 
-    void add(const std::shared_ptr<BodyStream>& body, Followers::Key follower) {
-        const std::lock_guard lock(mutex_);
-        streams_.push_back({body, follower});
-        if (streams_.size() == 1) arm();
+    void send(http::BodyWriter& out) {
+        const auto news = std::make_shared<News>();
+        const Followers::Key key = jobs_.follow(job_, [news](const JobNews& item) { news->put(item); });
+        out.write(kRetry);
+        for (int silent = 0; goes_on(out, news->wait(kLook), silent);) {
+        }
+        jobs_.unfollow(key);
     }
 
 private:
-    void arm() {
-        timer_.after(kHeartbeat, [weak = weak_from_this()] {
-            if (const auto self = weak.lock()) self->beat();
-        });
+    bool goes_on(http::BodyWriter& out, const std::optional<JobNews>& news, int& silent) {
+        if (out.gone()) return false;
+        silent = news ? 0 : silent + 1;
+        // Proxies close connections on which nothing comes.
+        if (!news) return silent % kHeartbeat != 0 || out.write(": still here\n\n");
+        if (news->kind == JobNews::Kind::present) return send_progress(out, *news->view);
+        if (news->kind == JobNews::Kind::ended) out.write(event("done", "done", job_news_json(*news->view)));
+        return false;
     }
 
-    void beat() {
-        const std::lock_guard lock(mutex_);
-        streams_.remove_if([&](const Stream& stream) {
-            const auto body = stream.body.lock();
-            if (body && (body->waiting() > kSlow || body->write(": still here\n\n"))) return false;
-            // A client that left before it had its answer notified nobody.
-            jobs_.unfollow(stream.follower);
-            return true;
-        });
-        if (!streams_.empty()) arm();
+    bool send_progress(http::BodyWriter& out, const JobView& view) {
+        const std::string progress = job_progress_json(view);
+        std::string id = state_id(view.job.attempts, progress);
+        if (id == known_) return true;
+        const bool sent = out.write(event("progress", id, progress));
+        known_ = std::move(id);
+        return sent;
     }
 
-    struct Stream {
-        std::weak_ptr<BodyStream> body;
-        Followers::Key follower;
-    };
     JobService& jobs_;
-    Timer& timer_;
-    std::mutex mutex_;
-    std::list<Stream> streams_;
+    std::string job_;
+    std::string known_;  ///< what the client has
 };
 
 /// What forbids to follow the job; 204 where the client has seen its end, which stops its trying again.
@@ -118,32 +114,28 @@ std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
     return found;
 }
 
-void follow_job(JobService& jobs, Heartbeats& heartbeats, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_events(jobs, call)) return reply(*std::move(refusal));
+Response follow_job(JobService& jobs, Places& places, const Call& call) {
+    if (auto refusal = refuse_events(jobs, call)) return *std::move(refusal);
+    const auto place = std::make_shared<std::optional<Places::Place>>(places.take(call.request.client));
+    if (!*place) return http::problem_response(503, "Too many clients follow jobs or wait for them. Ask for the job.");
     Response response;
     response.set("Content-Type", "text/event-stream");
     response.set("Cache-Control", "no-store");
     // nginx would gather events before it passes them on.
     response.set("X-Accel-Buffering", "no");
-    if (call.request.method == "HEAD") return reply(std::move(response));
-
-    const auto body = std::make_shared<BodyStream>();
-    body->write(kRetry);
-    const auto stream = std::make_shared<EventStream>(body, std::string(call.request.header("Last-Event-ID")));
-    const Followers::Key key = jobs.follow(call.path.at("id"), [stream](const JobNews& news) { stream->send(news); });
-    body->on_gone([&jobs, key] { jobs.unfollow(key); });
-    heartbeats.add(body, key);
-    response.stream = body;
-    reply(std::move(response));
+    response.stream = [&jobs, place, id = call.path.at("id"),
+                       known = std::string(call.request.header("Last-Event-ID"))](http::BodyWriter& out) {
+        EventStream(jobs, id, known).send(out);
+        return true;
+    };
+    return response;
 }
 
 }  // namespace
 
-void add_event_routes(http::Router& router, JobService& jobs, Timer& timer) {
-    const auto heartbeats = std::make_shared<Heartbeats>(jobs, timer);
-    router.deferred("GET", "/v1/jobs/{id}/events", [&jobs, heartbeats](const Call& call, const Reply& reply) {
-        follow_job(jobs, *heartbeats, call, reply);
-    });
+void add_event_routes(http::Router& router, JobService& jobs, Places& places) {
+    router.quick("GET", "/v1/jobs/{id}/events",
+                 [&jobs, &places](const Call& call) { return follow_job(jobs, places, call); });
 }
 
 }  // namespace tunewright::server

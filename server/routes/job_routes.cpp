@@ -1,8 +1,10 @@
+#include <future>
 #include <memory>
 
 #include "api/service.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
+#include "server/jobs/await.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
@@ -13,7 +15,6 @@ namespace {
 
 using http::Call;
 using http::problem_response;
-using http::Reply;
 using http::Response;
 
 constexpr std::size_t kMaxKeyLength = 200;
@@ -62,46 +63,54 @@ Response waited(JobService& jobs, const std::string& id, std::optional<std::chro
     });
 }
 
-void wait_for(JobService& jobs, const std::string& id, std::chrono::seconds wait, const Reply& reply,
-              const std::function<void()>& ended) {
+/// What becomes of a job that is there: at once, or when it has ended or the wait is over.
+Response after_wait(JobService& jobs, const std::string& id, std::chrono::seconds wait) {
+    if (wait.count() == 0) return waited(jobs, id, std::nullopt);
     try {
-        jobs.wait(id, wait, ended);
+        await_end([&](const std::function<void()>& ended) { jobs.wait(id, wait, ended); });
     } catch (const StoreError& error) {
-        reply(store_failed({error.kind, error.what()}));
+        return store_failed({error.kind, error.what()});
     }
+    return waited(jobs, id, wait);
 }
 
-void post_job(JobService& jobs, Executor& pool, const api::JobLimits& limits, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
+/// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once.
+Submission submit(JobService& jobs, Order order) {
+    const bool waits = order.wait.count() > 0;
+    const auto submission = std::make_shared<Submission>();
+    await_end([&](const std::function<void()>& ended) {
+        const auto done = [submission, waits, ended](Submission made) {
+            *submission = std::move(made);
+            if (!waits || submission->kind != Submission::Kind::created) ended();
+        };
+        jobs.submit(std::move(order), done, ended);
+    });
+    return std::move(*submission);
+}
+
+Response post_job(JobService& jobs, Places& places, const api::JobLimits& limits, const Call& call) {
+    if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
     if (key.size() > kMaxKeyLength)
-        return reply(problem_response(
-            422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted."));
+        return problem_response(
+            422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted.");
     auto prepared = api::prepare_job(call.request.body, limits);
-    if (const auto* problem = std::get_if<api::Problem>(&prepared)) return reply(http::problem_response(*problem));
+    if (const auto* problem = std::get_if<api::Problem>(&prepared)) return http::problem_response(*problem);
 
     Order order;
     order.job = std::get<api::PreparedJob>(std::move(prepared));
     order.idempotency_key = key;
     order.owner = call.request.owner.value_or("");
     order.flow = call.request.client;
-    const std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
+    // Where too many wait already this one does not: it gets its job at once, as without the preference.
+    std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
+    std::optional<Places::Place> place;
+    if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
     order.wait = wait;
-    // `created` runs before `ended`: it leaves the id behind.
-    auto id = std::make_shared<std::string>();
-    const auto ended = [&jobs, &pool, reply, id, wait] {
-        pool.post([&jobs, reply, id, wait] { reply(waited(jobs, *id, wait)); });
-    };
-    const auto done = [&jobs, &pool, reply, id, wait, ended](Submission submission) {
-        *id = submission.job.id;
-        if (submission.kind == Submission::Kind::created && wait.count() > 0) return;
-        pool.post([&jobs, reply, id, wait, ended, submission = std::move(submission)] {
-            if (submission.kind != Submission::Kind::existing) return reply(submitted(jobs, submission));
-            if (wait.count() > 0) return wait_for(jobs, *id, wait, reply, ended);
-            reply(waited(jobs, *id, std::nullopt));
-        });
-    };
-    jobs.submit(std::move(order), done, ended);
+    const Submission submission = submit(jobs, std::move(order));
+    if (submission.kind == Submission::Kind::existing) return after_wait(jobs, submission.job.id, wait);
+    if (submission.kind != Submission::Kind::created || wait.count() == 0) return submitted(jobs, submission);
+    return waited(jobs, submission.job.id, wait);
 }
 
 /// Of a job that has ended nothing changes any more, so that its tag needs no look at its result.
@@ -172,51 +181,43 @@ Response list_jobs(JobService& jobs, const Call& call) {
     return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query)); });
 }
 
-void cancel_job(JobService& jobs, Executor& pool, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
-    if (auto refusal = refuse_stranger(jobs, call)) return reply(*std::move(refusal));
+Response cancel_job(JobService& jobs, const Call& call) {
+    if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    jobs.cancel(id, [&jobs, &pool, call, id, reply](const Outcome<CancelEffect>& outcome) {
-        pool.post([&jobs, call, id, reply, outcome] {
-            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
-            reply(job_response(jobs, call.request, id, 202));
-        });
-    });
+    const auto outcome = await<Outcome<CancelEffect>>([&](const Done<CancelEffect>& done) { jobs.cancel(id, done); });
+    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    return job_response(jobs, call.request, id, 202);
 }
 
-void delete_job(JobService& jobs, const Call& call, const Reply& reply) {
-    if (auto refusal = refuse_call(call.request)) return reply(*std::move(refusal));
-    if (auto refusal = refuse_stranger(jobs, call)) return reply(*std::move(refusal));
+Response delete_job(JobService& jobs, const Call& call) {
+    if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    jobs.remove(id, [id, reply](const Outcome<RemoveEffect>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return reply(store_failed(*fault));
-        Response response;
-        switch (std::get<RemoveEffect>(outcome)) {
-            case RemoveEffect::none: return reply(no_such_job(id));
-            case RemoveEffect::not_ended:
-                return reply(
-                    problem_response(409, "The job has not ended. Cancel it first: POST /v1/jobs/" + id + "/cancel."));
-            case RemoveEffect::in_batch:
-                return reply(problem_response(409, "The job belongs to a batch. Delete the batch as a whole."));
-            case RemoveEffect::removed: break;
-        }
-        response.status = 204;
-        reply(std::move(response));
-    });
+    const auto outcome = await<Outcome<RemoveEffect>>([&](const Done<RemoveEffect>& done) { jobs.remove(id, done); });
+    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    Response response;
+    switch (std::get<RemoveEffect>(outcome)) {
+        case RemoveEffect::none: return no_such_job(id);
+        case RemoveEffect::not_ended:
+            return problem_response(409, "The job has not ended. Cancel it first: POST /v1/jobs/" + id + "/cancel.");
+        case RemoveEffect::in_batch:
+            return problem_response(409, "The job belongs to a batch. Delete the batch as a whole.");
+        case RemoveEffect::removed: break;
+    }
+    response.status = 204;
+    return response;
 }
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, const api::JobLimits& limits) {
-    router.deferred("POST", "/v1/jobs", [&jobs, &pool, limits](const Call& call, const Reply& reply) {
-        post_job(jobs, pool, limits, call, reply);
-    });
-    router.pooled("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
-    router.pooled("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
-    router.deferred("DELETE", "/v1/jobs/{id}",
-                    [&](const Call& call, const Reply& reply) { delete_job(jobs, call, reply); });
-    router.deferred("POST", "/v1/jobs/{id}/cancel",
-                    [&](const Call& call, const Reply& reply) { cancel_job(jobs, pool, call, reply); });
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, const api::JobLimits& limits) {
+    router.add("POST", "/v1/jobs",
+               [&jobs, &places, limits](const Call& call) { return post_job(jobs, places, limits, call); });
+    router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
+    router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
+    router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });
+    router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, call); });
 }
 
 }  // namespace tunewright::server

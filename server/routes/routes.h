@@ -4,6 +4,8 @@
 #include <stop_token>
 
 #include "server/access/gate.h"
+#include "server/access/places.h"
+#include "server/access/turns.h"
 #include "server/executor.h"
 #include "server/http/router.h"
 #include "server/jobs/batch/batches.h"
@@ -13,11 +15,11 @@
 
 namespace tunewright::server {
 
-/// /v1/jobs and what is below it. Answers that come later are made on `pool`.
-void add_job_routes(http::Router& router, JobService& jobs, Executor& pool, const api::JobLimits& limits);
+/// /v1/jobs and what is below it. Who waits for a job takes one of `places`.
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, const api::JobLimits& limits);
 
-/// /v1/jobs/{id}/events: progress as server-sent events. `timer` beats their hearts.
-void add_event_routes(http::Router& router, JobService& jobs, Timer& timer);
+/// /v1/jobs/{id}/events: progress as server-sent events.
+void add_event_routes(http::Router& router, JobService& jobs, Places& places);
 
 /// /v1/jobs/{id}/result.csv
 void add_trace_routes(http::Router& router, JobService& jobs);
@@ -27,13 +29,13 @@ struct BatchLimits {
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch
 };
 
-/// /v1/batches and what is below it. Bodies are read and results are written on `lane`.
-void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Timer& timer, Executor& pool,
-                      Executor& lane, const BatchLimits& limits);
+/// /v1/batches and what is below it. Bodies are read and results are made on `lane`.
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
+                      const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed on `lane` while the client waits, with a deadline, or
-/// until `closing`.
-void add_synchronous_routes(http::Router& router, Executor& lane, Timer& timer, const std::stop_token& closing);
+/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed while the client waits, when its turn has come, with
+/// a deadline, or until `closing`.
+void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing);
 
 /// /v1/methods, /v1/examples, /openapi.json: the same for the life of the process.
 void add_description_routes(http::Router& router);

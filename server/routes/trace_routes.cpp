@@ -66,7 +66,7 @@ Response get_traces(JobService& jobs, const Call& call) {
 }  // namespace
 
 void add_trace_routes(http::Router& router, JobService& jobs) {
-    router.pooled("GET", "/v1/jobs/{id}/result.csv", [&](const Call& call) { return get_traces(jobs, call); });
+    router.add("GET", "/v1/jobs/{id}/result.csv", [&](const Call& call) { return get_traces(jobs, call); });
 }
 
 }  // namespace tunewright::server

@@ -1,137 +1,149 @@
 #include "server/jobs/batch/batches.h"
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "api/json/digest.h"
+#include "server/jobs/await.h"
 
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kGroup = 500;  ///< entries of one write
-constexpr std::size_t kFewOut = 3;   ///< groups on their way while more bytes are read
+constexpr std::size_t kGroup = 500;                   ///< entries of one write
+constexpr std::size_t kGroupBytes = 2 * 1024 * 1024;  ///< and bytes, but for an entry that has more by itself
+// A slow client may leave more time between two groups than the store waits.
 constexpr std::chrono::seconds kLifeSign{15};
 static_assert(kLifeSign * 3 <= JobStore::kReceiving);
 
-/// Brings the entries of one batch from its bytes into the store. Bytes are read on the lane, one piece after the
-/// other. Entries go to the store in groups; while kFewOut groups are on their way, no more bytes are asked for.
-class StoringReceiver : public BatchReceiver, public std::enable_shared_from_this<StoringReceiver> {
+/// One batch on its way in, from its bytes into the store. Used by the thread that receives the body; what it reads is
+/// worked on by the lane, one piece after the other. Entries go to the store in groups, of which few bytes are on their
+/// way at a time: a client that is faster than the store waits.
+class Reception {
 public:
-    StoringReceiver(JobStore& store, JobService& jobs, Timer& timer, Executor& lane, std::function<UnixMs()> now,
-                    BatchOrder order, std::function<void(BatchReceipt)> done);
+    Reception(JobStore& store, JobService& jobs, Executor& lane, const std::function<UnixMs()>& now,
+              const BatchOrder& order);
+    /// Waits for what the store still has to say.
+    ~Reception();
+    Reception(const Reception&) = delete;
+    Reception& operator=(const Reception&) = delete;
 
-    void feed(std::string bytes, std::function<void()> more) override;
-    void finish() override;
-    void abandon() override;
+    BatchReceipt run(const BatchBody& body);
 
 private:
-    // On the lane.
-    void read(const std::string& bytes, const std::function<void()>& more);
+    using Clock = std::chrono::steady_clock;
+
+    bool take(std::string_view piece);
+    void read(std::string_view bytes);
     void read_end();
     bool find_earlier();
-    void take(std::vector<api::BatchEntry> entries);
+    void keep(std::vector<api::BatchEntry> entries);
     void send();
     void open();
-    bool over();
-    void when_few_are_out(std::size_t few, std::function<void()> then);
-
-    // From any thread.
-    void sent(const Outcome<bool>& outcome, bool waiting);
-    void seal();
-    void sealed(const Outcome<Sealed>& outcome);
     void sign_of_life();
-    void end(BatchReceipt receipt);
-    void fail(BatchReceipt::Kind kind);
+    BatchReceipt seal();
+    void drop();
+
+    void add(std::vector<NewEntry> entries, std::size_t bytes, bool waiting);
+    void sent(const Outcome<bool>& outcome, std::size_t bytes, bool waiting);
+    bool wait_until(std::size_t bytes_out);
+    void fail(BatchReceipt receipt);
+    void fail(BatchReceipt::Kind kind) { fail({kind, {}, {}, {}}); }
+    bool failed() const;
 
     JobStore& store_;
     JobService& jobs_;
-    Timer& timer_;
     Executor& lane_;
-    const std::function<UnixMs()> now_;
-    const BatchOrder order_;
+    const std::function<UnixMs()>& now_;
+    const BatchOrder& order_;
     const std::string id_;
 
-    // Of the lane: one task of this batch at a time.
     api::BatchReader reader_;
     api::Sha256 digest_;
     std::vector<NewEntry> group_;
+    std::size_t group_bytes_ = 0;
     std::int64_t next_index_ = 0;
     std::optional<bool> earlier_;  ///< whether a batch has this key already
-
-    std::mutex mutex_;
-    std::function<void(BatchReceipt)> done_;  ///< empty after it was called
     bool opened_ = false;
-    std::size_t out_ = 0;  ///< groups that the store has not reported
-    std::size_t few_ = 0;
-    std::function<void()> then_;  ///< as soon as no more than `few_` are out
+    Clock::time_point last_sent_{};
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<BatchReceipt> failure_;  ///< the first
+    std::size_t out_ = 0;                  ///< calls that the store has not answered
+    std::size_t bytes_out_ = 0;            ///< of their entries
 };
 
-StoringReceiver::StoringReceiver(JobStore& store, JobService& jobs, Timer& timer, Executor& lane,
-                                 std::function<UnixMs()> now, BatchOrder order, std::function<void(BatchReceipt)> done)
-    : store_(store),
-      jobs_(jobs),
-      timer_(timer),
-      lane_(lane),
-      now_(std::move(now)),
-      order_(std::move(order)),
-      id_(new_job_id()),
-      reader_(order_.question),
-      done_(std::move(done)) {
+Reception::Reception(JobStore& store, JobService& jobs, Executor& lane, const std::function<UnixMs()>& now,
+                     const BatchOrder& order)
+    : store_(store), jobs_(jobs), lane_(lane), now_(now), order_(order), id_(new_job_id()), reader_(order.question) {
     digest_.update(order_.asked);
 }
 
-void StoringReceiver::feed(std::string bytes, std::function<void()> more) {
-    lane_.post(
-        [self = shared_from_this(), bytes = std::move(bytes), more = std::move(more)] { self->read(bytes, more); });
+Reception::~Reception() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return out_ == 0; });
 }
 
-void StoringReceiver::finish() {
-    lane_.post([self = shared_from_this()] { self->read_end(); });
+BatchReceipt Reception::run(const BatchBody& body) {
+    const bool whole = body([this](std::string_view piece) { return take(piece); });
+    if (!whole && !failed()) fail(BatchReceipt::Kind::abandoned);
+    if (whole && !lane_.run([this] { read_end(); })) fail(BatchReceipt::Kind::draining);
+    if (wait_until(0)) {
+        BatchReceipt receipt = seal();
+        if (receipt.kind == BatchReceipt::Kind::created || receipt.kind == BatchReceipt::Kind::existing ||
+            receipt.kind == BatchReceipt::Kind::conflict)
+            return receipt;
+        fail(std::move(receipt));
+    }
+    drop();
+    return *failure_;
 }
 
-void StoringReceiver::abandon() { fail(BatchReceipt::Kind::abandoned); }
+/// Has a piece of the body read on the lane, and waits until the store has kept up.
+bool Reception::take(std::string_view piece) {
+    if (failed()) return false;
+    if (jobs_.draining() || !lane_.run([&] { read(piece); })) return fail(BatchReceipt::Kind::draining), false;
+    if (opened_ && Clock::now() - last_sent_ > kLifeSign) sign_of_life();
+    return wait_until(kGroupBytes);
+}
 
-// A known key: the body is only compared with the earlier one's.
-bool StoringReceiver::find_earlier() {
+/// A known key: the body is only compared with the earlier one's.
+bool Reception::find_earlier() {
     if (order_.idempotency_key.empty() || earlier_) return true;
     try {
         earlier_ = store_.batch_of_key(order_.owner, order_.idempotency_key).has_value();
         return true;
     } catch (const StoreError& error) {
-        end({BatchReceipt::Kind::store_failed, {}, {}, {error.kind, error.what()}});
-        return false;
+        return fail({BatchReceipt::Kind::store_failed, {}, {}, {error.kind, error.what()}}), false;
     }
 }
 
-void StoringReceiver::read(const std::string& bytes, const std::function<void()>& more) {
-    if (over()) return;
-    if (jobs_.draining()) return fail(BatchReceipt::Kind::draining);
+void Reception::read(std::string_view bytes) {
     if (!find_earlier()) return;
     digest_.update(bytes);
-    if (earlier_.value_or(false)) return more();
+    if (earlier_.value_or(false)) return;
     std::vector<api::BatchEntry> entries;
     auto problem = reader_.feed(bytes, entries);
-    if (problem) return end({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
-    take(std::move(entries));
-    when_few_are_out(kFewOut, more);
+    if (problem) return fail({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
+    keep(std::move(entries));
 }
 
-void StoringReceiver::read_end() {
+void Reception::read_end() {
     if (!find_earlier()) return;
-    if (earlier_.value_or(false)) {
-        open();
-        return when_few_are_out(0, [self = shared_from_this()] { self->seal(); });
-    }
+    if (earlier_.value_or(false)) return open();
     std::vector<api::BatchEntry> entries;
     auto problem = reader_.finish(entries);
-    if (problem) return end({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
-    take(std::move(entries));
+    if (problem) return fail({BatchReceipt::Kind::refused, {}, *std::move(problem), {}});
+    keep(std::move(entries));
     send();
-    when_few_are_out(0, [self = shared_from_this()] { self->seal(); });
 }
 
-void StoringReceiver::take(std::vector<api::BatchEntry> entries) {
+void Reception::keep(std::vector<api::BatchEntry> entries) {
     for (api::BatchEntry& entry : entries) {
         NewEntry made;
         made.index = next_index_++;
@@ -144,135 +156,110 @@ void StoringReceiver::take(std::vector<api::BatchEntry> entries) {
         } else {
             made.error = api::to_json(std::get<api::Problem>(entry.job));
         }
+        group_bytes_ += made.request.size() + made.error.size();
         group_.push_back(std::move(made));
-        if (group_.size() >= kGroup) send();
+        if (group_.size() >= kGroup || group_bytes_ >= kGroupBytes) send();
     }
 }
 
-void StoringReceiver::send() {
+void Reception::send() {
     std::vector<NewEntry> group = std::exchange(group_, {});
-    if (group.empty() || over()) return;
+    const std::size_t bytes = std::exchange(group_bytes_, 0);
+    if (group.empty() || failed()) return;
     open();
     const auto waiting = static_cast<std::size_t>(
         std::ranges::count_if(group, [](const NewEntry& entry) { return entry.error.empty(); }));
     if (waiting > 0 && !jobs_.room_for_entries(waiting)) return fail(BatchReceipt::Kind::queue_full);
-    {
-        const std::lock_guard lock(mutex_);
-        if (!done_) return;
-        ++out_;
-    }
-    store_.add_entries(
-        id_, std::move(group), now_(),
-        [self = shared_from_this(), waiting](const Outcome<bool>& outcome) { self->sent(outcome, waiting > 0); });
+    add(std::move(group), bytes, waiting > 0);
 }
 
-bool StoringReceiver::over() {
-    const std::lock_guard lock(mutex_);
-    return !done_;
-}
-
-void StoringReceiver::open() {
+void Reception::open() {
+    if (std::exchange(opened_, true)) return;
     {
         const std::lock_guard lock(mutex_);
-        if (!done_ || std::exchange(opened_, true)) return;
         ++out_;
     }
+    last_sent_ = Clock::now();
     store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_()},
-                      [self = shared_from_this()](const Outcome<bool>& outcome) { self->sent(outcome, false); });
-    sign_of_life();
+                      [this](const Outcome<bool>& outcome) { sent(outcome, 0, false); });
 }
 
-void StoringReceiver::when_few_are_out(std::size_t few, std::function<void()> then) {
+void Reception::sign_of_life() { add({}, 0, false); }
+
+void Reception::add(std::vector<NewEntry> entries, std::size_t bytes, bool waiting) {
     {
         const std::lock_guard lock(mutex_);
-        if (!done_) return;
-        if (out_ > few) {
-            few_ = few;
-            then_ = std::move(then);
-            return;
-        }
+        ++out_;
+        bytes_out_ += bytes;
     }
-    then();
+    last_sent_ = Clock::now();
+    store_.add_entries(id_, std::move(entries), now_(),
+                       [this, bytes, waiting](const Outcome<bool>& outcome) { sent(outcome, bytes, waiting); });
 }
 
-void StoringReceiver::sent(const Outcome<bool>& outcome, bool waiting) {
+/// From any thread. The last that is done with this: it may be gone as soon as the lock is free.
+void Reception::sent(const Outcome<bool>& outcome, std::size_t bytes, bool waiting) {
     if (const auto* fault = std::get_if<StoreFault>(&outcome))
-        return end({BatchReceipt::Kind::store_failed, {}, {}, *fault});
-    if (!std::get<bool>(outcome)) return fail(BatchReceipt::Kind::cancelled);
-    if (waiting) jobs_.work_arrived();
-    std::function<void()> then;
-    {
-        const std::lock_guard lock(mutex_);
-        --out_;
-        if (done_ && out_ <= few_) then = std::exchange(then_, {});
-    }
-    if (then) then();
+        fail({BatchReceipt::Kind::store_failed, {}, {}, *fault});
+    else if (!std::get<bool>(outcome))
+        fail(BatchReceipt::Kind::cancelled);
+    else if (waiting)
+        jobs_.work_arrived();
+    const std::lock_guard lock(mutex_);
+    --out_;
+    bytes_out_ -= bytes;
+    changed_.notify_all();
 }
 
-void StoringReceiver::seal() {
-    lane_.post([self = shared_from_this()] {
-        self->store_.seal_batch({self->id_, self->digest_.hex(), self->order_.idempotency_key, self->reader_.name()},
-                                [self](const Outcome<Sealed>& outcome) { self->sealed(outcome); });
+/// False where the batch has failed; 0 waits for every call of the store.
+bool Reception::wait_until(std::size_t bytes_out) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return failure_ || (bytes_out > 0 ? bytes_out_ <= bytes_out : out_ == 0); });
+    return !failure_;
+}
+
+BatchReceipt Reception::seal() {
+    const auto outcome = await<Outcome<Sealed>>([this](const Done<Sealed>& done) {
+        store_.seal_batch({id_, digest_.hex(), order_.idempotency_key, reader_.name()}, done);
     });
-}
-
-void StoringReceiver::sealed(const Outcome<Sealed>& outcome) {
     if (const auto* fault = std::get_if<StoreFault>(&outcome))
-        return end({BatchReceipt::Kind::store_failed, {}, {}, *fault});
+        return {BatchReceipt::Kind::store_failed, {}, {}, *fault};
     const auto& what = std::get<Sealed>(outcome);
     switch (what.kind) {
-        case Sealed::Kind::none: return fail(BatchReceipt::Kind::cancelled);
-        case Sealed::Kind::conflict: return end({BatchReceipt::Kind::conflict, {}, {}, {}});
-        case Sealed::Kind::existing: return end({BatchReceipt::Kind::existing, what.id, {}, {}});
+        case Sealed::Kind::none: return {BatchReceipt::Kind::cancelled, {}, {}, {}};
+        case Sealed::Kind::conflict: return {BatchReceipt::Kind::conflict, {}, {}, {}};
+        case Sealed::Kind::existing: return {BatchReceipt::Kind::existing, what.id, {}, {}};
         case Sealed::Kind::sealed: break;
     }
     // The earlier one was deleted while this body was compared with it.
-    if (next_index_ == 0) return end({BatchReceipt::Kind::store_failed, {}, {}, {}});
-    end({BatchReceipt::Kind::created, what.id, {}, {}});
+    if (next_index_ == 0) return {BatchReceipt::Kind::store_failed, {}, {}, {}};
+    return {BatchReceipt::Kind::created, what.id, {}, {}};
 }
 
-// A slow client may leave more time between two groups than the store waits.
-void StoringReceiver::sign_of_life() {
-    timer_.after(kLifeSign, [weak = weak_from_this()] {
-        const auto self = weak.lock();
-        if (!self) return;
-        {
-            const std::lock_guard lock(self->mutex_);
-            if (!self->done_) return;
-            ++self->out_;
-        }
-        self->store_.add_entries(self->id_, {}, self->now_(),
-                                 [self](const Outcome<bool>& outcome) { self->sent(outcome, false); });
-        self->sign_of_life();
-    });
+/// Returns when nothing of it is kept; a store that cannot drop it now does so later, for it hears of it no more.
+void Reception::drop() {
+    if (!opened_) return;
+    await<Outcome<bool>>([this](const Done<bool>& done) { store_.drop_batch(id_, done); });
 }
 
-void StoringReceiver::fail(BatchReceipt::Kind kind) { end({kind, {}, {}, {}}); }
+void Reception::fail(BatchReceipt receipt) {
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(receipt);
+    changed_.notify_all();
+}
 
-void StoringReceiver::end(BatchReceipt receipt) {
-    std::function<void(BatchReceipt)> done;
-    std::function<void()> then;
-    bool drop = false;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!done_) return;
-        done = std::exchange(done_, {});
-        then = std::exchange(then_, {});
-        drop = opened_ && receipt.kind != BatchReceipt::Kind::created && receipt.kind != BatchReceipt::Kind::existing &&
-               receipt.kind != BatchReceipt::Kind::conflict;
-    }
-    if (!drop) return done(std::move(receipt));
-    // Told when nothing of it is kept; a store that cannot drop it now does so later, for it hears of it no more.
-    store_.drop_batch(id_, [done, receipt](const Outcome<bool>&) { done(receipt); });
+bool Reception::failed() const {
+    const std::lock_guard lock(mutex_);
+    return failure_.has_value();
 }
 
 }  // namespace
 
-Batches::Batches(JobStore& store, JobService& jobs, Timer& timer, Executor& lane, std::function<UnixMs()> now)
-    : store_(store), jobs_(jobs), timer_(timer), lane_(lane), now_(std::move(now)) {}
+Batches::Batches(JobStore& store, JobService& jobs, Executor& lane, std::function<UnixMs()> now)
+    : store_(store), jobs_(jobs), lane_(lane), now_(std::move(now)) {}
 
-std::shared_ptr<BatchReceiver> Batches::receive(BatchOrder order, std::function<void(BatchReceipt)> done) {
-    return std::make_shared<StoringReceiver>(store_, jobs_, timer_, lane_, now_, std::move(order), std::move(done));
+BatchReceipt Batches::receive(BatchOrder order, const BatchBody& body) {
+    return Reception(store_, jobs_, lane_, now_, order).run(body);
 }
 
 void Batches::cancel(const std::string& id, Done<bool> done) {

@@ -2,15 +2,14 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/batch/reader.h"
 #include "server/executor.h"
 #include "server/jobs/service.h"
-#include "server/jobs/timer.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {
@@ -42,26 +41,19 @@ struct BatchReceipt {
     StoreFault fault;
 };
 
-/// One batch on its way in. Its entries may run while others are still coming; a batch that does not come to its end
-/// leaves nothing behind.
-class BatchReceiver {
-public:
-    virtual ~BatchReceiver() = default;
-    /// The next bytes. `more` is called once, from any thread, when further ones are welcome; never after the receipt.
-    virtual void feed(std::string bytes, std::function<void()> more) = 0;
-    /// All bytes have come.
-    virtual void finish() = 0;
-    /// No more bytes will come.
-    virtual void abandon() = 0;
-};
+/// Gives a body piece after piece to whom it is passed, until that returns false; false where it does not come to its
+/// end.
+using BatchBody = std::function<bool(const std::function<bool(std::string_view)>&)>;
 
 class Batches {
 public:
     /// All must outlive it. What takes long runs on `lane`.
-    Batches(JobStore& store, JobService& jobs, Timer& timer, Executor& lane, std::function<UnixMs()> now);
+    Batches(JobStore& store, JobService& jobs, Executor& lane, std::function<UnixMs()> now);
 
-    /// `done` runs once, from any thread: when the whole batch is durable, or as soon as it is refused.
-    std::shared_ptr<BatchReceiver> receive(BatchOrder order, std::function<void(BatchReceipt)> done);
+    /// Reads the body and puts its entries into the store as they come; returns when the whole batch is durable, or as
+    /// soon as it is refused. Entries may run while others are still coming; a batch that does not come to its end
+    /// leaves nothing behind.
+    BatchReceipt receive(BatchOrder order, const BatchBody& body);
 
     /// Reads throw StoreError.
     std::optional<BatchSummary> find(const std::string& id) { return store_.find_batch(id); }
@@ -78,7 +70,6 @@ public:
 private:
     JobStore& store_;
     JobService& jobs_;
-    Timer& timer_;
     Executor& lane_;
     std::function<UnixMs()> now_;
 };

@@ -1,9 +1,8 @@
-#include "server/http/body/body_source.h"
-
+// Bodies that are read as they arrive, or gathered.
 #include <gmock/gmock.h>
-#include <cstdint>
 
 #include <atomic>
+#include <cstdint>
 
 #include "tests/server/http/loopback.h"
 
@@ -11,48 +10,28 @@ namespace tunewright::server::http {
 namespace {
 
 using namespace std::chrono_literals;
-using State = BodySource::State;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 bool at_batches(const Request& request) { return request.target == "/batches"; }
 
-/// Reads to the end and answers with what came: "STATE SIZE HASH".
-class Reader : public std::enable_shared_from_this<Reader> {
-public:
-    Reader(std::shared_ptr<BodySource> source, Reply reply) : source_(std::move(source)), reply_(std::move(reply)) {}
-
-    void next() {
-        source_->read([self = shared_from_this()](BodySource::Piece piece) { self->take(std::move(piece)); });
-    }
-
-private:
-    void take(BodySource::Piece piece) {
-        if (piece.state == State::more) {
-            EXPECT_GT(piece.bytes.size(), 0U);
-            EXPECT_LE(piece.bytes.size(), 256U * 1024);
-            text_ += piece.bytes;
-            return next();
-        }
-        Response response;
-        response.body = text_.size() > 100 ? std::to_string(std::hash<std::string>{}(text_)) : text_;
-        response.body += piece.state == State::end ? " end" : " broken";
-        reply_(std::move(response));
-    }
-
-    std::shared_ptr<BodySource> source_;
-    Reply reply_;
-    std::string text_;
-};
-
-void read_all(Request request, Reply reply) {
-    if (!request.source) {
-        Response response;
+/// Reads to the end and answers with what came, or with a sum of it where that is long.
+Response read_all(const Request& request) {
+    Response response;
+    if (!request.read_body) {
         response.body = request.body + " whole";
-        return reply(std::move(response));
+        return response;
     }
-    std::make_shared<Reader>(request.source, std::move(reply))->next();
+    std::string text;
+    const bool whole = request.read_body([&](std::string_view piece) {
+        EXPECT_GT(piece.size(), 0U);
+        text += piece;
+        return true;
+    });
+    response.body = text.size() > 100 ? std::to_string(std::hash<std::string>{}(text)) : text;
+    response.body += whole ? " end" : " broken";
+    return response;
 }
 
 std::string post(const std::string& fields, const std::string& target = "/batches") {
@@ -85,7 +64,7 @@ TEST(BodySource, CarriesMoreThanItHoldsAndLosesNothing) {
     for (std::int64_t i = 0; body.size() < 20'000'000; i++) body += std::to_string(i * 7919) + "\n";
     const std::string answer = std::to_string(std::hash<std::string>{}(body)) + " end";
     Limits limits;
-    limits.buffered = 1'000'000;
+    limits.bodies = 1'000'000;
     Loopback server(read_all, limits, at_batches);
     Client client(server);
     client.send(post("Content-Length: " + std::to_string(body.size()) + "\r\n"));
@@ -126,41 +105,40 @@ TEST(BodySource, RefusesWhatIsTooLongOrMalformedAndCloses) {
     EXPECT_EQ(answer(post(kChunked, "/other") + "0\r\n\r\n"), "HTTP/1.1 411");
 }
 
+/// Whether the whole body came, as the handler saw it.
+std::function<Response(Request)> telling(std::promise<bool>& whole) {
+    return [&whole](const Request& request) {
+        whole.set_value(request.read_body([](std::string_view) { return true; }));
+        return Response();
+    };
+}
+
 TEST(BodySource, TellsTheReaderOfARefusal) {
-    std::promise<State> seen;
-    Loopback server([&](Request request,
-                        Reply) { request.source->read([&](BodySource::Piece piece) { seen.set_value(piece.state); }); },
-                    {}, at_batches);
+    std::promise<bool> whole;
+    Loopback server(telling(whole), {}, at_batches);
     Client client(server);
     client.send(post(kChunked) + "no size\r\n");
     EXPECT_THAT(client.read_all(), StartsWith("HTTP/1.1 400"));
-    EXPECT_EQ(seen.get_future().get(), State::refused);
+    EXPECT_FALSE(whole.get_future().get());
 }
 
-TEST(BodySource, TellsAReaderThatTheClientLeftEvenLater) {
-    std::promise<std::shared_ptr<BodySource>> given;
-    Loopback server([&](Request request, Reply) { given.set_value(request.source); }, {}, at_batches);
-    Client client(server);
-    client.send(post("Content-Length: 100\r\n") + "part");
-    const auto source = given.get_future().get();
-    const auto read = [&] {
-        std::promise<BodySource::Piece> piece;
-        source->read([&](BodySource::Piece got) { piece.set_value(std::move(got)); });
-        return piece.get_future().get();
-    };
-    EXPECT_EQ(read().bytes, "part");
-    client.close();
-    EXPECT_EQ(read().state, State::gone);
-    EXPECT_EQ(read().state, State::gone);
-    server.stop();
-    EXPECT_EQ(read().state, State::gone);
+TEST(BodySource, TellsAReaderThatTheClientLeft) {
+    std::promise<bool> whole;
+    Loopback server(telling(whole), {}, at_batches);
+    {
+        Client client(server);
+        client.send(post("Content-Length: 100\r\n") + "part");
+    }
+    EXPECT_FALSE(whole.get_future().get());
 }
 
 TEST(BodySource, TakesNothingFromTheClientWhileNobodyReads) {
-    std::promise<std::pair<std::shared_ptr<BodySource>, Reply>> given;
+    std::promise<void> asked, go;
     Loopback server(
-        [&](Request request, Reply reply) {
-            given.set_value({request.source, std::move(reply)});
+        [&, may_read = go.get_future().share()](const Request& request) {
+            asked.set_value();
+            may_read.wait();
+            return read_all(request);
         },
         {}, at_batches);
     Client client(server);
@@ -170,11 +148,11 @@ TEST(BodySource, TakesNothingFromTheClientWhileNobodyReads) {
         client.send(std::string(60'000'000, 'x'));
         sent = true;
     });
-    auto [source, reply] = given.get_future().get();
-    // Far more than the kernel's buffers of both sides would take if the loop read along.
+    asked.get_future().wait();
+    // Far more than the kernel's buffers of both sides would take if the service read along.
     std::this_thread::sleep_for(300ms);
     EXPECT_FALSE(sent);
-    std::make_shared<Reader>(source, reply)->next();
+    go.set_value();
     EXPECT_THAT(client.read_to(" end"), EndsWith(" end"));
     sender.join();
     EXPECT_TRUE(sent);
@@ -190,8 +168,7 @@ TEST(BodySource, AsksForTheBodyWhenTheHandlerReads) {
 }
 
 TEST(BodySource, AnAnswerBeforeTheEndClosesAndIsNotLost) {
-    Loopback server([](const Request&, const Reply& reply) { reply(problem_response(401, "No key was given.")); }, {},
-                    at_batches);
+    Loopback server([](const Request&) { return problem_response(401, "No key was given."); }, {}, at_batches);
     Client eager(server);
     eager.send(post("Content-Length: 3000000\r\n"));
     eager.send(std::string(3'000'000, 'x'));
@@ -206,12 +183,10 @@ TEST(BodySource, AnAnswerBeforeTheEndClosesAndIsNotLost) {
 TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
     Limits limits;
     limits.pace_time = 200ms;
-    limits.handling = 20s;
-    std::promise<std::pair<std::shared_ptr<BodySource>, Reply>> given;
     Loopback server(
-        [&](Request request, Reply reply) {
-            if (request.has_header("Slow")) return given.set_value({request.source, std::move(reply)});
-            read_all(std::move(request), std::move(reply));
+        [&](const Request& request) {
+            if (request.has_header("Slow")) std::this_thread::sleep_for(600ms);
+            return read_all(request);
         },
         limits, at_batches);
     Client patient(server);
@@ -220,28 +195,57 @@ TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
     trickle.send(post("Content-Length: 100\r\n") + "x");
     EXPECT_THAT(trickle.read_all(), StartsWith("HTTP/1.1 408"));
     // By now the other one has waited longer than that, but for us.
-    auto [source, reply] = given.get_future().get();
     patient.send("hello");
-    std::make_shared<Reader>(source, reply)->next();
     EXPECT_THAT(patient.read_to(" end"), EndsWith("hello end"));
 }
 
 TEST(BodySource, EndsWithTheService) {
-    std::promise<State> seen;
+    std::promise<bool> whole;
     Limits limits;
-    limits.stopping = 1ms;
-    std::promise<void> reading;
-    Loopback server(
-        [&](Request request, Reply) {
-            request.source->read([&](BodySource::Piece piece) { seen.set_value(piece.state); });
-            reading.set_value();
-        },
-        limits, at_batches);
+    limits.stopping = limits.farewell = 1ms;
+    Loopback server(telling(whole), limits, at_batches);
     Client client(server);
-    client.send(post("Content-Length: 5\r\n"));
-    reading.get_future().wait();
+    client.send(post("Content-Length: 5\r\nExpect: 100-continue\r\n"));
+    client.read_to("100 Continue\r\n\r\n");
     server.stop();
-    EXPECT_EQ(seen.get_future().get(), State::gone);
+    EXPECT_FALSE(whole.get_future().get());
+}
+
+TEST(BodySource, AGatheredBodyThatDoesNotComeIs408) {
+    Limits limits;
+    limits.body_time = 100ms;
+    Loopback server(read_all, limits);
+    Client client(server);
+    client.send(post("Content-Length: 5\r\n") + "hell");
+    EXPECT_THAT(client.read_all(), StartsWith("HTTP/1.1 408"));
+}
+
+TEST(BodySource, BodiesBeyondTheBudgetAreRefusedBeforeTheyAreRead) {
+    Limits limits;
+    limits.bodies = 1'000'000;
+    limits.room = 50ms;
+    std::promise<void> go;
+    Loopback server(
+        [may_go = go.get_future().share()](const Request& request) {
+            if (!request.body.empty()) may_go.wait();
+            return read_all(request);
+        },
+        limits);
+    Client first(server), second(server), small(server);
+    first.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
+    second.send(post("Content-Length: 700000\r\nExpect: 100-continue\r\n"));
+    const std::string refused = second.read_all();
+    EXPECT_THAT(refused, StartsWith("HTTP/1.1 503"));
+    EXPECT_THAT(refused, HasSubstr("Retry-After: "));
+    // What has no body needs no room.
+    small.send(get("/"));
+    EXPECT_THAT(small.read_to("whole"), EndsWith("whole"));
+    go.set_value();
+    EXPECT_THAT(first.read_to("whole"), EndsWith("whole"));
+    // An answered request has given its room back.
+    Client third(server);
+    third.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
+    EXPECT_THAT(third.read_to("whole"), EndsWith("whole"));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
+// What clients may hold together: unsent bytes, connections.
 #include <gmock/gmock.h>
 
 #include <array>
-#include <mutex>
 #include <vector>
 
-#include "server/http/body/body_stream.h"
+#include "server/http/connection.h"
 #include "tests/server/http/loopback.h"
 
 namespace tunewright::server::http {
@@ -15,28 +15,16 @@ using testing::EndsWith;
 constexpr std::size_t kClients = 6;
 constexpr std::size_t kEach = 24 * 1024 * 1024;
 
+Response answer(const Request& request) {
+    Response response;
+    response.body = request.target == "/large" ? std::string(kEach, 'x') + "end" : "small";
+    return response;
+}
+
 TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
-    std::array<std::shared_ptr<BodyStream>, kClients> streams;
-    std::promise<void> first_left;
-    for (auto& stream : streams) {
-        stream = std::make_shared<BodyStream>();
-        stream->write(std::string(kEach, 'x') + "end");
-        stream->end();
-    }
-    streams.front()->on_gone([&] { first_left.set_value(); });
-    std::size_t next = 0;
     Limits limits;
     limits.unsent = 50 * 1024 * 1024;
-    Loopback server(
-        [&](const Request& request, const Reply& reply) {
-            Response response;
-            if (request.target == "/large")
-                response.stream = streams.at(next++);
-            else
-                response.body = "small";
-            reply(std::move(response));
-        },
-        limits);
+    Loopback server(answer, limits);
     std::array<std::unique_ptr<Client>, kClients> clients;
     for (auto& client : clients) {
         client = std::make_unique<Client>(server);
@@ -44,54 +32,43 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
         // Their order is that of the answers' beginnings.
         client->read_to("\r\n\r\n");
     }
-    first_left.get_future().wait();
+    std::this_thread::sleep_for(2 * Connection::kLook);
     EXPECT_LT(clients.front()->read_all().size(), kEach);
-    EXPECT_THAT(clients.back()->read_to("end\r\n0\r\n\r\n"), EndsWith("end\r\n0\r\n\r\n"));
+    EXPECT_THAT(clients.back()->read_to("end"), EndsWith("end"));
     Client other(server);
     other.send(get("/small"));
     EXPECT_THAT(other.read_to("small"), EndsWith("small"));
 }
 
-TEST(Room, IsMadeByTheLongestIdleConnectionThenByTheOldestEventStream) {
-    std::mutex mutex;
-    std::vector<std::shared_ptr<BodyStream>> streams;
-    Limits limits;
-    limits.connections = 3;
-    Loopback server(
-        [&](const Request& request, const Reply& reply) {
-            Response response;
-            if (request.target == "/events") {
-                const std::lock_guard lock(mutex);
-                streams.push_back(std::make_shared<BodyStream>());
-                response.stream = streams.back();
-                response.set("Content-Type", "text/event-stream");
-            } else {
-                response.body = "done";
-            }
-            reply(std::move(response));
-        },
-        limits);
-    const auto open = [&](const std::string& target, std::string_view end) {
-        auto client = std::make_unique<Client>(server);
-        client->send(get(target));
-        EXPECT_THAT(client->read_to(end), EndsWith(std::string(end)));
-        return client;
-    };
-    const auto first = open("/events", "\r\n\r\n");
-    const auto second = open("/events", "\r\n\r\n");
-    const auto idle = open("/", "done");
-    const auto third = open("/events", "\r\n\r\n");
-    EXPECT_EQ(idle->read_all(), "");
-    const auto other = open("/", "done");
-    EXPECT_EQ(first->read_all(), "0\r\n\r\n");
-    {
-        const std::lock_guard lock(mutex);
-        EXPECT_FALSE(streams[0]->write("x"));
-        EXPECT_TRUE(streams[1]->write("x"));
-        EXPECT_TRUE(streams[2]->write("x"));
+/// Connections that have sent one byte of a request.
+std::vector<std::unique_ptr<Client>> begun(const Loopback& server, std::size_t count, std::uint32_t from) {
+    std::vector<std::unique_ptr<Client>> clients;
+    for (std::size_t i = 0; i < count; i++) {
+        clients.push_back(std::make_unique<Client>(server, 0, from));
+        clients.back()->send("G");
     }
-    EXPECT_EQ(second->read_to("x\r\n"), "1\r\nx\r\n");
-    EXPECT_EQ(third->read_to("x\r\n"), "1\r\nx\r\n");
+    return clients;
+}
+
+bool is_served(Client& client) {
+    client.send(get("/small"));
+    return client.read_to("small").ends_with("small");
+}
+
+TEST(Connections, UnfinishedHeadsOfWhoeverHasTheMostGiveWay) {
+    Limits limits;
+    limits.connections = 20;
+    Loopback server(answer, limits);
+    Client idle(server, 0, 3);
+    EXPECT_TRUE(is_served(idle));
+    // Three times as many as there is room for: those of this address push each other out, and nobody else.
+    const auto crowd = begun(server, 60, 2);
+    for (int i = 0; i < 20; i++) {
+        Client other(server, 0, 4);
+        EXPECT_TRUE(is_served(other));
+    }
+    EXPECT_TRUE(is_served(idle));
+    EXPECT_EQ(crowd.front()->read_all(), "");
 }
 
 }  // namespace

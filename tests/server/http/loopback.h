@@ -6,8 +6,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <future>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -21,13 +26,9 @@ namespace tunewright::server::http {
 /// Serves from its own thread until it is stopped or destroyed.
 class Loopback {
 public:
-    explicit Loopback(Handler handler, Limits limits = {}, StreamsBody streams = {})
-        : server_(
-              limits, std::move(handler),
-              [](int status, const std::string& detail, const std::string&) {
-                  return problem_response(status, detail);
-              },
-              std::move(streams)),
+    explicit Loopback(std::function<Response(Request)> handle, Limits limits = {},
+                      std::function<bool(const Request&)> streams = {})
+        : server_(limits, application(std::move(handle), std::move(streams))),
           port_(server_.listen("127.0.0.1", 0)),
           loop_([this] { server_.run(); }) {}
     ~Loopback() { stop(); }
@@ -36,12 +37,24 @@ public:
 
     int port() const { return port_; }
     void ask_to_stop() { server_.stop(); }
+    bool idle_within(std::chrono::milliseconds patience) { return server_.idle_within(patience); }
     void stop() {
         server_.stop();
         if (loop_.joinable()) loop_.join();
     }
 
 private:
+    static Application application(std::function<Response(Request)> handle,
+                                   std::function<bool(const Request&)> streams) {
+        Application made;
+        made.handle = std::move(handle);
+        made.streams = std::move(streams);
+        made.refuse = [](int status, const std::string& detail, const std::string&) {
+            return problem_response(status, detail);
+        };
+        return made;
+    }
+
     Server server_;
     int port_;
     std::jthread loop_;
@@ -50,13 +63,17 @@ private:
 /// A blocking socket. Each wait ends after 20 s: a test that hangs fails instead.
 class Client {
 public:
-    explicit Client(const Loopback& server, int receive_buffer = 0) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    /// `from`: the last byte of the loopback address that it calls from.
+    explicit Client(const Loopback& server, int receive_buffer = 0, std::uint32_t from = 1)
+        : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
         timeval patience{20, 0};
         ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
         ::setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
         if (receive_buffer > 0) ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
         sockaddr_in address{};
         address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl((INADDR_LOOPBACK & ~255U) | from);
+        if (::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::abort();
         address.sin_port = htons(static_cast<std::uint16_t>(server.port()));
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::abort();
@@ -105,6 +122,53 @@ private:
 
     int fd_;
     std::string pending_;
+};
+
+/// The body of an answer as the test dictates it: what the test writes goes out when the client takes it.
+class Dictation {
+public:
+    void write(std::string piece) { put(std::move(piece), End::no); }
+    void end() { put({}, End::whole); }
+    void break_off() { put({}, End::broken); }
+
+    BodyProducer producer() {
+        return [this](BodyWriter& out) { return dictate(out); };
+    }
+    /// Waits until the producer has ended; true where that was because the client had gone.
+    bool client_left() { return left_.get_future().get(); }
+
+private:
+    enum class End { no, whole, broken };
+
+    void put(std::string piece, End end) {
+        const std::lock_guard lock(mutex_);
+        written_ += piece;
+        end_ = end;
+        changed_.notify_all();
+    }
+
+    bool dictate(BodyWriter& out) {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            changed_.wait_for(lock, std::chrono::milliseconds(20),
+                              [this] { return !written_.empty() || end_ != End::no; });
+            const std::string piece = std::exchange(written_, {});
+            const End end = end_;
+            lock.unlock();
+            const bool gone = out.gone() || !out.write(piece);
+            if (gone || end != End::no) {
+                left_.set_value(gone);
+                return !gone && end == End::whole;
+            }
+            lock.lock();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::string written_;
+    End end_ = End::no;
+    std::promise<bool> left_;
 };
 
 inline std::string get(const std::string& target, const std::string& fields = "") {

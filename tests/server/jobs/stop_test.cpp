@@ -13,10 +13,10 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-void answer_done(const Request&, const Reply& reply) {
+Response answer_done(const Request&) {
     Response response;
     response.body = "done";
-    reply(std::move(response));
+    return response;
 }
 
 TEST(Stop, UnderLoadCutsNoRequestOff) {
@@ -47,15 +47,21 @@ TEST(Stop, UnderLoadCutsNoRequestOff) {
 }
 
 TEST(Stop, WaitsForAnAnswerThatIsBeingMade) {
-    std::promise<Reply> asked;
+    std::promise<void> asked, go;
     Limits limits;
     limits.stopping = 20s;
-    Loopback server([&](const Request&, Reply reply) { asked.set_value(std::move(reply)); }, limits);
+    Loopback server(
+        [&, may_go = go.get_future().share()](const Request& request) {
+            asked.set_value();
+            may_go.wait();
+            return answer_done(request);
+        },
+        limits);
     Client client(server);
     client.send(get("/"));
-    const Reply reply = asked.get_future().get();
+    asked.get_future().wait();
     server.ask_to_stop();
-    answer_done({}, reply);
+    go.set_value();
     const std::string answer = client.read_all();
     EXPECT_THAT(answer, EndsWith("done"));
     EXPECT_THAT(answer, HasSubstr("Connection: close"));
@@ -77,7 +83,13 @@ TEST(Stop, AnswersARequestThatHasOnlyHalfArrived) {
 TEST(Stop, DoesNotWaitForWhoNeverEnds) {
     Limits limits;
     limits.stopping = 300ms;
-    Loopback server([](const Request&, const Reply&) {}, limits);
+    std::promise<void> go;
+    Loopback server(
+        [may_go = go.get_future().share()](const Request& request) {
+            may_go.wait();
+            return answer_done(request);
+        },
+        limits);
     Client waiting(server);
     waiting.send(get("/"));
     Client half(server);
@@ -88,6 +100,10 @@ TEST(Stop, DoesNotWaitForWhoNeverEnds) {
     EXPECT_EQ(waiting.read_all(), "");
     EXPECT_EQ(half.read_all(), "");
     EXPECT_EQ(silent.read_all(), "");
+    // Whoever stops the port learns that somebody is left on it.
+    EXPECT_FALSE(server.idle_within(1ms));
+    go.set_value();
+    EXPECT_TRUE(server.idle_within(20s));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "server/http/body/compression.h"
+#include "server/http/compression.h"
 
 #include <zlib.h>
 
@@ -6,7 +6,6 @@
 #include <array>
 #include <stdexcept>
 
-#include "server/http/body/body_stream.h"
 #include "server/http/negotiation.h"
 
 namespace tunewright::server::http {
@@ -20,6 +19,25 @@ std::string* header_of(Response& response, std::string_view name) {
     const auto found =
         std::ranges::find(response.headers, name, [](const auto& header) -> std::string_view { return header.first; });
     return found == response.headers.end() ? nullptr : &found->second;
+}
+
+class GzipWriter : public BodyWriter {
+public:
+    explicit GzipWriter(BodyWriter& out) : out_(out) {}
+    bool write(std::string_view piece) override { return piece.empty() || out_.write(packer_.piece(piece)); }
+    bool gone() const override { return out_.gone(); }
+    bool end() { return out_.write(packer_.end()); }
+
+private:
+    BodyWriter& out_;
+    GzipStream packer_;
+};
+
+BodyProducer compressed(BodyProducer producer) {
+    return [producer = std::move(producer)](BodyWriter& out) {
+        GzipWriter packed(out);
+        return producer(packed) && packed.end();
+    };
 }
 
 }  // namespace
@@ -86,7 +104,7 @@ void compress(Response& response, bool client_takes_gzip) {
     if (!client_takes_gzip) return;
     if (std::string* tag = header_of(response, "ETag"); tag != nullptr && !tag->starts_with("W/")) tag->insert(0, "W/");
     if (response.stream) {
-        response.stream->compress();
+        response.stream = compressed(std::move(response.stream));
         response.set("Content-Encoding", "gzip");
     } else if (response.body.size() >= kWorthCompressing) {
         response.body = gzip(response.body);

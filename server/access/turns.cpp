@@ -1,0 +1,68 @@
+#include "server/access/turns.h"
+
+#include <algorithm>
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{100};  // for clients that have gone
+
+}  // namespace
+
+Turns::Wait Turns::take(const std::string& client, Clock::time_point deadline, const std::function<bool()>& left) {
+    std::unique_lock lock(mutex_);
+    if (free_ > 0 && waiting_ == 0) {
+        free_--;
+        return Wait::granted;
+    }
+    const auto own = queues_.find(client);
+    if (waiting_ >= most_waiting_ || (own != queues_.end() && 2 * own->second.size() >= most_waiting_))
+        return Wait::full;
+    Ticket ticket;
+    waiting_++;
+    if (own == queues_.end()) order_.push_back(client);
+    queues_[client].push_back(&ticket);
+    while (!ticket.called.wait_for(lock, kLook, [&] { return ticket.granted; })) {
+        const bool gone = left && left();
+        if (!gone && Clock::now() < deadline) continue;
+        withdraw(client, ticket);
+        return gone ? Wait::left : Wait::late;
+    }
+    return Wait::granted;
+}
+
+void Turns::give_back() {
+    const std::lock_guard lock(mutex_);
+    free_++;
+    grant();
+}
+
+/// Gives what is free to the client whose turn it is.
+void Turns::grant() {
+    while (free_ > 0 && !order_.empty()) {
+        const std::string client = std::move(order_.front());
+        order_.pop_front();
+        const auto queue = queues_.find(client);
+        Ticket& next = *queue->second.front();
+        queue->second.pop_front();
+        if (queue->second.empty())
+            queues_.erase(queue);
+        else
+            order_.push_back(client);
+        waiting_--;
+        free_--;
+        next.granted = true;
+        next.called.notify_one();
+    }
+}
+
+void Turns::withdraw(const std::string& client, Ticket& ticket) {
+    const auto queue = queues_.find(client);
+    std::erase(queue->second, &ticket);
+    waiting_--;
+    if (!queue->second.empty()) return;
+    queues_.erase(queue);
+    order_.remove(client);
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,38 @@
+// Threads that come when there is work and go when there is none for a while.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+
+namespace tunewright::server::http {
+
+class Crew {
+public:
+    explicit Crew(std::size_t most) : most_(most) {}
+    ~Crew() { stop_within(std::chrono::hours(24)); }
+    Crew(const Crew&) = delete;
+    Crew& operator=(const Crew&) = delete;
+
+    /// Ends the threads when they have done what was posted; false where that takes longer.
+    bool stop_within(std::chrono::milliseconds patience);
+
+    /// Runs the task on a thread of its own, or when one of `most` is free. What it throws is logged.
+    void post(std::function<void()> task);
+
+private:
+    void work();
+
+    const std::size_t most_;
+    std::mutex mutex_;
+    std::condition_variable posted_;
+    std::condition_variable left_;
+    std::deque<std::function<void()>> tasks_;
+    std::size_t threads_ = 0;
+    std::size_t idle_ = 0;
+    bool stopping_ = false;
+};
+
+}  // namespace tunewright::server::http

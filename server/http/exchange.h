@@ -1,0 +1,60 @@
+// One request on its way through the library: the head that the guard has read becomes our request, what a handler
+// answers becomes the library's response.
+#pragma once
+
+#include <httplib.h>
+
+#include "server/http/budget.h"
+#include "server/http/connection.h"
+#include "server/http/server.h"
+
+namespace tunewright::server::http {
+
+class Exchange {
+public:
+    Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
+             Budget& bodies, const std::atomic<bool>& stopping);
+
+    /// Gives the connection to `process`, which is the library's process_request with the hooks below. True where
+    /// another request may follow on it.
+    template <class Process>
+    bool run(const Process& process) {
+        current() = this;
+        const bool whole = process(connection_);
+        return connection_.flush() && whole && keep_;
+    }
+
+    // The library's hooks, in their order. Each is called on the thread of the exchange that it belongs to.
+    static void on_head(httplib::Request& raw) { current()->take(raw); }
+    static httplib::Server::HandlerResponse before_body(httplib::Response& out) { return current()->begin(out); }
+    static void with_body(httplib::Response& out, const httplib::ContentReader& body) { current()->answer(out, body); }
+    static void before_headers(httplib::Response& out) { current()->finish(out); }
+
+private:
+    // The library hands nothing of ours from its one end to the other; an exchange has one thread from start to end.
+    static Exchange*& current();
+
+    void take(httplib::Request& raw);
+    httplib::Server::HandlerResponse begin(httplib::Response& out);
+    std::optional<Response> refuse_early();
+    void answer(httplib::Response& out, const httplib::ContentReader& body);
+    void finish(httplib::Response& out);
+    Response handled();
+    Response refused(int status, const std::string& detail);
+    void give(Response response, httplib::Response& out);
+    void give_stream(BodyProducer producer, const std::string& type, httplib::Response& out);
+
+    Connection& connection_;
+    Head head_;
+    const Application& application_;
+    const Limits& limits_;
+    Budget& bodies_;
+    const std::atomic<bool>& stopping_;
+    Request request_;
+    Budget::Share share_;
+    bool taken_ = false;  ///< the library could read the head
+    bool streamed_ = false;
+    bool keep_;
+};
+
+}  // namespace tunewright::server::http

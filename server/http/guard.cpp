@@ -1,0 +1,263 @@
+#include "server/http/guard.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "server/http/exchange.h"
+
+namespace tunewright::server::http {
+namespace {
+
+constexpr int kBacklog = 1024;
+constexpr std::chrono::milliseconds kStoppingInterval{10};
+constexpr std::size_t kNetworkBytes = 8;  // of an IPv6 address: what one customer gets is a /64
+
+sockaddr_storage peer_of(int fd) {
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    ::getpeername(fd, reinterpret_cast<sockaddr*>(&address), &size);
+    return address;
+}
+
+std::string text_of(const sockaddr_storage& address) {
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (address.ss_family == AF_INET)
+        ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(address).sin_addr, text.data(), text.size());
+    else if (address.ss_family == AF_INET6)
+        ::inet_ntop(AF_INET6, &reinterpret_cast<const sockaddr_in6&>(address).sin6_addr, text.data(), text.size());
+    return text.data();
+}
+
+/// Whose connection it is: the address, of IPv6 its first 64 bits.
+std::string network_of(sockaddr_storage address) {
+    if (address.ss_family != AF_INET6) return text_of(address);
+    auto& bytes = reinterpret_cast<sockaddr_in6&>(address).sin6_addr.s6_addr;
+    if (IN6_IS_ADDR_V4MAPPED(&reinterpret_cast<sockaddr_in6&>(address).sin6_addr)) return text_of(address);
+    std::memset(bytes + kNetworkBytes, 0, sizeof bytes - kNetworkBytes);
+    return text_of(address);
+}
+
+bool is_loopback(const std::string& address) {
+    return address.starts_with("127.") || address.starts_with("::ffff:127.") || address == "::1" || address == "::";
+}
+
+}  // namespace
+
+/// Where the library puts the connections that it accepts.
+class Server::Guard::Queue : public httplib::TaskQueue {
+public:
+    explicit Queue(Guard& guard) : guard_(guard) {}
+    void enqueue(std::function<void()> task) override {
+        guard_.expect_one();
+        guard_.crew_.post(std::move(task));
+    }
+    void shutdown() override {}
+
+private:
+    Guard& guard_;
+};
+
+Server::Guard::Guard(const Limits& limits, Application application)
+    : limits_(limits), application_(std::move(application)), bodies_(limits.bodies), crew_(limits.connections) {
+    new_task_queue = [this] { return new Queue(*this); };
+    set_tcp_nodelay(true);
+    // SO_REUSEADDR alone: a port that another process listens on is an error, never shared.
+    set_socket_options([](socket_t fd) {
+        const int on = 1;
+        ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    });
+    // Each socket that the library accepts gets it.
+    set_read_timeout(Connection::kLook);
+    set_payload_max_length(limits_.max_batch_body);
+    set_pre_routing_handler([](const httplib::Request&, httplib::Response& out) { return Exchange::before_body(out); });
+    const auto with_body = [](const httplib::Request&, httplib::Response& out, const httplib::ContentReader& body) {
+        Exchange::with_body(out, body);
+    };
+    Post("/", with_body);
+    Delete("/", with_body);
+    set_post_routing_handler([](const httplib::Request&, httplib::Response& out) { Exchange::before_headers(out); });
+}
+
+Server::Guard::~Guard() {
+    if (listener_ >= 0) ::close(listener_);
+}
+
+int Server::Guard::open(const std::string& host, int port) {
+    errno = 0;
+    if (!bind_to_port(host, port)) {
+        const std::string where = host + ":" + std::to_string(port);
+        if (errno == EADDRINUSE)
+            throw std::runtime_error("Cannot listen on " + where +
+                                     ": the port is taken by another process. Stop it or choose another --listen.");
+        throw std::runtime_error("Cannot listen on " + where + ": " +
+                                 (errno != 0 ? std::strerror(errno) : "the host name is not known") + ".");
+    }
+    // The library listens with a backlog of 5, which drops connections of any burst.
+    ::listen(svr_sock_, kBacklog);
+    sockaddr_storage address{};
+    socklen_t size = sizeof address;
+    ::getsockname(svr_sock_, reinterpret_cast<sockaddr*>(&address), &size);
+    listener_ = ::dup(svr_sock_);
+    return ntohs(address.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(address).sin6_port
+                                               : reinterpret_cast<sockaddr_in&>(address).sin_port);
+}
+
+void Server::Guard::serve() {
+    while (!closed_) {
+        listen_after_bind();
+        // The library's loop gives up on errors that pass, such as too many open files of the whole system.
+        if (closed_) break;
+        std::this_thread::sleep_for(kStoppingInterval);
+        svr_sock_ = ::dup(listener_);
+    }
+    finish_under_way();
+}
+
+void Server::Guard::close() {
+    if (stopping_.exchange(true) || listener_ < 0) return;
+    // Who has been connected is accepted first: closing the port would reset them.
+    const auto end = std::chrono::steady_clock::now() + limits_.farewell;
+    for (pollfd port{listener_, POLLIN, 0}; ::poll(&port, 1, 0) > 0 && std::chrono::steady_clock::now() < end;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    // Ends the library's accept(), and whatever it is asked to accept later. Its own stop() would cut off streams.
+    closed_ = true;
+    ::shutdown(listener_, SHUT_RDWR);
+}
+
+/// Under the lock: true where one of the connections is such.
+template <class Which>
+bool Server::Guard::any(const Which& which) const {
+    return std::ranges::any_of(neighbours_, [&](const auto& item) { return std::ranges::any_of(item.second, which); });
+}
+
+/// After the port is closed: requests that are on their way get their answer, those under way the time of `stopping`.
+void Server::Guard::finish_under_way() {
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&] { return std::chrono::steady_clock::now() - start; };
+    const auto busy = [&] {
+        const std::lock_guard lock(mutex_);
+        if (connections_ == 0 || elapsed() < limits_.farewell) return connections_ > 0;
+        return any([](const Connection* connection) { return !connection->waiting || connection->begun; });
+    };
+    while (elapsed() < limits_.stopping && busy()) std::this_thread::sleep_for(kStoppingInterval);
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+    any([](const Connection* connection) { return connection->cut_off(), false; });
+}
+
+// ---- connections come and go ----
+
+/// Another connection is to be served. Where there are as many as there may be, one of whoever has the most gives way.
+void Server::Guard::expect_one() {
+    const std::lock_guard lock(mutex_);
+    connections_++;
+    thin_out();
+}
+
+/// Under the lock. Who has the most is known when every thread has a connection.
+void Server::Guard::thin_out() {
+    if (connections_ - leaving_ <= limits_.connections || served_ < limits_.connections) return;
+    make_room(std::ranges::max_element(neighbours_, {}, [](const auto& item) { return item.second.size(); })->second);
+}
+
+/// Cuts off the connection that has waited for a head for longest. A client sends its head at once: its connections are
+/// hardly ever among these but between two requests.
+bool Server::Guard::make_room(const Neighbours& among) {
+    Connection* oldest = nullptr;
+    for (Connection* connection : among)
+        if (connection->waiting && !connection->leaving &&
+            (oldest == nullptr || connection->since.load() < oldest->since.load()))
+            oldest = connection;
+    if (oldest == nullptr) return false;
+    oldest->leaving = true;
+    leaving_++;
+    oldest->cut_off();
+    return true;
+}
+
+/// False where its network has as many as it may have and none of them gives way.
+bool Server::Guard::enter(Connection& connection) {
+    const std::lock_guard lock(mutex_);
+    Neighbours& all = neighbours_[connection.network];
+    const bool limited = !limits_.behind_proxy && !is_loopback(connection.address);
+    const bool allowed = !limited || all.size() < limits_.of_one_network || make_room(all);
+    all.insert(&connection);
+    served_++;
+    // More may have come than there were to give way: they wait for a thread, and this one has just had one.
+    thin_out();
+    return allowed && !over_;
+}
+
+void Server::Guard::leave(Connection& connection) {
+    const std::lock_guard lock(mutex_);
+    connections_--;
+    served_--;
+    if (connection.leaving) leaving_--;
+    const auto all = neighbours_.find(connection.network);
+    all->second.erase(&connection);
+    if (all->second.empty()) neighbours_.erase(all);
+}
+
+/// Where clients do not take more bytes of answers than may be held for them, the oldest answer is given up.
+bool Server::Guard::gives_way(const Connection& connection) {
+    std::size_t sum = 0;
+    bool oldest = true;
+    const std::lock_guard lock(mutex_);
+    any([&](const Connection* other) {
+        sum += other->unsent;
+        oldest = oldest && (other->unsent == 0 || connection.since.load() <= other->since.load());
+        return false;
+    });
+    return oldest && sum > limits_.unsent;
+}
+
+bool Server::Guard::process_and_close_socket(socket_t socket) {
+    const sockaddr_storage peer = peer_of(socket);
+    Connection connection(socket, text_of(peer), network_of(peer), limits_,
+                          [this](const Connection& held_up) { return gives_way(held_up); });
+    const bool allowed = enter(connection);
+    const std::shared_ptr<void> leaving(nullptr, [&](void*) { leave(connection); });
+    while (allowed && converse(connection)) {
+    }
+    return true;
+}
+
+/// One request and its answer; false where it was the last.
+bool Server::Guard::converse(Connection& connection) {
+    const std::optional<Head> head = connection.next_head();
+    if (!head) return false;
+    Exchange exchange(connection, *head, application_, limits_, bodies_, stopping_);
+    const bool goes_on = exchange.run([this](httplib::Stream& stream) {
+        bool closed = false;
+        return process_request(stream, false, closed, Exchange::on_head);
+    });
+    if (!goes_on) connection.linger();
+    return goes_on;
+}
+
+// ---- the door to it ----
+
+Server::Server(const Limits& limits, Application application)
+    : guard_(std::make_unique<Guard>(limits, std::move(application))) {}
+
+Server::~Server() = default;
+
+int Server::listen(const std::string& host, int port) { return guard_->open(host, port); }
+
+void Server::run() { guard_->serve(); }
+
+void Server::stop() { guard_->close(); }
+
+bool Server::idle_within(std::chrono::milliseconds patience) { return guard_->idle_within(patience); }
+
+}  // namespace tunewright::server::http

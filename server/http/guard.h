@@ -1,0 +1,61 @@
+// The library's server with our hand on its sockets: each connection has a thread, of a crew that grows on demand, and
+// is read and written by a Connection of ours. What clients may hold together has a limit.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "server/http/budget.h"
+#include "server/http/connection.h"
+#include "server/http/crew.h"
+#include "server/http/server.h"
+
+namespace tunewright::server::http {
+
+class Server::Guard : public httplib::Server {
+public:
+    Guard(const Limits& limits, Application application);
+    ~Guard() override;
+
+    int open(const std::string& host, int port);
+    void serve();
+    void close();
+    bool idle_within(std::chrono::milliseconds patience) { return crew_.stop_within(patience); }
+
+private:
+    class Queue;
+    using Neighbours = std::set<Connection*>;
+
+    /// Called by the library for each socket that it accepts; on a thread of the crew.
+    bool process_and_close_socket(socket_t socket) override;
+
+    void expect_one();
+    void thin_out();
+    bool enter(Connection& connection);
+    void leave(Connection& connection);
+    bool make_room(const Neighbours& among);
+    bool gives_way(const Connection& connection);
+    bool converse(Connection& connection);
+    void finish_under_way();
+    template <class Which>
+    bool any(const Which& which) const;
+
+    const Limits limits_;
+    const Application application_;
+    Budget bodies_;
+    std::atomic<bool> stopping_ = false;  ///< answers say that they are the last
+    std::atomic<bool> closed_ = false;    ///< nobody is accepted any more
+    int listener_ = -1;                   ///< the port, open for longer than the library holds it
+    std::mutex mutex_;                    ///< of what follows
+    std::map<std::string, Neighbours, std::less<>> neighbours_;  ///< by network; none is empty
+    bool over_ = false;                                          ///< who comes now is not served
+    std::size_t connections_ = 0;                                ///< accepted, whether they have a thread yet or not
+    std::size_t served_ = 0;                                     ///< of these: have a thread
+    std::size_t leaving_ = 0;                                    ///< and of those: give way, and have not left yet
+    Crew crew_;                                                  ///< last: its threads use all of the above
+};
+
+}  // namespace tunewright::server::http

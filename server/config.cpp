@@ -80,6 +80,7 @@ double parse_duration(const std::string& text) {
 
 void check_config(const Config& config) {
     const HostPort address = parse_listen(config.listen);
+    if (!config.metrics_listen.empty()) parse_listen(config.metrics_listen);
     check_store_address(config.store);
     if (parse_role(config.role) != Role::all && !is_shared_store(config.store))
         throw std::invalid_argument("--role " + config.role +

@@ -20,6 +20,8 @@ struct Config {
     std::string log_format = "text";  ///< or json
     std::string log_level = "info";   ///< debug, info, warn, error
 
+    std::string metrics_listen;  ///< another port, for metrics and probes alone, without keys; "": none
+
     // Jobs
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait

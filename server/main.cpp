@@ -60,6 +60,8 @@ void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std:
 
 void add_process_options(CLI::App& app, Config& config) {
     option(app, "listen", config.listen, "HOST:PORT; port 0 lets the system choose")->capture_default_str();
+    option(app, "metrics-listen", config.metrics_listen,
+           "Another HOST:PORT, for /metrics and probes alone; it asks for no key");
     option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
         ->capture_default_str();
     option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")

@@ -86,22 +86,30 @@ public:
           batches_(*store_, jobs_, batch_lane_, wall_clock),
           page_(config.web.empty() ? default_web_folder() : config.web),
           gate_(gate_settings(config)),
-          server_(limits(config), application()) {
+          server_(limits(config), application(router_)) {
         add_routes();
+        if (config.metrics_listen.empty()) return;
+        add_health_routes(metrics_router_, jobs_, *store_, gate_, metrics_);
+        metrics_server_ = std::make_unique<http::Server>(http::Limits(), application(metrics_router_));
     }
 
     int listen() {
+        if (metrics_server_) {
+            const HostPort address = parse_listen(config_.metrics_listen);
+            metrics_server_->listen(address.host, address.port);
+        }
         const HostPort address = parse_listen(config_.listen);
         return server_.listen(address.host, address.port);
     }
 
     void start() {
         const Recovery recovery = jobs_.start();
-        if (recovery.queued > 0 || recovery.given_up > 0)
-            log_info(std::to_string(recovery.queued) + " jobs of an earlier run are waiting, " +
+        if (jobs_.queued() > 0 || recovery.given_up > 0)
+            log_info(std::to_string(jobs_.queued()) + " jobs of an earlier run are waiting, " +
                      std::to_string(recovery.interrupted) + " of them were interrupted; " +
                      std::to_string(recovery.given_up) + " were given up");
-        loop_ = std::jthread([this] { server_.run(); });
+        serving_ = std::jthread([this] { server_.run(); });
+        if (metrics_server_) serving_metrics_ = std::jthread([this] { metrics_server_->run(); });
     }
 
     /// False where a computation did not stop: the process must end without waiting for it.
@@ -109,9 +117,13 @@ public:
         closing_.request_stop();
         const bool idle = jobs_.drain(std::chrono::duration<double>(config_.drain_timeout_s));
         server_.stop();
-        loop_.join();
-        const bool free = server_.idle_within(kStopPatience);
-        if (!free) return false;
+        serving_.join();
+        if (metrics_server_) {
+            metrics_server_->stop();
+            serving_metrics_.join();
+        }
+        if (!server_.idle_within(kStopPatience) || (metrics_server_ && !metrics_server_->idle_within(kStopPatience)))
+            return false;
         batch_lane_.stop();
         timer_.stop();
         if (idle) store_.reset();
@@ -190,11 +202,11 @@ private:
         return {lasting, lasting / 2};
     }
 
-    http::Application application() {
+    http::Application application(const http::Router& router) {
         http::Application made;
-        made.admit = [this](http::Request& request) { return router_.admit(request); };
-        made.streams = [this](const http::Request& head) { return router_.streams(head); };
-        made.handle = [this](http::Request request) { return router_.handle(std::move(request)); };
+        made.admit = [&router](http::Request& request) { return router.admit(request); };
+        made.streams = [&router](const http::Request& head) { return router.streams(head); };
+        made.handle = [&router](http::Request request) { return router.handle(std::move(request)); };
         made.refuse = [this](int status, const std::string& detail, const std::string& from) {
             return refusal(status, detail, from);
         };
@@ -227,7 +239,10 @@ private:
     http::StaticFiles page_;
     Gate gate_;
     http::Server server_;
-    std::jthread loop_;
+    std::jthread serving_;
+    http::Router metrics_router_;
+    std::unique_ptr<http::Server> metrics_server_;  ///< of --metrics-listen; nothing where there is none
+    std::jthread serving_metrics_;
 };
 
 int failed(int code, const std::string& sentence) {

@@ -63,7 +63,7 @@ void Depth::refresh(JobStore& store) {
 
 JobStore::Depth Depth::now() const {
     const std::lock_guard lock(mutex_);
-    return {waiting_.single + accepting_, waiting_.entries};
+    return {waiting_.single + accepting_, waiting_.entries, waiting_.suspects};
 }
 
 }  // namespace tunewright::server

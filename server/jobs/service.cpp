@@ -161,6 +161,11 @@ void JobService::stop_running(const std::vector<std::string>& ids) {
         if (const auto held = held_.find(id)) stop_held(held, Stop::cancel);
 }
 
+void JobService::batch_dropped(const std::string& batch) {
+    for (const auto& held : held_.all())
+        if (held->job.batch == batch) stop_held(held, Stop::dropped);
+}
+
 void JobService::look_again() {
     look_again_ = true;
     followers_.changed("");
@@ -229,6 +234,7 @@ void JobService::ended(const Ended& end, bool kept) {
     if (!kept) return forget(end.held);
     if (settings_.observer.ended) settings_.observer.ended(end);
     held_.forget(end.held);
+    claims_.freed();
     tell_ended(end.held->job.id);
 }
 
@@ -240,7 +246,8 @@ void JobService::tell_ended(const std::string& id) {
 /// Another has it, or it is gone: what came of it here counts for nothing.
 void JobService::forget(const std::shared_ptr<HeldJob>& held) {
     held_.forget(held);
-    if (settings_.observer.dropped) settings_.observer.dropped();
+    claims_.freed();
+    if (settings_.observer.dropped && held->why() != Stop::dropped) settings_.observer.dropped();
     look_again();
 }
 

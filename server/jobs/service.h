@@ -107,6 +107,9 @@ public:
     void work_arrived();
     /// Running jobs of these ids, as far as they run here, stop as cancelled.
     void stop_running(const std::vector<std::string>& ids);
+    /// A batch that did not come to its end is dropped: its entries that run here stop, and nobody misses their
+    /// results.
+    void batch_dropped(const std::string& batch);
     /// Jobs have ended without a worker (a batch was cancelled): who waits for one of them looks again.
     void look_again();
 

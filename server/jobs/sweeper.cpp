@@ -1,6 +1,10 @@
 #include "server/jobs/sweeper.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+
+#include "server/log.h"
 
 namespace tunewright::server {
 namespace {
@@ -8,6 +12,8 @@ namespace {
 constexpr std::size_t kSlice = 100;
 constexpr std::chrono::milliseconds kBetweenSlices{100};
 constexpr std::chrono::milliseconds kRest{10'000};
+constexpr std::chrono::seconds kJump{60};
+constexpr std::chrono::hours kPause{1};
 
 }  // namespace
 
@@ -18,13 +24,31 @@ std::chrono::milliseconds Sweeper::sweep() {
     // While a slice is under way: soon enough for the next one.
     if (wait.count() > 0 || sweeping_.exchange(true)) return std::max(wait, kBetweenSlices);
     next_ = Clock::now() + std::min<std::chrono::milliseconds>(kRest, *retention_);
-    const UnixMs ended_before = now_() - std::chrono::milliseconds(*retention_).count();
-    store_.sweep(ended_before, kSlice, [this](const Outcome<std::size_t>& swept) {
+    const UnixMs now = now_();
+    if (!store_.shared() && clock_jumped(now)) {
+        sweeping_ = false;
+        return kBetweenSlices;
+    }
+    store_.sweep(now, *retention_, kSlice, [this](const Outcome<std::size_t>& swept) {
         const auto* count = std::get_if<std::size_t>(&swept);
         more_ = count != nullptr && *count >= kSlice;
         sweeping_ = false;
     });
     return kBetweenSlices;
+}
+
+/// A clock that was set says nothing about how long a job has been there. A shared store has a clock of its own.
+bool Sweeper::clock_jumped(UnixMs now) {
+    const auto steady = Clock::now();
+    const std::chrono::milliseconds by_wall(now - std::exchange(last_wall_, now));
+    const auto by_steady = steady - std::exchange(last_steady_, steady);
+    const bool first = by_steady == steady.time_since_epoch();
+    const auto jump = std::chrono::duration_cast<std::chrono::seconds>(by_wall - by_steady);
+    if (first || std::chrono::abs(jump) <= kJump) return false;
+    next_ = steady + kPause;
+    log_error("the clock of this machine was set by " + std::to_string(jump.count()) +
+              " s; for an hour no ended job is deleted. Stop the service within that time if the clock is wrong");
+    return true;
 }
 
 }  // namespace tunewright::server

@@ -21,10 +21,14 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    bool clock_jumped(UnixMs now);
+
     JobStore& store_;
     std::optional<std::chrono::seconds> retention_;
     std::function<UnixMs()> now_;
-    Clock::time_point next_{};  ///< of the caller's thread alone
+    Clock::time_point next_{};  ///< this and the next of the caller's thread alone
+    UnixMs last_wall_ = 0;
+    Clock::time_point last_steady_{};
     std::atomic<bool> sweeping_ = false;
     std::atomic<bool> more_ = false;
 };

@@ -8,6 +8,7 @@ namespace tunewright::server {
 namespace {
 
 constexpr int kPollsPerUpkeep = 2;
+constexpr int kCountingShare = 20;  // of the time at most one part goes into counting a long queue
 constexpr std::chrono::milliseconds kShortest{1};
 constexpr std::chrono::milliseconds kUnbegun{250};  // then others may have what no worker here has begun
 
@@ -45,8 +46,11 @@ std::chrono::milliseconds JobService::look() {
     const auto now = HeldJob::Clock::now();
     try {
         if (now >= next_depth_) {
-            next_depth_ = now + kPollsPerUpkeep * settings_.poll;
             depth_.refresh(store_);
+            claims_.suspects(depth_.now().suspects);
+            const auto took = HeldJob::Clock::now() - now;
+            next_depth_ =
+                now + std::max<HeldJob::Clock::duration>(kPollsPerUpkeep * settings_.poll, kCountingShare * took);
         }
         std::vector<std::string> ids;
         if (look_again_.exchange(false) || store_.shared()) ids = waits_.ids();

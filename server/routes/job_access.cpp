@@ -15,6 +15,10 @@ Response store_failed(const StoreFault& fault) {
     if (fault.kind == StoreFault::Kind::full)
         return problem_response(507,
                                 "The disk of the service is full; nothing was kept. Try again when there is room.");
+    if (fault.kind == StoreFault::Kind::unknown)
+        return problem_response(503,
+                                "The store was lost while it made this durable: whether it is kept is not known. Look "
+                                "it up, or send it again with the same Idempotency-Key, which makes it happen once.");
     return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
 }
 

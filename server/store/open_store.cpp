@@ -49,8 +49,8 @@ public:
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         return timed("recover", [&] { return store_->recover(now, attempts, error); });
     }
-    void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) override {
-        store_->reclaim(now, attempts, std::move(error), timed("reclaim", std::move(done)));
+    void reclaim(Reclaim what, Done<Recovery> done) override {
+        store_->reclaim(std::move(what), timed("reclaim", std::move(done)));
     }
     std::optional<JobRecord> find(const std::string& id) override {
         return timed("find", [&] { return store_->find(id); });
@@ -117,8 +117,8 @@ public:
     void remove_batch(std::string id, Done<RemoveEffect> done) override {
         store_->remove_batch(std::move(id), timed("remove_batch", std::move(done)));
     }
-    void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) override {
-        store_->sweep(ended_before, most, timed("sweep", std::move(done)));
+    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
+        store_->sweep(now, age, most, timed("sweep", std::move(done)));
     }
 
 private:

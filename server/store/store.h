@@ -26,9 +26,13 @@ namespace tunewright::server {
 
 using UnixMs = std::int64_t;  ///< milliseconds since 1970, UTC
 
-/// Why a store could not do its work: the disk is full, or anything else of the machine's.
+/// Why a store could not do its work.
 struct StoreFault {
-    enum class Kind { full, unavailable };
+    enum class Kind {
+        full,         ///< the disk is; nothing was changed
+        unavailable,  ///< anything else of the machine's; nothing was changed
+        unknown,      ///< the connection was lost during a commit: it may have been done or not
+    };
     Kind kind = Kind::unavailable;
     std::string detail;  ///< for the log
 };
@@ -124,6 +128,8 @@ struct Claim {
     UnixMs now = 0;
     std::chrono::milliseconds lease{10'000};
     std::size_t most = 1;
+    bool suspects =
+        false;  ///< only jobs during which a process ended twice, when their pause is over; else none of them
 };
 
 /// A sign of life for a job that the caller has.
@@ -141,10 +147,17 @@ struct Renewed {
 
 /// What became of jobs whose worker is gone.
 struct Recovery {
-    std::size_t queued = 0;          ///< waiting jobs now, with those that were interrupted
     std::size_t interrupted = 0;     ///< found running without a worker: queued again
     std::size_t given_up = 0;        ///< interrupted too often, now failed
     std::vector<std::string> ended;  ///< ids of those given up, and of those cancelled instead
+};
+
+struct Reclaim {
+    UnixMs now = 0;
+    int most_attempts = 10;  ///< crashes
+    std::string error;       ///< of a job that was interrupted so often
+    bool leases = true;  ///< false: batches alone. Who has the store for himself has all running jobs, however late he
+                         ///< renews their leases
 };
 
 // ---- batches ---------------------------------------------------------------------------------------------------
@@ -237,19 +250,20 @@ public:
     virtual bool healthy() const = 0;
 
     /// To be called once, before any other call: jobs whose worker is gone are queued again (cancelled where that was
-    /// asked for, failed with `error` from `attempts` on). A store for one process takes every running job for that;
-    /// a shared one those whose lease is over. Batches that were still being received are dropped likewise.
+    /// asked for, failed with `error` from `attempts` crashes on). A store for one process takes every running job for
+    /// that; a shared one those whose lease is over. Batches that were still being received are dropped likewise.
     virtual Recovery recover(UnixMs now, int attempts, const std::string& error) = 0;
-    /// The same for leases that are over, at any time and from any process.
-    virtual void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) = 0;
+    /// The same at any time and from any process, for leases that are over and batches that nobody sends any more.
+    virtual void reclaim(Reclaim what, Done<Recovery> done) = 0;
 
     virtual std::optional<JobRecord> find(const std::string& id) = 0;
     /// Those that there are, in no order.
     virtual std::vector<JobState> states(const std::vector<std::string>& ids) = 0;
     virtual JobPage list(const JobQuery& query) = 0;
     struct Depth {
-        std::size_t single = 0;   ///< waiting jobs that were posted one by one
-        std::size_t entries = 0;  ///< waiting jobs of batches
+        std::size_t single = 0;    ///< waiting jobs that were posted one by one
+        std::size_t entries = 0;   ///< waiting jobs of batches
+        std::size_t suspects = 0;  ///< of both: those that Claim::suspects would give now
     };
     virtual Depth depth() = 0;
 
@@ -257,6 +271,8 @@ public:
     /// had another hash.
     virtual void accept(NewJob job, Done<Accepted> done) = 0;
     /// The next queued jobs become running, their attempts count one more; fewer, or none, where not so many wait.
+    /// A job whose process ended while it ran (recover(), reclaim()) counts that as a crash, which giving it back
+    /// (release()) is not. From the second on it waits: 1 s, then twice as long each time, at most 5 min.
     virtual void claim(Claim claim, Done<std::vector<JobRecord>> done) = 0;
     /// Leases that the caller holds last `lease` from now. One answer for each renewal, in order.
     virtual void renew(std::vector<Renewal> renewals, UnixMs now, std::chrono::milliseconds lease,
@@ -289,9 +305,11 @@ public:
     /// Only a batch whose jobs have all ended.
     virtual void remove_batch(std::string id, Done<RemoveEffect> done) = 0;
 
-    /// Deletes at most `most` single jobs that ended before that moment, and batches whose last job did (one batch
-    /// counts as its jobs do). Returns how many jobs went; fewer than `most`: nothing is left to sweep.
-    virtual void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) = 0;
+    /// Deletes at most `most` single jobs that ended longer than `age` before `now`, and batches whose last job did
+    /// (one batch counts as its jobs do). A shared store goes by its own clock where that is behind `now`: a process
+    /// whose clock is ahead deletes nothing too early. Returns how many jobs went; fewer than `most`: nothing is left
+    /// to sweep.
+    virtual void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) = 0;
 };
 
 }  // namespace tunewright::server

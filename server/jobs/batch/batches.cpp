@@ -239,6 +239,7 @@ BatchReceipt Reception::seal() {
 /// Returns when nothing of it is kept; a store that cannot drop it now does so later, for it hears of it no more.
 void Reception::drop() {
     if (!opened_) return;
+    jobs_.batch_dropped(id_);
     await<Outcome<bool>>([this](const Done<bool>& done) { store_.drop_batch(id_, done); });
 }
 

@@ -1,6 +1,7 @@
 #include "server/jobs/running/claims.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tunewright::server {
 namespace {
@@ -10,6 +11,7 @@ constexpr std::size_t kMaxAhead = 16;
 constexpr double kForgetting = 0.2;
 // Where no worker has come for that long, each is at a long job, whatever the latest took.
 constexpr std::chrono::milliseconds kBusy{25};
+constexpr std::chrono::seconds kPolite{10};  // that jobs which must run alone wait for a process that is never idle
 
 }  // namespace
 
@@ -57,6 +59,18 @@ void Claims::retry() {
     ask(lock);
 }
 
+void Claims::suspects(std::size_t waiting) {
+    std::unique_lock lock(mutex_);
+    if (suspects_ == 0) suspects_since_ = HeldJob::Clock::now();
+    suspects_ = alone_ ? 0 : waiting;
+    if (suspects_ > 0) ask(lock);
+}
+
+void Claims::freed() {
+    std::unique_lock lock(mutex_);
+    if (alone_ || suspects_ > 0) ask(lock);
+}
+
 double Claims::pace() const {
     const std::lock_guard lock(mutex_);
     return pace_;
@@ -77,18 +91,28 @@ std::size_t Claims::wanted() const {
     return overtaking && enough > 0 ? 1 : 0;
 }
 
+bool Claims::suspects_turn(std::size_t held) const { return suspects_ > 0 && held == 0 && idle_ > 0; }
+
+/// For a job that runs alone, or that has waited long enough to.
+bool Claims::keeps_clear(std::size_t held) const {
+    return held > 0 && (alone_ || (suspects_ > 0 && HeldJob::Clock::now() > suspects_since_ + kPolite));
+}
+
 /// Called with the lock, returns with it; asks the store without.
 void Claims::ask(std::unique_lock<std::mutex>& lock) {
-    if (closed_ || asking_ || failed_ || !(more_ || arrivals_ != seen_)) return;
     const std::size_t held = held_.size();
+    alone_ = alone_ && held > 0;
+    const bool suspects = suspects_turn(held);
+    if (closed_ || asking_ || failed_ || !(more_ || arrivals_ != seen_ || suspects) || keeps_clear(held)) return;
     if (held >= settings_.most_held || unsaved_ >= settings_.most_unsaved) return;
-    const std::size_t most = std::min(wanted(), settings_.most_held - held);
+    const std::size_t most = suspects ? 1 : std::min(wanted(), settings_.most_held - held);
     if (most == 0) return;
     asking_ = true;
-    asking_for_arrivals_ = arrivals_ != seen_;
-    seen_ = arrivals_;
+    asking_for_suspects_ = suspects;
+    asking_for_arrivals_ = !suspects && arrivals_ != seen_;
+    if (!suspects) seen_ = arrivals_;
     lock.unlock();
-    store_.claim({settings_.worker, settings_.now(), settings_.lease, most},
+    store_.claim({settings_.worker, settings_.now(), settings_.lease, most, suspects},
                  [this, most](Outcome<std::vector<JobRecord>> outcome) { come(std::move(outcome), most); });
     lock.lock();
 }
@@ -107,6 +131,13 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
     std::unique_lock lock(mutex_);
     asking_ = asking_for_arrivals_ = false;
     failed_ = jobs == nullptr;
+    if (std::exchange(asking_for_suspects_, false)) {
+        // Others may have taken it; the next count says.
+        suspects_ = 0;
+        alone_ = jobs != nullptr && !jobs->empty();
+        arrivals_++;
+        asked = jobs != nullptr ? jobs->size() + 1 : asked;
+    }
     if (failed_) arrivals_++;  // so that retry() asks again
     if (jobs != nullptr) {
         more_ = jobs->size() >= asked;

@@ -2,6 +2,9 @@
 // workers are idle; only where many wait and the latest were short a few more are claimed ahead, so that no worker
 // waits for the store between them, and nobody hoards heavy ones.
 //
+// A job during which processes have ended more than once runs alone: it is claimed when nothing else is held, after a
+// while nothing else is claimed before it, and nothing beside it. So it takes no other down with it.
+//
 // Arrivals are counted: a worker that finds nothing sleeps only if nothing has arrived since the store was asked. In a
 // store that others use too the count is raised every second as well: hints may be lost, the tables are the truth.
 #pragma once
@@ -47,6 +50,10 @@ public:
     void unsaved(std::size_t bytes);
     /// Claims again after a failure.
     void retry();
+    /// So many jobs wait that must run alone.
+    void suspects(std::size_t waiting);
+    /// One that was held is not any more.
+    void freed();
     /// Takes jobs back that no worker has begun: those claimed before `before`, or that one. They are the caller's.
     std::vector<std::shared_ptr<HeldJob>> withdraw(HeldJob::Clock::time_point before);
     bool withdraw(const std::shared_ptr<HeldJob>& held);
@@ -60,6 +67,8 @@ private:
     std::size_t ahead() const;
     std::size_t wanted() const;
     bool urgent() const;
+    bool suspects_turn(std::size_t held) const;
+    bool keeps_clear(std::size_t held) const;
     void ask(std::unique_lock<std::mutex>& lock);
     void put(std::shared_ptr<HeldJob> held);
     void come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked);
@@ -81,6 +90,10 @@ private:
     std::uint64_t arrivals_ = 0;  ///< so far
     std::uint64_t seen_ = 0;      ///< when the store was last asked
     std::size_t unsaved_ = 0;
+    bool alone_ = false;  ///< what is held now must run alone
+    bool asking_for_suspects_ = false;
+    std::size_t suspects_ = 0;
+    HeldJob::Clock::time_point suspects_since_{};
     HeldJob::Clock::time_point last_take_{};
     double pace_ = 0;
     std::size_t streak_ = 0;  ///< short jobs in a row; counts less each time that the queue has been emptied

@@ -32,6 +32,7 @@ public:
         timeout,   ///< its time is over
         shutdown,  ///< this process ends: it is queued again
         lost,      ///< another has it: whatever comes out is dropped
+        dropped,   ///< so has been its batch, with all its jobs
     };
 
     explicit HeldJob(JobRecord claimed) : job(std::move(claimed)) {}

@@ -80,7 +80,8 @@ void Leases::reclaim() {
     // The machine slept, or its clock was set: leases of the living would seem to be over.
     if (clock_jumped()) return renew(HeldJob::Clock::now());
     if (reclaiming_.exchange(true)) return;
-    store_.reclaim(settings_.now(), settings_.most_attempts, settings_.given_up, [this](const auto& outcome) {
+    const Reclaim what{settings_.now(), settings_.most_attempts, settings_.given_up, store_.shared()};
+    store_.reclaim(what, [this](const auto& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
             outage_.failed("nobody looks for jobs of processes that have gone", *fault);
         } else {

@@ -69,7 +69,7 @@ void Workers::end_unbegun(const std::shared_ptr<HeldJob>& held) { end(held, {Sta
 
 void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome, double seconds) {
     const Stop why = held->why();
-    if (why == Stop::lost) return settings_.lost(held);
+    if (why == Stop::lost || why == Stop::dropped) return settings_.lost(held);
     if (outcome.status == Status::cancelled && why == Stop::shutdown) return ends_.release(held);
     JobEvent event = outcome.status == Status::succeeded ? JobEvent::succeed : JobEvent::fail;
     if (outcome.status == Status::cancelled && why == Stop::cancel) event = JobEvent::cancel;

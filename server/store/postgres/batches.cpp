@@ -168,8 +168,12 @@ Unsettled find_unsettled(Session& session) {
     return unsettled;
 }
 
-std::size_t sweep_slice(Session& session, UnixMs ended_before, std::size_t most) {
+std::size_t sweep_slice(Session& session, const Retention& retention, std::size_t most) {
     const auto slice = static_cast<std::int64_t>(std::min(most, kSlice));
+    const UnixMs ended_before =
+        one_number(session.run("SELECT least($1, (extract(epoch FROM clock_timestamp()) * 1000)::bigint) - $2",
+                               Values().number(retention.now).number(retention.age.count())))
+            .value();
     const auto gone = session
                           .run(
                               "DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE class = 0 AND "

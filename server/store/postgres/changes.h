@@ -46,7 +46,11 @@ struct Unsettled {
     std::vector<std::int64_t> cancelling;  ///< cancelled, and entries still wait
 };
 Unsettled find_unsettled(Session& session);
+struct Retention {
+    UnixMs now = 0;  ///< of this process; the database's clock counts where it is behind
+    std::chrono::milliseconds age{};
+};
 /// One slice of JobStore::sweep(): how many jobs went, 0 when nothing is left.
-std::size_t sweep_slice(Session& session, UnixMs ended_before, std::size_t most);
+std::size_t sweep_slice(Session& session, const Retention& retention, std::size_t most);
 
 }  // namespace tunewright::server::postgres

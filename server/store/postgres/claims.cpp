@@ -21,9 +21,12 @@ const std::string kUnwanted =
 }  // namespace
 
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim) {
-    static const std::string sql =
-        "WITH next AS MATERIALIZED (SELECT seq FROM jobs WHERE status = 'queued' ORDER BY class, turn, seq LIMIT $1 "
-        "FOR UPDATE SKIP LOCKED), taken AS (UPDATE jobs j SET status = 'running', started_at = $2, "
+    static const std::string usual = "crashes < 2 ORDER BY class, turn, seq";
+    static const std::string suspects = "crashes > 1 AND not_before <= clock_timestamp() ORDER BY not_before";
+    const std::string sql =
+        "WITH next AS MATERIALIZED (SELECT seq FROM jobs WHERE status = 'queued' AND " +
+        (claim.suspects ? suspects : usual) +
+        " LIMIT $1 FOR UPDATE SKIP LOCKED), taken AS (UPDATE jobs j SET status = 'running', started_at = $2, "
         "attempts = j.attempts + 1, worker = $3, lease_until = " +
         lease_end("$4") + " FROM next WHERE j.seq = next.seq RETURNING j.*) SELECT " + kRecordColumns +
         " FROM taken j LEFT JOIN batches b ON b.seq = j.batch ORDER BY j.class, j.turn, j.seq";
@@ -81,11 +84,13 @@ std::optional<JobStatus> release_job(Session& session, const std::string& id, in
 Recovery reclaim_jobs(Session& session, UnixMs now, int attempts, const std::string& error) {
     static const std::string sql =
         "WITH over AS MATERIALIZED (SELECT j.seq, " + kUnwanted +
-        " AS unwanted, j.attempts >= $1 AS tired FROM jobs j WHERE j.status = 'running' "
+        " AS unwanted, j.crashes + 1 >= $1 AS tired FROM jobs j WHERE j.status = 'running' "
         "AND j.lease_until <= clock_timestamp() ORDER BY j.seq FOR UPDATE SKIP LOCKED) "
         "UPDATE jobs j SET status = CASE WHEN o.unwanted THEN 'cancelled' WHEN o.tired THEN 'failed' ELSE 'queued' "
         "END, finished_at = CASE WHEN o.unwanted OR o.tired THEN $3::bigint END, error = CASE WHEN o.tired AND NOT "
-        "o.unwanted THEN $2 END, cancel_requested = o.unwanted, worker = NULL, lease_until = NULL "
+        "o.unwanted THEN $2 END, cancel_requested = o.unwanted, worker = NULL, lease_until = NULL, "
+        "crashes = j.crashes + 1, not_before = CASE WHEN j.crashes > 0 THEN clock_timestamp() + "
+        "least(300, 2 ^ (j.crashes - 1)) * interval '1 second' END "
         "FROM over o WHERE j.seq = o.seq RETURNING j.id, j.status";
     Recovery recovery;
     for (const pqxx::row& row : session.run(sql, Values().number(attempts).text(error).number(now))) {
@@ -94,7 +99,6 @@ Recovery reclaim_jobs(Session& session, UnixMs now, int attempts, const std::str
         if (status == JobStatus::failed) recovery.given_up++;
         if (has_ended(status)) recovery.ended.push_back(text_of(row[0]));
     }
-    recovery.queued = session.run("SELECT count(*) FROM jobs WHERE status = 'queued'")[0][0].as<std::size_t>();
     return recovery;
 }
 

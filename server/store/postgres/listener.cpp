@@ -72,7 +72,8 @@ void Listener::work() {
         try {
             listen();
         } catch (const std::exception&) {  // whoever writes logs what is wrong
-            pause_ms = connected_.exchange(false) ? kFirstPauseMs : std::min(2 * pause_ms, kMaxPauseMs);
+            const bool first = connected_.exchange(false) || pause_ms == 0;
+            pause_ms = first ? kFirstPauseMs : std::min(2 * pause_ms, kMaxPauseMs);
             tried();
             if (!pause(pause_ms)) return;
         }

@@ -44,16 +44,16 @@ public:
 
     bool shared() const override { return true; }
     void watch(std::function<void(const StoreNotice&)> notify) override { listener_.watch(std::move(notify)); }
-    bool healthy() const override { return writer_.healthy() && bulk_.healthy() && listener_.connected(); }
+    bool healthy() const override { return writer_.healthy() && bulk_.healthy(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         std::promise<Outcome<Recovery>> promise;
-        reclaim(now, attempts, error, [&](Outcome<Recovery> outcome) { promise.set_value(std::move(outcome)); });
+        reclaim({now, attempts, error}, [&](Outcome<Recovery> outcome) { promise.set_value(std::move(outcome)); });
         Outcome<Recovery> outcome = promise.get_future().get();
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) throw StoreError(*fault);
         return std::get<Recovery>(std::move(outcome));
     }
-    void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) override;
+    void reclaim(Reclaim what, Done<Recovery> done) override;
 
     std::optional<JobRecord> find(const std::string& id) override {
         return readers_.read([&](Session& session) { return find_record(session, id); });
@@ -119,8 +119,8 @@ public:
     void drop_batch(std::string batch, Done<bool> done) override;
     void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override;
     void remove_batch(std::string id, Done<RemoveEffect> done) override;
-    void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) override {
-        sweep_on(ended_before, most, 0, std::move(done));
+    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
+        sweep_on({now, age}, most, 0, std::move(done));
     }
 
     std::optional<BatchSummary> find_batch(const std::string& id) override {
@@ -158,7 +158,7 @@ private:
 
     void delete_batch(std::int64_t batch, std::function<void(std::optional<StoreFault>)> done);
     void cancel_slices(std::int64_t batch, std::int64_t from, UnixMs now, Done<Ids> done);
-    void sweep_on(UnixMs ended_before, std::size_t most, std::size_t gone, Done<std::size_t> done);
+    void sweep_on(const Retention& retention, std::size_t most, std::size_t gone, Done<std::size_t> done);
 
     Readers readers_;
     Listener listener_;
@@ -168,13 +168,16 @@ private:
     Writer bulk_;
 };
 
-void PostgresStore::reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) {
+void PostgresStore::reclaim(Reclaim what, Done<Recovery> done) {
     struct Found {
         Recovery recovery;
         Unsettled unsettled;
     };
-    const auto work = [now, attempts, error = std::move(error)](Session& session, Notices& notices) {
-        Found found{reclaim_jobs(session, now, attempts, error), find_unsettled(session)};
+    const UnixMs now = what.now;
+    const auto work = [what = std::move(what)](Session& session, Notices& notices) {
+        Found found;
+        if (what.leases) found.recovery = reclaim_jobs(session, what.now, what.most_attempts, what.error);
+        found.unsettled = find_unsettled(session);
         if (found.recovery.interrupted > 0) notices.queued();
         for (const std::string& id : found.recovery.ended) notices.ended(id);
         return found;
@@ -267,14 +270,14 @@ void PostgresStore::cancel_slices(std::int64_t batch, std::int64_t from, UnixMs 
     });
 }
 
-void PostgresStore::sweep_on(UnixMs ended_before, std::size_t most, std::size_t gone, Done<std::size_t> done) {
-    const auto work = [ended_before, left = most - gone](Session& session, Notices&) {
-        return left == 0 ? 0 : sweep_slice(session, ended_before, left);
+void PostgresStore::sweep_on(const Retention& retention, std::size_t most, std::size_t gone, Done<std::size_t> done) {
+    const auto work = [retention, left = most - gone](Session& session, Notices&) {
+        return left == 0 ? 0 : sweep_slice(session, retention, left);
     };
     write<std::size_t>(kBulky, work, [=, this, done = std::move(done)](const Outcome<std::size_t>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
         const std::size_t slice = std::get<std::size_t>(outcome);
-        slice > 0 ? sweep_on(ended_before, most, gone + slice, done) : done(gone);
+        slice > 0 ? sweep_on(retention, most, gone + slice, done) : done(gone);
     });
 }
 

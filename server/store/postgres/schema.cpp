@@ -135,7 +135,14 @@ EXCEPTION WHEN feature_not_supported OR syntax_error THEN NULL;
 END $$;
 )sql";
 
-constexpr std::array kSteps{kStep1};
+// A job that was running when its process ended may be why; one that was twice waits a while and then runs alone.
+constexpr const char* kStep2 = R"sql(
+ALTER TABLE jobs ADD COLUMN crashes integer NOT NULL DEFAULT 0 CHECK (crashes >= 0);
+ALTER TABLE jobs ADD COLUMN not_before timestamptz;
+CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crashes > 1;
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 

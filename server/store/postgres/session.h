@@ -45,7 +45,10 @@ public:
     };
     Failure(Kind what, const std::string& detail) : std::runtime_error(detail), kind(what) {}
     StoreFault fault() const {
-        return {kind == Kind::full ? StoreFault::Kind::full : StoreFault::Kind::unavailable, what()};
+        const auto said = kind == Kind::full      ? StoreFault::Kind::full
+                          : kind == Kind::unknown ? StoreFault::Kind::unknown
+                                                  : StoreFault::Kind::unavailable;
+        return {said, what()};
     }
     Kind kind;
 };

@@ -17,9 +17,12 @@ std::int64_t next_turn(Connection& store, int job_class, const std::string& flow
 std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim) {
     std::vector<std::int64_t> next;
     {
-        Connection::Use row =
-            store.use("SELECT seq FROM jobs WHERE status = 'queued' ORDER BY class, turn, seq LIMIT ?1");
-        row.with(static_cast<std::int64_t>(claim.most));
+        Connection::Use row = store.use(
+            claim.suspects ? "SELECT seq FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= ?2 "
+                             "ORDER BY not_before LIMIT ?1"
+                           : "SELECT seq FROM jobs WHERE status = 'queued' AND crashes < 2 AND ?2 IS NOT NULL "
+                             "ORDER BY class, turn, seq LIMIT ?1");
+        row.with(static_cast<std::int64_t>(claim.most), claim.now);
         while (row.next()) next.push_back(row.integer(0));
     }
     static const std::string read = "SELECT " + kRecordColumns + kRecordTables + " WHERE j.seq = ?1";
@@ -93,23 +96,25 @@ Recovery reclaim_jobs(Connection& store, UnixMs lease_at, UnixMs now, int attemp
     store
         .use(
             "INSERT OR REPLACE INTO results (seq, error) SELECT seq, ?3 FROM jobs "
-            "WHERE status = 'running' AND lease_until <= ?1 AND attempts >= ?2")
+            "WHERE status = 'running' AND lease_until <= ?1 AND crashes + 1 >= ?2")
         .with(lease_at, attempts, error)
         .run();
     {
         Connection::Use row = store.use(
-            "UPDATE jobs SET status = 'failed', finished_at = ?3, worker = NULL, lease_until = NULL "
-            "WHERE status = 'running' AND lease_until <= ?1 AND attempts >= ?2 RETURNING id");
+            "UPDATE jobs SET status = 'failed', finished_at = ?3, worker = NULL, lease_until = NULL, crashes = crashes "
+            "+ 1 "
+            "WHERE status = 'running' AND lease_until <= ?1 AND crashes + 1 >= ?2 RETURNING id");
         row.with(lease_at, attempts, now);
         for (; row.next(); recovery.given_up++) recovery.ended.push_back(row.text(0));
     }
     recovery.interrupted =
         static_cast<std::size_t>(store
-                                     .use("UPDATE jobs SET status = 'queued', worker = NULL, lease_until = NULL "
+                                     .use("UPDATE jobs SET status = 'queued', worker = NULL, lease_until = NULL, "
+                                          "crashes = crashes + 1, not_before = iif(crashes = 0, NULL, "
+                                          "?2 + min(300000, 1000 << min(crashes - 1, 20))) "
                                           "WHERE status = 'running' AND lease_until <= ?1")
-                                     .with(lease_at)
+                                     .with(lease_at, now)
                                      .run());
-    recovery.queued = static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued'"));
     return recovery;
 }
 

@@ -135,6 +135,9 @@ JobStore::Depth count_waiting(Connection& store) {
     // Batches count their entries themselves; those of one that is leaving wait no longer.
     depth.entries =
         static_cast<std::size_t>(store.number("SELECT coalesce(sum(queued), 0) FROM batches WHERE state <> 'leaving'"));
+    depth.suspects =
+        static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 "
+                                              "AND not_before <= (julianday('now') - 2440587.5) * 86400000"));
     return depth;
 }
 

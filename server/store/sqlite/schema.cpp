@@ -173,7 +173,14 @@ CREATE TRIGGER entries_moved AFTER UPDATE OF status ON jobs WHEN NEW.batch IS NO
 END;
 )sql";
 
-constexpr std::array kSteps{kStep1, kStep2};
+// A job that was running when its process ended may be why; one that was twice waits a while and then runs alone.
+constexpr const char* kStep3 = R"sql(
+ALTER TABLE jobs ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0 CHECK (crashes >= 0);
+ALTER TABLE jobs ADD COLUMN not_before INTEGER;
+CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crashes > 1;
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3};
 
 }  // namespace
 

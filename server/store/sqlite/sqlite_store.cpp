@@ -64,7 +64,7 @@ public:
     bool healthy() const override { return writer_->healthy(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override;
-    void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) override;
+    void reclaim(Reclaim what, Done<Recovery> done) override;
 
     std::optional<JobRecord> find(const std::string& id) override {
         return read([&](Connection& store) { return find_record(store, id); });
@@ -129,8 +129,8 @@ public:
     void drop_batch(std::string batch, Done<bool> done) override;
     void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override;
     void remove_batch(std::string id, Done<RemoveEffect> done) override;
-    void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) override {
-        sweep_on(ended_before, most, 0, std::move(done));
+    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
+        sweep_on(now - age.count(), most, 0, std::move(done));
     }
 
     std::optional<BatchSummary> find_batch(const std::string& id) override {
@@ -223,13 +223,16 @@ Recovery SqliteStore::recover(UnixMs now, int attempts, const std::string& error
     return write_now<Recovery>([&](Connection& store) { return reclaim_jobs(store, kEver, now, attempts, error); });
 }
 
-void SqliteStore::reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) {
+void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
     struct Found {
         Recovery recovery;
         std::vector<std::int64_t> leaving;
     };
-    const auto work = [now, attempts, error = std::move(error)](Connection& store) {
-        return Found{reclaim_jobs(store, now, now, attempts, error), leave_unheard(store, now - kReceiving.count())};
+    const auto work = [what = std::move(what)](Connection& store) {
+        Found found;
+        if (what.leases) found.recovery = reclaim_jobs(store, what.now, what.now, what.most_attempts, what.error);
+        found.leaving = leave_unheard(store, what.now - kReceiving.count());
+        return found;
     };
     write<Found>(kBulky, work, [this, done = std::move(done)](Outcome<Found> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);

@@ -224,15 +224,17 @@ TEST(BodySource, BodiesBeyondTheBudgetAreRefusedBeforeTheyAreRead) {
     Limits limits;
     limits.bodies = 1'000'000;
     limits.room = 50ms;
-    std::promise<void> go;
+    std::promise<void> held, go;
     Loopback server(
-        [may_go = go.get_future().share()](const Request& request) {
+        [&, first_body = true, may_go = go.get_future().share()](const Request& request) mutable {
+            if (!request.body.empty() && std::exchange(first_body, false)) held.set_value();
             if (!request.body.empty()) may_go.wait();
             return read_all(request);
         },
         limits);
     Client first(server), second(server), small(server);
     first.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
+    held.get_future().wait();
     second.send(post("Content-Length: 700000\r\nExpect: 100-continue\r\n"));
     const std::string refused = second.read_all();
     EXPECT_THAT(refused, StartsWith("HTTP/1.1 503"));

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <future>
 
+#include "server/jobs/sweeper.h"
 #include "server/store/sqlite/sqlite_store.h"
 
 namespace tunewright::server {
@@ -56,7 +57,8 @@ protected:
         return {Status::succeeded, "{\"of\":\"" + std::string(request) + "\"}", ""};
     }
 
-    void start(std::size_t workers = 1, std::size_t queue_limit = 100) {
+    void start(std::size_t workers = 1, std::size_t queue_limit = 100,
+               const std::function<void(JobSettings&)>& change = {}) {
         JobSettings settings;
         settings.workers = workers;
         settings.queue_limit = queue_limit;
@@ -65,6 +67,7 @@ protected:
             return compute(request.json, control);
         };
         settings.now = [this] { return ++now_; };
+        if (change) change(settings);
         // The store may be about to tell the one before of something: it goes after the store.
         if (service_) earlier_.push_back(std::move(service_));
         service_ = std::make_unique<JobService>(*store_, timer_, settings);
@@ -117,6 +120,78 @@ TEST_F(JobServiceTest, AJobIsComputedAndItsResultKept) {
     EXPECT_EQ(job.result, R"({"of":"a"})");
     EXPECT_EQ(job.attempts, 1);
     EXPECT_EQ(service_->queued(), 0U);
+}
+
+TEST_F(JobServiceTest, AStoreThatStallsForLongerThanALeaseTakesNoJobFromItsOnlyProcess) {
+    using namespace std::chrono;
+    start(1, 100, [](JobSettings& settings) {
+        settings.lease = milliseconds(200);
+        settings.poll = milliseconds(20);
+        settings.now = [] { return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(); };
+    });
+    const std::string id = submit("wait").job.id;
+    until_running(id);
+    // On the store's own thread: nothing is written meanwhile, as on a disk that stalls.
+    store_->cancel("nobody", 1, [](const auto&) { std::this_thread::sleep_for(milliseconds(700)); });
+    std::this_thread::sleep_for(milliseconds(1000));
+    EXPECT_EQ(store_->find(id).value().attempts, 1);
+    gate_.open();
+    const JobRecord job = ended(id);
+    EXPECT_EQ(job.status, JobStatus::succeeded);
+    EXPECT_EQ(job.attempts, 1);
+}
+
+TEST_F(JobServiceTest, AJobDuringWhichProcessesEndedRunsAloneAndTheOthersGoOn) {
+    start(0);
+    const std::string suspect = submit("suspect").job.id;
+    service_->drain(std::chrono::seconds(0));
+    // Two processes that took it have gone.
+    for (int i = 0; i < 2; i++) {
+        std::promise<void> claimed;
+        store_->claim({"gone", ++now_, std::chrono::milliseconds(0), 1}, [&](const auto&) { claimed.set_value(); });
+        claimed.get_future().get();
+        store_->recover(++now_, 10, "{}");
+    }
+    now_ += 1001;
+    std::atomic<int> computing = 0, beside_suspect = 0;
+    start(3, 100, [&](JobSettings& settings) {
+        settings.poll = std::chrono::milliseconds(5);
+        settings.run = [&](const api::StoredRequest& request, const RunControl&) {
+            const int now = ++computing;
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            if (request.json == "suspect" && (now > 1 || computing > 1)) beside_suspect++;
+            --computing;
+            return api::JobOutcome{Status::succeeded, "{}", ""};
+        };
+    });
+    std::vector<std::string> others;
+    for (int i = 0; i < 20; i++) others.push_back(submit("other").job.id);
+    for (const std::string& id : others) EXPECT_EQ(ended(id).status, JobStatus::succeeded);
+    EXPECT_EQ(ended(suspect).status, JobStatus::succeeded);
+    EXPECT_EQ(ended(suspect).attempts, 3);
+    EXPECT_EQ(beside_suspect, 0);
+    EXPECT_EQ(ended(submit("other").job.id).status, JobStatus::succeeded) << "it goes on";
+}
+
+TEST_F(JobServiceTest, AClockThatIsSetDeletesNothing) {
+    start();
+    const std::string id = submit("a").job.id;
+    ended(id);
+    Sweeper sweeper(*store_, std::chrono::seconds(1), [this] { return now_.load(); });
+    const auto swept = [&] {
+        std::this_thread::sleep_for(sweeper.sweep());
+        std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+        sweeper.sweep();
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return !store_->find(id);
+    };
+    EXPECT_FALSE(swept()) << "it is young";
+    now_ += 8 * 24 * 3600 * 1000LL;
+    EXPECT_FALSE(swept());
+    // A service that starts with that clock has seen no jump.
+    Sweeper fresh(*store_, std::chrono::seconds(1), [this] { return now_.load(); });
+    fresh.sweep();
+    while (store_->find(id)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
 TEST_F(JobServiceTest, WhatTheComputationRefusesIsAFailedJobWithItsError) {

@@ -48,9 +48,9 @@ public:
     bool healthy() const override { return !broken && store_.healthy(); }
     /// Whoever recovers while others are at work must leave theirs alone: the leases tell.
     Recovery recover(UnixMs, int, const std::string&) override { return {}; }
-    void reclaim(UnixMs now, int attempts, std::string error, Done<Recovery> done) override {
+    void reclaim(Reclaim what, Done<Recovery> done) override {
         reclaims++;
-        write(done, [&] { store_.reclaim(now, attempts, std::move(error), done); });
+        write(done, [&] { store_.reclaim(std::move(what), done); });
     }
     std::optional<JobRecord> find(const std::string& id) override { return store_.find(id); }
     std::vector<JobState> states(const std::vector<std::string>& ids) override { return store_.states(ids); }
@@ -121,8 +121,8 @@ public:
         store_.cancel_batch(std::move(id), now, done);
     }
     void remove_batch(std::string id, Done<RemoveEffect> done) override { store_.remove_batch(std::move(id), done); }
-    void sweep(UnixMs ended_before, std::size_t most, Done<std::size_t> done) override {
-        store_.sweep(ended_before, most, done);
+    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
+        store_.sweep(now, age, most, done);
     }
 
 private:

@@ -120,7 +120,7 @@ protected:
             [&](auto done) { store_->renew(std::move(renewals), now(), lease, done); });
     }
     Recovery reclaim(int most_attempts = 10) {
-        return completed<Recovery>([&](auto done) { store_->reclaim(now(), most_attempts, kGivenUp, done); });
+        return completed<Recovery>([&](auto done) { store_->reclaim({now(), most_attempts, kGivenUp}, done); });
     }
     CancelEffect cancel(const std::string& id) {
         return completed<CancelEffect>([&](auto done) { store_->cancel(id, 2500, done); });
@@ -129,8 +129,11 @@ protected:
         return completed<RemoveEffect>([&](auto done) { store_->remove(id, done); });
     }
     std::size_t sweep(UnixMs ended_before, std::size_t most) {
-        return completed<std::size_t>([&](auto done) { store_->sweep(ended_before, most, done); });
+        return completed<std::size_t>(
+            [&](auto done) { store_->sweep(ended_before, std::chrono::milliseconds(0), most, done); });
     }
+    /// Jobs in the queue, those of batches included.
+    std::size_t waiting() { return store_->depth().single + store_->depth().entries; }
     JobStatus status(const std::string& id) { return store_->find(id).value().status; }
 
     void open_batch(const std::string& id, const std::string& owner = "", const std::string& flow = "") {

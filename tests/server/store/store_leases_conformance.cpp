@@ -11,7 +11,7 @@ TEST_P(StoreConformance, CancellingARunningJobIsRememberedUntilItEnds) {
     EXPECT_EQ(status("a"), JobStatus::running);
     EXPECT_TRUE(store_->find("a").value().cancel_requested);
     const Recovery recovery = reopen();
-    EXPECT_EQ(recovery.queued, 0U);
+    EXPECT_EQ(waiting(), 0U);
     EXPECT_EQ(status("a"), JobStatus::cancelled);
 }
 
@@ -21,7 +21,7 @@ TEST_P(StoreConformance, AnInterruptedJobIsQueuedBeforeLaterOnesAndCountsItsAtte
     claim(kDead);
     const Recovery recovery = reopen();
     EXPECT_EQ(recovery.interrupted, 1U);
-    EXPECT_EQ(recovery.queued, 2U);
+    EXPECT_EQ(waiting(), 2U);
     const JobRecord claimed = claim().value();
     EXPECT_EQ(claimed.id, "a");
     EXPECT_EQ(claimed.attempts, 2);
@@ -34,11 +34,46 @@ TEST_P(StoreConformance, AJobThatWasInterruptedTooOftenFails) {
     claim(kDead);
     const Recovery recovery = reopen(2);
     EXPECT_EQ(recovery.given_up, 1U);
-    EXPECT_EQ(recovery.queued, 0U);
+    EXPECT_EQ(waiting(), 0U);
     const JobRecord found = store_->find("a").value();
     EXPECT_EQ(found.status, JobStatus::failed);
     EXPECT_EQ(found.error, R"({"type":"given-up"})");
     EXPECT_EQ(found.finished_at, 9000);
+}
+
+TEST_P(StoreConformance, GivingAJobBackIsNoCrash) {
+    accept(job("a"));
+    for (int attempt = 1; attempt <= 5; attempt++) {
+        ASSERT_TRUE(claim());
+        EXPECT_TRUE(release("a", attempt));
+    }
+    claim(kDead);
+    EXPECT_EQ(reclaim(2).given_up, 0U) << "six claims, and one crash";
+    EXPECT_EQ(status("a"), JobStatus::queued);
+}
+
+TEST_P(StoreConformance, AJobThatHasCrashedTwiceWaitsAWhileAndIsClaimedByItself) {
+    for (const char* id : {"a", "b"}) accept(job(id));
+    for (int i = 0; i < 2; i++) {
+        ASSERT_EQ(claim(kDead).value().id, "a");
+        EXPECT_EQ(reclaim().interrupted, 1U);
+    }
+    EXPECT_EQ(store_->depth().single, 2U);
+    const auto usual = claim_many(5);
+    ASSERT_EQ(usual.size(), 1U);
+    EXPECT_EQ(usual[0].id, "b");
+    const auto suspects = [&] {
+        const Claim claim{"worker", now(), kAlive, 5, true};
+        return completed<std::vector<JobRecord>>([&](auto done) { store_->claim(claim, done); });
+    };
+    EXPECT_TRUE(suspects().empty()) << "its pause is not over";
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    EXPECT_EQ(store_->depth().suspects, 1U);
+    const auto alone = suspects();
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_EQ(alone[0].id, "a");
+    EXPECT_EQ(alone[0].attempts, 3);
+    EXPECT_EQ(store_->depth().suspects, 0U);
 }
 
 TEST_P(StoreConformance, AReleasedJobIsQueuedAgain) {
@@ -76,7 +111,7 @@ TEST_P(StoreConformance, ALeaseThatIsOverIsReclaimedAndOneThatIsNotStays) {
     const Recovery recovery = reclaim();
     EXPECT_EQ(recovery.interrupted, 1U);
     EXPECT_EQ(recovery.given_up, 0U);
-    EXPECT_EQ(recovery.queued, 2U);
+    EXPECT_EQ(waiting(), 2U);
     EXPECT_TRUE(recovery.ended.empty());
     EXPECT_EQ(status("dead"), JobStatus::queued);
     EXPECT_EQ(status("alive"), JobStatus::running);

@@ -26,7 +26,8 @@ std::string_view unquote(std::string_view cell, std::deque<std::string>& storage
     std::string single;
     for (std::size_t i = 0; i < inner.size(); ++i) {
         single += inner[i];
-        if (inner[i] == '"') ++i;
+        // Only a doubled quote is one; a single one in the middle is a mistake of the writer's and hides nothing.
+        if (inner[i] == '"' && inner.substr(i + 1, 1) == "\"") ++i;
     }
     storage.push_back(std::move(single));
     return trimmed(storage.back());

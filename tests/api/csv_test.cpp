@@ -77,6 +77,12 @@ TEST(Csv, QuotedHeadingsMayHoldSeparatorsAndQuotes) {
     EXPECT_THAT(record.u, ElementsAre(1.5));
 }
 
+TEST(Csv, ASingleQuoteInAQuotedCellHidesNoLetter) {
+    // The letter behind it has two bytes: half of it would be no text.
+    const CsvRecord record = read("\"t\",\"a\"\xC3\xB9\"\"b\",\"y\"\n0,1,2\n1,1,3\n", columns("t", "a\"\xC3\xB9\"b", "y"));
+    EXPECT_THAT(record.y, ElementsAre(2, 3));
+}
+
 TEST(Csv, UnitsInHeadingsDoNotHideTheName) {
     const CsvRecord record = read("Time [s],OP (%),PV / degC\n0,1,2\n");
     EXPECT_THAT(record.y, ElementsAre(2));

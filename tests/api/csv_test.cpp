@@ -79,7 +79,8 @@ TEST(Csv, QuotedHeadingsMayHoldSeparatorsAndQuotes) {
 
 TEST(Csv, ASingleQuoteInAQuotedCellHidesNoLetter) {
     // The letter behind it has two bytes: half of it would be no text.
-    const CsvRecord record = read("\"t\",\"a\"\xC3\xB9\"\"b\",\"y\"\n0,1,2\n1,1,3\n", columns("t", "a\"\xC3\xB9\"b", "y"));
+    const CsvRecord record =
+        read("\"t\",\"a\"\xC3\xB9\"b\"\"\",\"y\"\n0,1,2\n1,1,3\n", columns("t", "a\"\xC3\xB9\"b\"", "y"));
     EXPECT_THAT(record.y, ElementsAre(2, 3));
 }
 

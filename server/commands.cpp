@@ -1,19 +1,8 @@
 #include "server/commands.h"
 
-#include <netdb.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <chrono>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <memory>
 #include <stdexcept>
 
 #include "server/config.h"
@@ -104,102 +93,6 @@ int identify(const IdentifyCommand& command) {
     const bool failed = answer.status >= 400;
     (failed ? std::cerr : std::cout) << answer.body << "\n";
     return failed ? 1 : 0;
-}
-
-namespace {
-
-constexpr timeval kPatience{3, 0};
-
-struct Socket {
-    explicit Socket(int number) : fd(number) {}
-    ~Socket() {
-        if (fd >= 0) ::close(fd);
-    }
-    Socket(const Socket&) = delete;
-    Socket& operator=(const Socket&) = delete;
-    int fd;
-};
-
-struct Target {
-    HostPort address;
-    std::string path = "/";
-};
-
-Target parse_url(const std::string& url) {
-    constexpr std::string_view scheme = "http://";
-    const char* const rule = "it must be http://HOST:PORT/PATH.";
-    if (!url.starts_with(scheme)) throw std::invalid_argument(rule);
-    const std::size_t slash = std::min(url.find('/', scheme.size()), url.size());
-    Target target;
-    try {
-        target.address = parse_listen(url.substr(scheme.size(), slash - scheme.size()));
-    } catch (const std::invalid_argument&) {
-        throw std::invalid_argument(rule);
-    }
-    if (slash < url.size()) target.path = url.substr(slash);
-    return target;
-}
-
-/// Connected to the first address of the name that answers. Throws std::runtime_error.
-std::unique_ptr<Socket> connect(const HostPort& address) {
-    addrinfo hints{};
-    hints.ai_socktype = SOCK_STREAM;
-    addrinfo* found = nullptr;
-    if (const int error = ::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
-        error != 0)
-        throw std::runtime_error(::gai_strerror(error));
-    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> list(found, ::freeaddrinfo);
-    for (const addrinfo* at = list.get(); at != nullptr; at = at->ai_next) {
-        auto socket = std::make_unique<Socket>(::socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, 0));
-        // Limits connecting, sending and each wait for bytes.
-        ::setsockopt(socket->fd, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
-        ::setsockopt(socket->fd, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
-        if (::connect(socket->fd, at->ai_addr, at->ai_addrlen) == 0) return socket;
-    }
-    throw std::runtime_error(std::strerror(errno));
-}
-
-/// The first line of the answer to a GET. Throws std::runtime_error.
-std::string status_line(const Target& target) {
-    const std::unique_ptr<Socket> socket = connect(target.address);
-    const std::string request =
-        "GET " + target.path + " HTTP/1.1\r\nHost: " + target.address.host + "\r\nConnection: close\r\n\r\n";
-    if (::send(socket->fd, request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-        throw std::runtime_error("the request could not be sent");
-    std::string line;
-    std::array<char, 512> piece{};
-    while (line.find("\r\n") == std::string::npos && line.size() < piece.size()) {
-        const ssize_t n = ::recv(socket->fd, piece.data(), piece.size(), 0);
-        if (n <= 0) throw std::runtime_error("no answer");
-        line.append(piece.data(), static_cast<std::size_t>(n));
-    }
-    return line.substr(0, line.find("\r\n"));
-}
-
-int failed(int code, const std::string& url, const std::string& why) {
-    std::cerr << "tunewright: " << url << ": " << why << "\n";
-    return code;
-}
-
-}  // namespace
-
-int check_health(const std::string& url) {
-    try {
-        const std::string line = status_line(parse_url(url));
-        return line.starts_with("HTTP/1.1 200 ") ? 0 : failed(1, url, line);
-    } catch (const std::invalid_argument& error) {
-        return failed(2, url, error.what());
-    } catch (const std::runtime_error& error) {
-        return failed(1, url, error.what());
-    }
-}
-
-std::string health_url(const std::string& listen) {
-    HostPort address = parse_listen(listen);
-    if (address.host == "0.0.0.0") address.host = "127.0.0.1";
-    if (address.host == "::") address.host = "::1";
-    const bool v6 = address.host.find(':') != std::string::npos;
-    return "http://" + (v6 ? "[" + address.host + "]" : address.host) + ":" + std::to_string(address.port) + "/healthz";
 }
 
 }  // namespace tunewright::server

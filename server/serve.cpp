@@ -159,7 +159,7 @@ private:
         made.connections = connection_limit();
         made.max_body = config.max_body;
         made.max_batch_body = config.max_batch_body;
-        made.bodies = std::max(made.bodies, 2 * made.max_body);
+        made.bodies = std::max(made.bodies, 6 * made.max_body);
         made.behind_proxy = config.behind_proxy;
         return made;
     }

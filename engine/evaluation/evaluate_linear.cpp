@@ -140,11 +140,13 @@ Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Control
     if (count.stable()) {
         const Peaks peaks = find_peaks(*loop, grid);
         evaluation.robustness = robustness_of(peaks, find_margins(*loop, grid));
+        if (auto error = stopped(options)) return *error;
         add_performance(evaluation, subject.nominal, *loop, options, peaks);
     } else {
         mark_unstable(evaluation, count);
     }
     if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
+    if (auto error = stopped(options)) return *error;
     if (!subject.family.single()) add_region(evaluation, subject.family);
     return evaluation;
 }

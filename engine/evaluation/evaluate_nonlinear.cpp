@@ -34,6 +34,7 @@ Runs simulate(const NonlinearSystem& system, const Controller& controller, const
     options.horizon = horizon;
     options.max_steps = kMaxSteps;
     options.actuator = o.actuator;
+    options.stop = o.stop;
     if (const auto* npid = std::get_if<Npid>(&controller)) options.delta_r = npid->delta_r;
     const ParallelPid law = gains(controller);
     return {simulate_nonlinear(system, law, {o.setpoint_step, 0}, options),
@@ -119,6 +120,7 @@ Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const C
     std::optional<double> horizon = options.horizon;
     if (!horizon && !stable) horizon = kUnstableHorizon * own_time(subject.linear);
     const Runs runs = simulate(system, resolved(controller, options), options, horizon);
+    if (auto error = stopped(options)) return *error;
 
     EvaluateOptions of_linear = limited_as(system, options);
     if (!horizon && runs.complete()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct EvaluateOptions {
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)
+    std::stop_token stop;  ///< asked between the parts of an evaluation, which is then the error `cancelled`
 };
 
 /// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.

@@ -69,6 +69,11 @@ std::optional<Error> refuse_evaluation(const Controller& controller, const Evalu
     return check_npid(controller);
 }
 
+std::optional<Error> stopped(const EvaluateOptions& options) {
+    if (!options.stop.stop_requested()) return std::nullopt;
+    return Error{ErrorKind::cancelled, "", "The evaluation was stopped."};
+}
+
 Controller resolved(Controller controller, const EvaluateOptions& options) {
     if (auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
         npid->delta_r = std::abs(options.setpoint_step);

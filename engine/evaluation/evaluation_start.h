@@ -13,6 +13,9 @@ namespace tunewright {
 /// The first fault of the options ("evaluate/...") or of an Npid ("controller/..."), whatever the plant.
 std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options);
 
+/// An error where the options' stop was requested.
+std::optional<Error> stopped(const EvaluateOptions& options);
+
 /// The same controller; an Npid without delta_r has the set-point step's size for it.
 Controller resolved(Controller controller, const EvaluateOptions& options);
 

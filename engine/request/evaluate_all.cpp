@@ -30,6 +30,8 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
+    EvaluateOptions watched = options;
+    watched.stop = control.stop;
     const EvaluateOptions on_nominal = on_linearisation(subject, options);
     std::optional<Tradeoffs> tradeoffs;
     std::optional<RobustOptima> optima;
@@ -39,7 +41,8 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
     for (std::size_t i = 0; i < controllers.size(); ++i) {
         if (control.stop.stop_requested()) return out_of_time(i);
         const double start = now();
-        auto evaluation = evaluate(subject, controllers[i], options);
+        auto evaluation = evaluate(subject, controllers[i], watched);
+        if (!evaluation && evaluation.error().kind == ErrorKind::cancelled) return out_of_time(i);
         if (!evaluation) return placed(evaluation.error(), i);
         TuningEntry& entry = result.controllers.emplace_back();
         if (tradeoffs)

@@ -1,5 +1,5 @@
 // gzip for answers. Level 1: on the tables of numbers that answers are made of, level 6 takes three times as long and
-// saves a tenth more. Never on the event loop: where the answer is made, or once at the start for what does not change.
+// saves a tenth more. What does not change is compressed once, at the start.
 #pragma once
 
 #include <memory>

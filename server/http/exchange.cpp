@@ -8,6 +8,8 @@ namespace tunewright::server::http {
 namespace {
 
 constexpr std::size_t kPiece = 256 * 1024;
+constexpr std::size_t kCopies =
+    6;  // of a body, at the peak: itself, its JSON, its texts on the way to the store or back
 
 using HandlerResponse = httplib::Server::HandlerResponse;
 
@@ -98,9 +100,9 @@ std::optional<Response> Exchange::refuse_early() {
     if (application_.admit) {
         if (auto refusal = application_.admit(request_)) return refusal;
     }
-    const std::size_t most = streamed_ ? limits_.arriving : limits_.max_body;
     const bool chunked = head_.transfer == Head::Transfer::chunked;
-    const std::size_t bytes = chunked ? most : std::min(head_.content_length, most);
+    const std::size_t arriving = chunked ? limits_.arriving : std::min(head_.content_length, limits_.arriving);
+    const std::size_t bytes = streamed_ ? arriving : kCopies * head_.content_length;
     if (bytes > 0 && !bodies_.take(bytes, limits_.room, share_))
         return refused(503, "Too many requests are being received; try again in a moment.");
     return std::nullopt;

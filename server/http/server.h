@@ -15,15 +15,16 @@ namespace tunewright::server::http {
 struct Limits {
     std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
-    std::size_t bodies = 128 * 1024 * 1024;          ///< bytes of all requests that are not answered yet
-    std::size_t arriving = 12 * 1024 * 1024;         ///< what a body that is read as it arrives counts for, at most
-    std::size_t unsent = 256 * 1024 * 1024;          ///< bytes of answers that clients do not take; the oldest go first
-    std::size_t connections = 2048;          ///< beyond it the longest waiting one of whoever has the most gives way
-    std::size_t of_one_network = 512;        ///< an address, of IPv6 a /64; loopback and proxies have no such limit
-    bool behind_proxy = false;               ///< addresses are a proxy's
-    std::chrono::milliseconds idle{60'000};  ///< between two requests
-    std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its head
-    std::chrono::milliseconds room{5'000};   ///< for room among `bodies`, before the body is read
+    std::size_t bodies =
+        128 * 1024 * 1024;  ///< bytes for all requests that are not answered yet: six times those of a body
+    std::size_t arriving = 12 * 1024 * 1024;  ///< what a body that is read as it arrives counts for, at most
+    std::size_t unsent = 256 * 1024 * 1024;   ///< bytes of answers that clients do not take; the oldest go first
+    std::size_t connections = 2048;           ///< beyond it the longest waiting one of whoever has the most gives way
+    std::size_t of_one_network = 512;         ///< an address, of IPv6 a /64; loopback and proxies have no such limit
+    bool behind_proxy = false;                ///< addresses are a proxy's
+    std::chrono::milliseconds idle{60'000};   ///< between two requests
+    std::chrono::milliseconds head{10'000};   ///< from the first byte of a request to the end of its head
+    std::chrono::milliseconds room{5'000};    ///< for room among `bodies`, before the body is read
     std::chrono::milliseconds lingering{5'000};
     std::chrono::milliseconds stopping{2'000};  ///< for answers under way when the port is asked to stop
     std::chrono::milliseconds farewell{250};    ///< for requests that are on their way to us at that moment

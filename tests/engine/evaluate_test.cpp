@@ -153,6 +153,16 @@ TEST(Evaluate, EveryIndexAgreesWithAPlainSimulation) {
     }
 }
 
+TEST(Evaluate, IsStoppedBetweenItsParts) {
+    std::stop_source source;
+    source.request_stop();
+    EvaluateOptions options;
+    options.stop = source.get_token();
+    const auto stopped = evaluate(Plant(Fopdt{.K = 1, .T = 1, .L = 0.2}), IdealPid{.Kp = 1, .Ti = 1}, options);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::cancelled);
+}
+
 TEST(Evaluate, MarginsObeyTheBoundsOfMs) {
     for (const double Kp : {0.3, 0.6, 0.9, 1.2}) {
         const auto e = evaluated(Sopdt{.K = 2, .T1 = 10, .T2 = 2, .L = 3}, IdealPid{.Kp = Kp, .Ti = 10});

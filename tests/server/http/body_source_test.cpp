@@ -222,7 +222,7 @@ TEST(BodySource, AGatheredBodyThatDoesNotComeIs408) {
 
 TEST(BodySource, BodiesBeyondTheBudgetAreRefusedBeforeTheyAreRead) {
     Limits limits;
-    limits.bodies = 1'000'000;
+    limits.bodies = 6'000'000;
     limits.room = 50ms;
     std::promise<void> held, go;
     Loopback server(

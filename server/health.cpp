@@ -47,7 +47,7 @@ int check_health(const std::string& url) {
         client.set_connection_timeout(kPatienceSeconds);
         client.set_read_timeout(kPatienceSeconds);
         const httplib::Result answer = client.Get(target.path);
-        if (!answer) return failed(1, url, httplib::to_string(answer.error()));
+        if (!answer) return failed(1, url, "nothing answers there (" + httplib::to_string(answer.error()) + ")");
         return answer->status == 200 ? 0 : failed(1, url, "it answers " + std::to_string(answer->status));
     } catch (const std::invalid_argument& error) {
         return failed(2, url, error.what());

@@ -53,7 +53,7 @@ class CommandLineTest(unittest.TestCase):
             self.assertIn("404", done.stderr)
         done = run("health", "--listen", address)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("refused", done.stderr)
+        self.assertIn("nothing answers", done.stderr)
         for url in ("https://localhost:1/", "http://localhost", "localhost:80"):
             done = run("health", url)
             self.assertEqual(done.returncode, 2)

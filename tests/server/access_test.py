@@ -1,8 +1,10 @@
 """Who may call: keys, whose jobs are whose, rates, other sites, and what a port beyond loopback asks for."""
 
+import http.client
 import json
 import os
 import re
+import socket
 import subprocess
 import tempfile
 import time
@@ -32,6 +34,19 @@ class KeysTest(unittest.TestCase):
         service = Service("--auth", "keys", "--keys", self.path, *arguments)
         self.addCleanup(service.__exit__)
         return service
+
+    def test_metrics_have_a_port_of_their_own_where_one_is_given(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        with self.serve("--metrics-listen", "127.0.0.1:%d" % port) as service:
+            self.assertEqual(service.get("/metrics").status, 401)
+            for path, expected in (("/metrics", 200), ("/healthz", 200), ("/readyz", 200), ("/v1/jobs", 404)):
+                connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+                # As Prometheus calls it: by an address that the service does not know of.
+                connection.request("GET", path, headers={"Host": "10.1.2.3:9090"})
+                self.assertEqual(connection.getresponse().status, expected, path)
+                connection.close()
 
     def test_the_file_has_digests_only_and_belongs_to_its_owner(self):
         text = open(self.path).read()

@@ -10,7 +10,7 @@ import threading
 import time
 import unittest
 
-from service import LONG, QUICK, Service
+from service import BINARY, LONG, QUICK, Service
 
 HOST = b"Host: localhost\r\n"
 CHUNKED = b"Transfer-Encoding: chunked\r\n"
@@ -178,6 +178,52 @@ class CrowdTest(unittest.TestCase):
 
 
 class ManyAtOnceTest(unittest.TestCase):
+    def test_sockets_that_send_nothing_keep_nobody_else_out(self):
+        most = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most[1], most[1]))
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_NOFILE, most)
+        with Service() as service:
+            crowd = []
+            for _ in range(3000):  # there is room for 2,048
+                crowd.append(socket.socket())
+                crowd[-1].bind(("127.0.0.2", 0))
+                crowd[-1].settimeout(20)
+                crowd[-1].connect(("127.0.0.1", service.port))
+                crowd[-1].sendall(b"G")
+            for _ in range(50):
+                start = time.monotonic()
+                self.assertEqual(service.get("/v1/methods").status, 200)
+                self.assertLess(time.monotonic() - start, 5)
+            for connection in crowd:
+                connection.close()
+
+    def test_many_large_bodies_stay_within_the_budget(self):
+        body = b'{"plant": {"type": "fopdt", "K": 1, "T": 10, "L": 2}, "tune": {"method": "simc"}, "name": "%s"}' % (
+            b"x" * 6_000_000)
+        head = post(b"/v1/jobs", b"Content-Length: %d\r\n" % len(body), b"").replace(b"x-ndjson", b"json")
+        answers = []
+
+        def upload(service):
+            with socket.create_connection(("127.0.0.1", service.port), timeout=60) as connection:
+                try:
+                    connection.sendall(head + body)
+                except OSError:
+                    pass  # refused before all of it was sent
+                answers.append(connection.recv(100)[:12])
+
+        with Service() as service:
+            uploads = [threading.Thread(target=upload, args=(service,)) for _ in range(40)]
+            for each in uploads:
+                each.start()
+            for each in uploads:
+                each.join()
+            self.assertEqual(len(answers), 40)
+            self.assertLessEqual(set(answers), {b"HTTP/1.1 422", b"HTTP/1.1 503"})
+            status = open("/proc/%d/status" % service.process.pid).read()
+            peak = int(re.search(r"VmHWM:\s+(\d+) kB", status).group(1))
+            if "san" not in BINARY:
+                self.assertLess(peak, 200_000)  # kB; the budget is 128 MiB, the process itself takes some 30
+
     def test_a_client_that_never_reads_does_not_keep_the_service_from_stopping(self):
         with Service() as service:
             connection = socket.create_connection(("127.0.0.1", service.port), timeout=20)

@@ -1,0 +1,78 @@
+#include "server/access/turns.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "server/access/places.h"
+
+namespace tunewright::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+class TurnsTest : public testing::Test {
+protected:
+    static Turns::Clock::time_point far() { return Turns::Clock::now() + 60s; }
+
+    /// Waits on a thread of its own, and writes its name down when its turn has come.
+    void wait_for_turn(const std::string& client, std::size_t already) {
+        threads_.emplace_back([this, client] {
+            if (turns_.take(client, far(), {}) != Turns::Wait::granted) return;
+            {
+                const std::lock_guard lock(mutex_);
+                order_.push_back(client);
+            }
+            turns_.give_back();
+        });
+        // Until it stands in the queue: one more is refused then, or it would have been granted.
+        std::this_thread::sleep_for(20ms * (already + 1));
+    }
+
+    Turns turns_{1, 8};
+    std::mutex mutex_;
+    std::vector<std::string> order_;
+    std::vector<std::jthread> threads_;
+};
+
+TEST_F(TurnsTest, ClientsTakeTurnsHoweverManyOneOfThemAsksFor) {
+    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    for (const char* client : {"a", "a", "a", "b", "c"}) wait_for_turn(client, 0);
+    turns_.give_back();
+    threads_.clear();
+    EXPECT_THAT(order_, testing::ElementsAre("a", "b", "c", "a", "a"));
+}
+
+TEST_F(TurnsTest, OneClientMayHaveHalfOfThoseWhoWait) {
+    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    for (std::size_t i = 0; i < 4; i++) wait_for_turn("a", 0);
+    EXPECT_EQ(turns_.take("a", far(), {}), Turns::Wait::full);
+    EXPECT_EQ(turns_.take("b", Turns::Clock::now() + 1ms, {}), Turns::Wait::late) << "it may wait";
+    turns_.give_back();
+}
+
+TEST_F(TurnsTest, WhoHasLeftOrIsTooLateGivesHisPlaceUp) {
+    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    EXPECT_EQ(turns_.take("a", far(), [] { return true; }), Turns::Wait::left);
+    EXPECT_EQ(turns_.take("a", Turns::Clock::now(), {}), Turns::Wait::late);
+    turns_.give_back();
+    EXPECT_EQ(turns_.take("b", far(), {}), Turns::Wait::granted);
+    turns_.give_back();
+}
+
+TEST(Places, AreLimitedAltogetherAndForOneClientAndComeBack) {
+    Places places({3, 2});
+    auto one = places.take("a"), two = places.take("a");
+    EXPECT_TRUE(one && two);
+    EXPECT_FALSE(places.take("a"));
+    auto other = places.take("b");
+    EXPECT_TRUE(other);
+    EXPECT_FALSE(places.take("c"));
+    one.reset();
+    EXPECT_TRUE(places.take("c"));
+}
+
+}  // namespace
+}  // namespace tunewright::server

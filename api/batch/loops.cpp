@@ -170,11 +170,8 @@ void Loops::finish(std::vector<RawEntry>& entries) {
 }
 
 std::optional<Problem> Loops::read_headings(long number, std::string_view line) {
-    constexpr std::string_view kSeparatorPrefix = "sep=";
-    const std::string_view content = trimmed(line);
-    if (!separator_given_ && lower_case(content.substr(0, kSeparatorPrefix.size())) == kSeparatorPrefix &&
-        line.find('=') + 1 < line.size()) {
-        separator_ = line[line.find('=') + 1];
+    if (const auto named = separator_given_ ? std::nullopt : named_separator(line)) {
+        separator_ = *named;
         separator_given_ = true;
         return std::nullopt;
     }

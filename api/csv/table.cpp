@@ -109,15 +109,11 @@ CsvLayout pairs_layout(std::string_view text) {
     return layout;
 }
 
-// The separator that a first line such as sep=; names; the line is then taken off.
-std::optional<char> named_separator(std::vector<Head>& heads) {
-    constexpr std::string_view kSeparatorPrefix = "sep=";
-    if (heads.empty() || lower_case(trimmed(heads.front().content)).rfind(kSeparatorPrefix, 0) != 0)
-        return std::nullopt;
-    const std::string_view line = heads.front().content;
-    const std::size_t sign = line.find('=') + 1;
-    const char separator = sign < line.size() && line[sign] != '"' ? line[sign] : ',';
-    heads.erase(heads.begin());
+// The separator of a first line such as sep=;, which is then taken off.
+std::optional<char> take_separator(std::vector<Head>& heads) {
+    if (heads.empty()) return std::nullopt;
+    const auto separator = named_separator(heads.front().content);
+    if (separator) heads.erase(heads.begin());
     return separator;
 }
 
@@ -147,7 +143,7 @@ void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::
 CsvLayout table_layout(std::string_view text) {
     CsvLayout layout;
     std::vector<Head> heads = first_lines(text);
-    const auto named = named_separator(heads);
+    const auto named = take_separator(heads);
     drop_labview_head(heads);
     layout.separator = named ? *named : find_separator(heads);
 
@@ -190,6 +186,16 @@ bool is_rule(std::string_view content) {
 }
 
 }  // namespace
+
+std::optional<char> named_separator(std::string_view line) {
+    constexpr std::string_view prefix = "sep=";
+    const std::string_view content = trimmed(line);
+    if (lower_case(content.substr(0, prefix.size())) != prefix) return std::nullopt;
+    const std::size_t sign = line.find('=') + 1;
+    // A letter of several bytes separates nothing: half of it would be left in every cell.
+    const bool plain = sign < line.size() && line[sign] != '"' && static_cast<unsigned char>(line[sign]) < 0x80;
+    return plain ? line[sign] : ',';
+}
 
 void split_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
                 std::deque<std::string>& storage) {

@@ -46,6 +46,10 @@ struct CsvLayout {
 /// `text` must outlive what is returned.
 CsvLayout find_layout(std::string_view text);
 
+/// The separator that a line such as sep=; names, as spreadsheets write it first; a comma where it names none that a
+/// byte can be. Nothing where the line is another.
+std::optional<char> named_separator(std::string_view line);
+
 /// The cells of one line, trimmed and without quotes; those that held doubled quotes live in `storage`.
 void split_line(std::string_view line, char separator, std::vector<std::string_view>& cells,
                 std::deque<std::string>& storage);

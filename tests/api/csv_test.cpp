@@ -77,6 +77,11 @@ TEST(Csv, QuotedHeadingsMayHoldSeparatorsAndQuotes) {
     EXPECT_THAT(record.u, ElementsAre(1.5));
 }
 
+TEST(Csv, ALetterOfSeveralBytesIsNoSeparator) {
+    const CsvRecord record = read("sep=\xC3\xBF\nt,u,y\xC3\xBC\n0,1,2\n1,1,3\n", columns("t", "u", "y\xC3\xBC"));
+    EXPECT_THAT(record.y, ElementsAre(2, 3));
+}
+
 TEST(Csv, ASingleQuoteInAQuotedCellHidesNoLetter) {
     // The letter behind it has two bytes: half of it would be no text.
     const CsvRecord record =

@@ -17,8 +17,12 @@ void be_nice(int niceness) {
     if (niceness > 0) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
 }
 
-Executor::Executor(std::size_t threads, int niceness) : working_(threads) {
-    for (std::size_t i = 0; i < threads; i++) threads_.emplace_back([this, niceness] { work(niceness); });
+Executor::Executor(std::size_t threads, int niceness) {
+    for (std::size_t i = 0; i < threads; i++)
+        threads_.emplace_back([this, niceness] {
+            be_nice(niceness);
+            work();
+        });
 }
 
 Executor::~Executor() { stop(); }
@@ -30,17 +34,6 @@ void Executor::stop() {
     }
     changed_.notify_all();
     threads_.clear();
-}
-
-bool Executor::stop_within(std::chrono::duration<double> patience) {
-    {
-        std::unique_lock lock(mutex_);
-        stopping_ = true;
-        changed_.notify_all();
-        if (!ended_.wait_for(lock, patience, [this] { return working_ == 0; })) return false;
-    }
-    threads_.clear();
-    return true;
 }
 
 bool Executor::post(std::function<void()> task) {
@@ -60,15 +53,7 @@ bool Executor::run(std::function<void()> task) {
     return true;
 }
 
-void Executor::work(int niceness) {
-    be_nice(niceness);
-    run_tasks();
-    const std::lock_guard lock(mutex_);
-    working_--;
-    ended_.notify_all();
-}
-
-void Executor::run_tasks() {
+void Executor::work() {
     for (;;) {
         std::function<void()> task;
         {

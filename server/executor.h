@@ -1,7 +1,6 @@
 // A fixed set of threads that run what is posted, in order.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -21,9 +20,6 @@ public:
 
     /// Runs what is queued, then joins; what is posted later is dropped.
     void stop();
-    /// The same where that is done in time. False where a task goes on for longer: it is left running, and the process
-    /// must end without destroying this.
-    bool stop_within(std::chrono::duration<double> patience);
 
     /// False where none is taken any more. What the task throws is logged.
     bool post(std::function<void()> task);
@@ -31,13 +27,10 @@ public:
     bool run(std::function<void()> task);
 
 private:
-    void work(int niceness);
-    void run_tasks();
+    void work();
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::condition_variable ended_;
-    std::size_t working_ = 0;  ///< threads that have not ended
     std::deque<std::function<void()>> tasks_;
     bool stopping_ = false;
     std::vector<std::jthread> threads_;

@@ -83,7 +83,7 @@ public:
           turns_(core_count(), kWaitingComputations),
           places_(places_of(limits(config))),
           batch_lane_(kBatchThreads, kBatchNiceness),
-          batches_(*store_, jobs_, batch_lane_, wall_clock),
+          batches_(*store_, jobs_, batch_lane_, [this] { return now(); }),
           page_(config.web.empty() ? default_web_folder() : config.web),
           gate_(gate_settings(config)),
           server_(limits(config), application(router_)) {
@@ -145,7 +145,7 @@ private:
         made.run = [](const api::StoredRequest& request, const RunControl& control) {
             return api::run_job(request, control);
         };
-        made.now = wall_clock;
+        made.now = [this] { return now(); };
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
             log_job(ended.end, ended.seconds);
@@ -153,6 +153,9 @@ private:
         made.observer.dropped = [this] { metrics_.count_dropped(); };
         return made;
     }
+
+    /// By the store's clock, which the machines of a shared one have in common.
+    UnixMs now() const { return wall_clock() + store_->clock_ahead().count(); }
 
     static http::Limits limits(const Config& config) {
         http::Limits made;

@@ -45,6 +45,7 @@ public:
     bool shared() const override { return store_->shared(); }
     void watch(std::function<void(const StoreNotice&)> listener) override { store_->watch(std::move(listener)); }
     bool healthy() const override { return store_->healthy(); }
+    std::chrono::milliseconds clock_ahead() const override { return store_->clock_ahead(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         return timed("recover", [&] { return store_->recover(now, attempts, error); });

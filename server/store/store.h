@@ -248,6 +248,9 @@ public:
     virtual void watch(std::function<void(const StoreNotice&)> listener) = 0;
     /// False after a write failed or the connection was lost, true again after one succeeded.
     virtual bool healthy() const = 0;
+    /// How far the store's own clock is ahead of this process's; 0 where it has none. All times that processes write
+    /// are the store's, so that the clocks of machines need not agree.
+    virtual std::chrono::milliseconds clock_ahead() const { return std::chrono::milliseconds(0); }
 
     /// To be called once, before any other call: jobs whose worker is gone are queued again (cancelled where that was
     /// asked for, failed with `error` from `attempts` crashes on). A store for one process takes every running job for

@@ -3,6 +3,7 @@
 #include <sys/random.h>
 
 #include <array>
+#include <atomic>
 #include <future>
 
 #include "server/store/postgres/changes.h"
@@ -40,7 +41,9 @@ public:
         : readers_(address),
           listener_(address, tag),
           writer_(address, tag, std::move(session)),
-          bulk_(address, tag, nullptr) {}
+          bulk_(address, tag, nullptr) {
+        PostgresStore::depth();  // its clock is known from the start
+    }
 
     bool shared() const override { return true; }
     void watch(std::function<void(const StoreNotice&)> notify) override { listener_.watch(std::move(notify)); }
@@ -65,7 +68,15 @@ public:
     JobPage list(const JobQuery& query) override {
         return readers_.read([&](Session& session) { return list_jobs(session, query); });
     }
-    Depth depth() override { return readers_.read(count_waiting); }
+    Depth depth() override {
+        return readers_.read([this](Session& session) {
+            const UnixMs before = wall_clock();
+            const Counted counted = count_waiting(session);
+            ahead_ = counted.clock - (before + wall_clock()) / 2;
+            return counted.depth;
+        });
+    }
+    std::chrono::milliseconds clock_ahead() const override { return std::chrono::milliseconds(ahead_); }
 
     void accept(NewJob job, Done<Accepted> done) override { writer_.accept({std::move(job), std::move(done)}); }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
@@ -77,8 +88,8 @@ public:
     }
     void finish(JobEnd end, Done<bool> done) override { writer_.finish({std::move(end), std::move(done)}); }
     void release(std::string id, int attempts, Done<bool> done) override {
-        const auto work = [id = std::move(id), attempts](Session& session, Notices& notices) {
-            const std::optional<JobStatus> status = release_job(session, id, attempts, wall_clock());
+        const auto work = [this, id = std::move(id), attempts](Session& session, Notices& notices) {
+            const std::optional<JobStatus> status = release_job(session, id, attempts, wall_clock() + ahead_);
             if (status == JobStatus::queued) notices.queued();
             if (status == JobStatus::cancelled) notices.ended(id);
             return status.has_value();
@@ -161,6 +172,7 @@ private:
     void sweep_on(const Retention& retention, std::size_t most, std::size_t gone, Done<std::size_t> done);
 
     Readers readers_;
+    std::atomic<UnixMs> ahead_ = 0;  ///< the database's clock, before ours; measured with each count
     Listener listener_;
     // The first to go: they end what was asked for. What touches many rows has a connection of its own, so that jobs
     // which somebody waits for never wait behind a batch.

@@ -168,13 +168,14 @@ JobPage list_jobs(Session& session, const JobQuery& query) {
     return page;
 }
 
-JobStore::Depth count_waiting(Session& session) {
+Counted count_waiting(Session& session) {
     const pqxx::row row = session.run(
         "SELECT (SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0), "
         "(SELECT coalesce(sum(c.queued), 0) FROM batch_counts c JOIN batches b ON b.seq = c.batch "
         "WHERE b.state <> 'leaving'), "
-        "(SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= clock_timestamp())")[0];
-    return {row[0].as<std::size_t>(), row[1].as<std::size_t>(), row[2].as<std::size_t>()};
+        "(SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= clock_timestamp()), "
+        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint")[0];
+    return {{row[0].as<std::size_t>(), row[1].as<std::size_t>(), row[2].as<std::size_t>()}, row[3].as<UnixMs>()};
 }
 
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id) {

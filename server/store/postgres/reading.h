@@ -38,8 +38,12 @@ std::optional<JobRecord> find_record(Session& session, const std::string& id);
 std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids);
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Session& session, const JobQuery& query);
+struct Counted {
+    JobStore::Depth depth;
+    UnixMs clock = 0;  ///< the database's
+};
 /// How many single jobs, and how many entries of batches, wait.
-JobStore::Depth count_waiting(Session& session);
+Counted count_waiting(Session& session);
 /// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id);
 /// The id of the batch that `owner` posted under this idempotency key.

@@ -193,7 +193,8 @@ class ManyAtOnceTest(unittest.TestCase):
             for _ in range(50):
                 start = time.monotonic()
                 self.assertEqual(service.get("/v1/methods").status, 200)
-                self.assertLess(time.monotonic() - start, 5)
+                if "san" not in BINARY:  # heads that do not come would keep a place for 10 s
+                    self.assertLess(time.monotonic() - start, 10)
             for connection in crowd:
                 connection.close()
 

@@ -194,6 +194,7 @@ TEST(BodyStream, FourHundredOpenOnesAreAllServed) {
         clients.back()->send(get("/"));
     }
     for (const auto& client : clients) client->read_to("\r\n\r\n");
+    const std::lock_guard lock(mutex);  // all are there; the lock says so to who watches
     for (const auto& stream : streams) stream->write("data: x\n\n");
     for (const auto& client : clients) EXPECT_THAT(client->read_to("x\n\n"), HasSubstr("data: x\n\n"));
     for (const auto& stream : streams) stream->end();

@@ -213,6 +213,39 @@ TEST_F(PostgresStore, ACommitThatWasCutOffIsDoneAgain) {
     EXPECT_EQ(database_->run("SELECT count(*) FROM tunewright.jobs WHERE id = 'a'"), "1");
 }
 
+TEST_F(PostgresStore, ACommitThatNobodyCanAskAboutIsSaidToBeUnknown) {
+    const auto store = open();
+    database_->run(
+        "CREATE FUNCTION slow() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN PERFORM pg_sleep(60); RETURN NULL; END $$;"
+        "CREATE CONSTRAINT TRIGGER slow AFTER INSERT ON tunewright.jobs DEFERRABLE INITIALLY DEFERRED FOR EACH ROW "
+        "EXECUTE FUNCTION slow()");
+    std::promise<Outcome<Accepted>> accepted;
+    store->accept(job("a"), [&](auto outcome) { accepted.set_value(std::move(outcome)); });
+    wait_until(
+        "SELECT count(*) > 0 FROM pg_stat_activity WHERE wait_event = 'PgSleep' AND datname = current_database()");
+    database_->allow_connections(false);
+    const Outcome<Accepted> outcome = accepted.get_future().get();
+    ASSERT_TRUE(std::holds_alternative<StoreFault>(outcome));
+    EXPECT_EQ(std::get<StoreFault>(outcome).kind, StoreFault::Kind::unknown);
+    database_->allow_connections(true);
+}
+
+TEST_F(PostgresStore, WithoutNoticesItStaysHealthyAndAcceptsJobs) {
+    const auto store = open();
+    EXPECT_TRUE(accept(*store, "a"));
+    // Nobody may connect any more, and the connection that listens is cut; those that write and read stay.
+    EXPECT_EQ(database_->run("UPDATE pg_database SET datallowconn = false WHERE datname = current_database();"
+                             "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE query LIKE 'LISTEN%' AND "
+                             "datname = current_database()"),
+              "t");
+    for (int i = 0; i < 5; i++) {
+        EXPECT_TRUE(accept(*store, "b" + std::to_string(i)));
+        EXPECT_TRUE(store->healthy());
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    database_->allow_connections(true);
+}
+
 TEST_F(PostgresStore, ADatabaseOfANewerProgramIsLeftAlone) {
     open().reset();
     database_->run("INSERT INTO tunewright.schema_steps (step) VALUES (99)");

@@ -1,0 +1,54 @@
+// The PID law as a program computes it, once every sample time: the rules by which its integral and derivative are
+// formed. Gains, weights and filter are those of the continuous law (pid.h); as the sample time falls it becomes that
+// law.
+//
+// At t_k = k Ts the program reads r_k and y_k, and its output is held until the next one (zero-order hold), from
+// t_k + `computation_delay` on. Everything is at rest, and 0, before k = 0. With e = r - y_f and f = c r - y_f:
+//
+//   u_k = Kp (b r_k - y_f,k) + I_k + D_k
+//
+//   I   backward     I_k = I_{k-1} + Ki Ts e_k
+//       forward      I_k = I_{k-1} + Ki Ts e_{k-1}
+//       trapezoidal  I_k = I_{k-1} + Ki Ts (e_k + e_{k-1})/2
+//
+//   D   difference            D_k = Kd (f_k - f_{k-1})/Ts
+//       filtered, backward    D_k = (Tf D_{k-1} + Kd (f_k - f_{k-1}))/(Tf + Ts)
+//       filtered, forward     D_k = (1 - Ts/Tf) D_{k-1} + Kd (f_{k} - f_{k-1})/Tf
+//       filtered, trapezoidal D_k = ((2 Tf - Ts) D_{k-1} + 2 Kd (f_k - f_{k-1}))/(2 Tf + Ts)
+//       slope                 D_k = Kd (f_k - f_{k-M})/(M Ts)
+//       four points           D_k = Kd (3 f_k + f_{k-1} - f_{k-2} - 3 f_{k-3})/(10 Ts)
+//
+//   y_f by backward Euler: of the first order y_f,k = (Tf y_f,k-1 + Ts y_k)/(Tf + Ts); of the second, with v = dy_f/dt,
+//       v_k = (v_{k-1} + (2 Ts/Tf^2)(y_k - y_f,k-1))/(1 + 2 Ts/Tf + 2 (Ts/Tf)^2),   y_f,k = y_f,k-1 + Ts v_k.
+//
+// A velocity algorithm adds the increments of the same sum to what it last gave: within limits the same output.
+// Sources: Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund,
+// Advanced PID Control (2006), section 13.3. Slope and four points: the programs that use them (product/).
+#pragma once
+
+#include "engine/controller/pid.h"
+
+namespace tunewright {
+
+enum class IntegralRule { backward, forward, trapezoidal };
+
+enum class DerivativeRule {
+    difference,            ///< no filter of the derivative, whatever the gains say
+    filtered_backward,     ///< of the gains' `derivative` filter; without one the difference
+    filtered_forward,      ///< the same; stable only for Tf > Ts/2
+    filtered_trapezoidal,  ///< the same
+    slope,                 ///< over `slope_samples` periods; no filter
+    four_points,           ///< no filter
+};
+
+struct SampledPid {
+    ParallelPid gains;
+    double Ts = 0;  ///< > 0, time
+    IntegralRule integral = IntegralRule::backward;
+    DerivativeRule derivative = DerivativeRule::filtered_backward;
+    int slope_samples = 1;         ///< M >= 1
+    double computation_delay = 0;  ///< >= 0, time; also more than Ts
+    bool velocity = false;
+};
+
+}  // namespace tunewright

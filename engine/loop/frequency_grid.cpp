@@ -20,6 +20,8 @@ constexpr double kFarthestCrossing = 30;  // of ln omega from where the asymptot
 constexpr double kLightDamping = 0.3;     // below it a pole or zero shows as a resonance
 constexpr double kLeastWidth = 1e-6;      // of a resonance, relative: an undamped one has none
 
+using OpenLoop = std::function<std::complex<double>(double)>;
+
 struct Range {
     double low, high;
 };
@@ -38,50 +40,34 @@ void add_controller_corners(std::vector<double>& corners, const ParallelPid& c) 
 
 /// Where the low- and high-frequency asymptotes of |L| cross one: a slow loop's crossover can lie far below every
 /// corner.
-void add_asymptote_crossings(std::vector<double>& corners, const Loop& loop, double low, double high) {
+void add_asymptote_crossings(std::vector<double>& corners, const OpenLoop& open_loop, double low, double high,
+                             double highest) {
     const auto slope_crossing = [&](double omega, double ratio) {
-        const double here = magnitude(loop.open_loop({0, omega}));
-        const double there = magnitude(loop.open_loop({0, omega * ratio}));
+        const double here = magnitude(open_loop(omega));
+        const double there = magnitude(open_loop(omega * ratio));
         const double slope = std::log(there / here) / std::log(ratio);
         if (!std::isfinite(slope) || std::abs(slope) < kFlat) return 0.0;
         return omega * std::exp(std::clamp(-std::log(here) / slope, -kFarthestCrossing, kFarthestCrossing));
     };
-    const double below = slope_crossing(low * kFarBelow, 0.5), above = slope_crossing(high * kFarAbove, 2.0);
+    const double below = slope_crossing(low * kFarBelow, 0.5);
     if (below < low) add_corner(corners, below);
+    if (high * kFarAbove > highest) return;
+    const double above = slope_crossing(high * kFarAbove, 2.0);
     if (above > high) add_corner(corners, above);
 }
 
-Range range_of(const Loop& loop) {
+Range range_of(const LinearPlant& plant, const ParallelPid& gains, const OpenLoop& open_loop, double highest) {
     std::vector<double> corners;
-    for (const auto zero : loop.plant().zeros()) add_corner(corners, std::abs(zero));
-    for (const auto pole : loop.plant().poles()) add_corner(corners, std::abs(pole));
-    if (loop.plant().dead_time() > 0) add_corner(corners, 1 / loop.plant().dead_time());
-    add_controller_corners(corners, loop.gains());
+    for (const auto zero : plant.zeros()) add_corner(corners, std::abs(zero));
+    for (const auto pole : plant.poles()) add_corner(corners, std::abs(pole));
+    if (plant.dead_time() > 0) add_corner(corners, 1 / plant.dead_time());
+    add_controller_corners(corners, gains);
     if (corners.empty()) corners.push_back(1);
     const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
-    const double lowest = *low, highest = *high;
-    add_asymptote_crossings(corners, loop, lowest, highest);
+    const double first = std::min(*low, highest), last = *high;
+    add_asymptote_crossings(corners, open_loop, first, last, highest);
     const auto [lower, higher] = std::minmax_element(corners.begin(), corners.end());
-    return {*lower * kBelowCorners, *higher * kAboveCorners};
-}
-
-std::vector<double> base_frequencies(const Loop& loop, const Range& range, int density) {
-    const double decades = std::log10(range.high / range.low);
-    const int n = std::max(2, static_cast<int>(std::ceil(decades * density)));
-    std::vector<double> omega;
-    for (int i = 0; i <= n; ++i) omega.push_back(range.low * std::pow(10.0, decades * i / n));
-    // A lightly damped pole or zero shows between two points of any grid only if one is put there.
-    const auto add_resonance = [&](std::complex<double> root) {
-        if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
-        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
-        for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0})
-            if (centre + offset * width > 0) omega.push_back(centre + offset * width);
-    };
-    for (const auto pole : loop.plant().poles()) add_resonance(pole);
-    for (const auto zero : loop.plant().zeros()) add_resonance(zero);
-    std::sort(omega.begin(), omega.end());
-    omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
-    return omega;
+    return {std::min(*lower, highest) * kBelowCorners, std::min(*higher * kAboveCorners, highest)};
 }
 
 bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
@@ -91,11 +77,37 @@ bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
 
 }  // namespace
 
+std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid& gains, const OpenLoop& open_loop,
+                                     int density, double highest) {
+    const Range range = range_of(plant, gains, open_loop, highest);
+    const double decades = std::log10(range.high / range.low);
+    const int n = std::max(2, static_cast<int>(std::ceil(decades * density)));
+    std::vector<double> omega;
+    for (int i = 0; i <= n; ++i) omega.push_back(range.low * std::pow(10.0, decades * i / n));
+    // A lightly damped pole or zero shows between two points of any grid only if one is put there.
+    const auto add_resonance = [&](std::complex<double> root) {
+        if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
+        for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0})
+            if (centre + offset * width > 0 && centre + offset * width < highest)
+                omega.push_back(centre + offset * width);
+    };
+    for (const auto pole : plant.poles()) add_resonance(pole);
+    for (const auto zero : plant.zeros()) add_resonance(zero);
+    std::sort(omega.begin(), omega.end());
+    omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
+    return omega;
+}
+
 LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
-    const Range range = range_of(loop);
     const double L = loop.plant().dead_time();
-    const std::vector<double> base = base_frequencies(loop, range, density);
-    const double resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, range.low) : base.back();
+    const std::vector<double> base = base_frequencies(
+        loop.plant(), loop.gains(),
+        [&](double omega) {
+            return loop.open_loop({0, omega});
+        },
+        density);
+    const double resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, base.front()) : base.back();
     return refined_grid([&](double omega) { return loop.at(omega); }, base, resolved_to, step);
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "engine/loop/loop.h"
@@ -16,6 +17,13 @@ struct LoopGrid {
     std::vector<LoopPoint> point;  ///< the loop at each omega
     double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
 };
+
+/// Where a grid starts from: `density` points a decade from far below to far above every corner of plant and
+/// controller, or up to `highest`, and more at resonances. `open_loop`: L(j omega), asked at a few frequencies for
+/// where its asymptotes cross one. Ascending, at least two.
+std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid& gains,
+                                     const std::function<std::complex<double>(double)>& open_loop, int density,
+                                     double highest = std::numeric_limits<double>::infinity());
 
 /// A logarithmic grid from far below to far above every corner of plant, controller and filter, refined until
 /// neighbours of S differ by less than `step` (absolute, or relative where |S| > 1). `density` is the number of points

@@ -49,6 +49,14 @@ Complex resolvent_response(std::span<const double> A, std::span<const double> B,
     return c.cast<Complex>().dot(x) + D;
 }
 
+std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
+    Eigen::MatrixXcd pencil = (-as_matrix(A, n).transpose()).cast<Complex>();
+    pencil.diagonal().array() += s;
+    const Eigen::VectorXcd row =
+        pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
+    return {row.data(), row.data() + n};
+}
+
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     const Matrix result = as_matrix(matrix, n).exp();
     return {result.data(), result.data() + result.size()};

@@ -37,6 +37,10 @@ std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);
 std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
                                         double D, int n, std::complex<double> s);
 
+/// C (sI - A)^-1 for a row C: entries are not finite where s is an eigenvalue.
+std::vector<std::complex<double>> resolvent_row(std::span<const double> A, std::span<const double> C, int n,
+                                                std::complex<double> s);
+
 /// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n);
 

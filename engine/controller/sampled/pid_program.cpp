@@ -1,0 +1,86 @@
+#include "engine/controller/sampled/pid_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace tunewright {
+namespace {
+
+std::size_t samples_kept(const SampledPid& law) {
+    if (law.derivative == DerivativeRule::slope) return static_cast<std::size_t>(law.slope_samples);
+    return law.derivative == DerivativeRule::four_points ? 3 : 1;
+}
+
+double rounded(double value, double resolution) {
+    return resolution > 0 ? resolution * std::round(value / resolution) : value;
+}
+
+}  // namespace
+
+PidProgram::PidProgram(const SampledPid& law, const ProgramLimits& limits)
+    : law_(law), limits_(limits), past_(samples_kept(law), 0.0) {}
+
+double PidProgram::filtered(double y) {
+    const double Ts = law_.Ts, Tf = law_.gains.filter.Tf;
+    switch (law_.gains.filter.type) {
+        case FilterType::measurement_first_order: y_f_ = (Tf * y_f_ + Ts * y) / (Tf + Ts); return y_f_;
+        case FilterType::measurement_second_order: {
+            const double ratio = Ts / Tf;
+            v_ = (v_ + 2 * ratio / Tf * (y - y_f_)) / (1 + 2 * ratio + 2 * ratio * ratio);
+            y_f_ += Ts * v_;
+            return y_f_;
+        }
+        default: return y;
+    }
+}
+
+double PidProgram::derivative(double f) {
+    const double Ts = law_.Ts, Kd = law_.gains.Kd;
+    const bool has_filter = law_.gains.filter.type == FilterType::derivative;
+    const double Tf = has_filter ? law_.gains.filter.Tf : 0, move = Kd * (f - past_[0]);
+    switch (law_.derivative) {
+        case DerivativeRule::difference: D_ = move / Ts; break;
+        case DerivativeRule::filtered_backward: D_ = (Tf * D_ + move) / (Tf + Ts); break;
+        case DerivativeRule::filtered_forward: D_ = has_filter ? (1 - Ts / Tf) * D_ + move / Tf : move / Ts; break;
+        case DerivativeRule::filtered_trapezoidal:
+            D_ = has_filter ? ((2 * Tf - Ts) * D_ + 2 * move) / (2 * Tf + Ts) : move / Ts;
+            break;
+        case DerivativeRule::slope: D_ = Kd * (f - past_.back()) / (law_.slope_samples * Ts); break;
+        case DerivativeRule::four_points: D_ = Kd * (3 * (f - past_[2]) + past_[0] - past_[1]) / (10 * Ts); break;
+    }
+    std::rotate(past_.begin(), past_.end() - 1, past_.end());
+    past_[0] = f;
+    return D_;
+}
+
+double PidProgram::integral_increment(double e) const {
+    const double h = law_.gains.Ki * law_.Ts;
+    switch (law_.integral) {
+        case IntegralRule::backward: return h * e;
+        case IntegralRule::forward: return h * e_;
+        case IntegralRule::trapezoidal: return 0.5 * h * (e + e_);
+    }
+    return 0;
+}
+
+double PidProgram::step(double r, double y) {
+    y = rounded(y, limits_.y_resolution);
+    if (std::abs(r - y) < limits_.dead_band) y = r;
+    const double y_f = filtered(y), e = r - y_f, D_before = D_;
+    const double P = law_.gains.Kp * (law_.gains.b * r - y_f), D = derivative(law_.gains.c * r - y_f);
+    const double increment = integral_increment(e);
+    const auto within = [&](double u) {
+        return limits_.output ? std::clamp(u, limits_.output->min, limits_.output->max) : u;
+    };
+    double u = law_.velocity ? u_ + (P - P_) + increment + (D - D_before) : P + I_ + increment + D;
+    const bool drives_further = u != within(u) && (u > within(u)) == (increment > 0);
+    if (!drives_further) I_ += increment;
+    if (!law_.velocity) u = P + I_ + D;
+    u_ = within(u);
+    P_ = P;
+    e_ = e;
+    return rounded(u_, limits_.u_resolution);
+}
+
+}  // namespace tunewright

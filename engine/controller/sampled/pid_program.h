@@ -1,0 +1,43 @@
+// The sampled law as it runs: one call a sample, states within, limits and dead band of a real program.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/controller/sampled/sampled_pid.h"
+
+namespace tunewright {
+
+/// What a program has beside the linear law.
+struct ProgramLimits {
+    std::optional<ActuatorLimits> output;  ///< of u, deviations. Its integral waits while u is at a limit and it would
+                                           ///< drive u further; a velocity algorithm has nothing that winds up
+    double u_resolution = 0;               ///< >= 0: u is rounded to a multiple of it; 0: it is not
+    double y_resolution = 0;               ///< >= 0: y is read as a multiple of it
+    double dead_band = 0;                  ///< >= 0: a smaller |r - y| counts as none
+
+    bool linear() const { return !output && u_resolution == 0 && y_resolution == 0 && dead_band == 0; }
+};
+
+/// At rest, all states 0, until the first step.
+class PidProgram {
+public:
+    explicit PidProgram(const SampledPid& law, const ProgramLimits& limits = {});
+
+    /// The output u_k for what is read at t_k.
+    double step(double r, double y);
+
+private:
+    double filtered(double y);
+    double derivative(double f);
+    double integral_increment(double e) const;
+
+    SampledPid law_;
+    ProgramLimits limits_;
+    double y_f_ = 0, v_ = 0;    // the measurement's filter
+    std::vector<double> past_;  // f of the samples before, the latest first
+    double D_ = 0, I_ = 0, e_ = 0;
+    double P_ = 0, u_ = 0;  // of the sample before, for the velocity algorithm
+};
+
+}  // namespace tunewright

@@ -1,0 +1,36 @@
+// The evaluation of a loop as it is built: the controller computes once every sample time, with its own rules, and is
+// judged on the samples over frequency and on the continuous y over time.
+#pragma once
+
+#include <optional>
+
+#include "engine/controller/sampled/pid_program.h"
+#include "engine/evaluation/evaluation.h"
+#include "engine/expected.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/subject.h"
+
+namespace tunewright {
+
+/// What is known of a loop as it is built.
+struct BuiltLoop {
+    Robustness robustness;  ///< of the samples (loop/sampled/sampled_loop.h); of a nonlinear plant its linearisation's
+    Performance performance;
+    std::optional<Responses> responses;  ///< with points > 0 and a stable loop
+    std::vector<Warning> warnings;
+};
+
+/// Steps, horizon, traces and actuator limits as `options` say; noise figures are not computed. With a resolution or a
+/// dead band the loop need not come to rest: without a horizon its indices end where the same loop without them has
+/// settled. Error: unsupported for a plant that is known at points of its frequency response alone, which says nothing
+/// of what lies above pi/Ts; cancelled.
+Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& law, const ProgramLimits& limits,
+                                     const EvaluateOptions& options);
+
+/// The longest sample time that leaves Ms within `factor` > 1 times `Ms`, the continuous loop's, whose peak lies at
+/// `omega_Ms` (rad/time): of the program with the backward rules. All shorter ones that were looked at do so too.
+/// Relative error 1e-3. Empty where even a thousandth of 1/omega_Ms does not.
+std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
+                                          double omega_Ms, double factor);
+
+}  // namespace tunewright

@@ -1,0 +1,81 @@
+#include "engine/loop/sampled/held_plant.h"
+
+#include <cmath>
+
+#include "engine/numerics/linear_algebra.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+using Complex = std::complex<double>;
+
+constexpr double kOneMultiple = 1e-9;  // of a sample: a dead time that near to a multiple is one
+
+// e^(j x) - 1 without cancellation.
+Complex minus_one(double x) {
+    const double s = std::sin(0.5 * x);
+    return {-2 * s * s, std::sin(x)};
+}
+
+}  // namespace
+
+SampledDelay in_samples(double delay, double sample_time) {
+    const double count = delay / sample_time, nearest = std::round(count);
+    if (std::abs(count - nearest) <= kOneMultiple * std::max(1.0, nearest)) return {static_cast<int>(nearest), 0};
+    const double whole = std::floor(count);
+    return {static_cast<int>(whole), delay - whole * sample_time};
+}
+
+std::vector<double> integrated_exponential(std::span<const double> A, int n, double h) {
+    // The upper right block of exp([A, I; 0, 0] h).
+    const Index m = static_cast<Index>(n), size = 2 * m;
+    std::vector<double> block(size * size, 0.0);
+    for (Index i = 0; i < m; ++i) {
+        for (Index j = 0; j < m; ++j) block[i * size + j] = h * A[i * m + j];
+        block[i * size + m + i] = h;
+    }
+    const std::vector<double> exponential = matrix_exponential(block, 2 * n);
+    std::vector<double> psi(m * m);
+    for (Index i = 0; i < m; ++i)
+        for (Index j = 0; j < m; ++j) psi[i * m + j] = exponential[i * size + m + j];
+    return psi;
+}
+
+HeldPlant::HeldPlant(const LinearPlant& plant, double sample_time, double computation_delay)
+    : plant_(&plant), Ts_(sample_time) {
+    const SampledDelay delay = in_samples(plant.dead_time() + computation_delay, Ts_);
+    d_ = delay.whole;
+    delta_ = delay.rest;
+    const Realisation& r = plant.realisation();
+    const Index n = static_cast<Index>(r.n);
+    const auto effect_of_hold = [&](double h) {
+        std::vector<double> gamma(n);
+        if (h > 0) multiply(integrated_exponential(r.A, r.n, h), r.B, gamma);
+        return gamma;
+    };
+    E_ = product(r.A, integrated_exponential(r.A, r.n, Ts_), r.n);
+    Gamma0_ = effect_of_hold(Ts_ - delta_);
+    Gamma1_.assign(n, 0.0);
+    if (delta_ > 0) {
+        std::vector<double> scaled(r.A);
+        for (double& a : scaled) a *= Ts_ - delta_;
+        multiply(matrix_exponential(scaled, r.n), effect_of_hold(delta_), Gamma1_);
+    }
+    for (const Complex pole : plant.poles()) poles_.push_back(std::exp(pole * Ts_));
+    for (int i = 0; i < plant.integrators(); ++i) poles_.emplace_back(1.0);
+}
+
+Complex HeldPlant::at(double omega) const {
+    const Realisation& r = plant_->realisation();
+    const double x = omega * Ts_;
+    const Complex w = minus_one(x), back = std::polar(1.0, -x);
+    Complex response = back * r.D;
+    if (r.n > 0) {
+        const std::vector<Complex> row = resolvent_row(E_, r.C, r.n, w);
+        for (Index i = 0; i < row.size(); ++i) response += row[i] * (Gamma0_[i] + back * Gamma1_[i]);
+    }
+    return response * std::polar(1.0, -x * d_);
+}
+
+}  // namespace tunewright

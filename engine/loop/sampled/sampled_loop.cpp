@@ -1,0 +1,219 @@
+#include "engine/loop/sampled/sampled_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/numerics/fast_complex.h"
+
+namespace tunewright {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr int kGridDensity = 24;    // points a decade to start with
+constexpr double kGridStep = 0.15;  // of S between neighbours
+constexpr double kLowRise = 0.3;    // of |S| - 1: below it so flat a maximum needs a finer grid
+constexpr double kFinestStep = 5e-3;
+constexpr double kFarBelow = 1e-3;     // of 1/Ts: where the integral's phase is read
+constexpr double kLightDamping = 0.3;  // of a plant's pole: below it a resonance shows, also folded below pi/Ts
+constexpr double kLeastWidth = 1e-6;   // of a folded resonance, relative
+
+constexpr double kLargestTurn = 0.4;  // |q2 - q1| relative to the smaller: below it the argument cannot be mistaken
+constexpr double kBelowOne = 0.99;    // of |L| at both ends: 1 + L stays in the right half-plane
+constexpr double kBoundary = 1e-9;    // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
+constexpr int kMaxHalvings = 60;
+
+// 1 - e^(-j x) without cancellation.
+Complex one_minus_back(double x) {
+    const double s = std::sin(0.5 * x);
+    return {2 * s * s, std::sin(x)};
+}
+
+Complex integral_part(const SampledPid& law, Complex difference, Complex back) {
+    const Complex sum = law.gains.Ki * law.Ts / difference;
+    switch (law.integral) {
+        case IntegralRule::backward: return sum;
+        case IntegralRule::forward: return sum * back;
+        case IntegralRule::trapezoidal: return 0.5 * sum * (1.0 + back);
+    }
+    return 0;
+}
+
+Complex derivative_part(const SampledPid& law, Complex difference, Complex back, double x) {
+    const double Ts = law.Ts, Kd = law.gains.Kd;
+    const bool filtered = law.gains.filter.type == FilterType::derivative;
+    const double Tf = filtered ? law.gains.filter.Tf : 0;
+    switch (law.derivative) {
+        case DerivativeRule::difference: return Kd * difference / Ts;
+        case DerivativeRule::filtered_backward: return Kd * difference / (Ts + Tf * difference);
+        case DerivativeRule::filtered_forward:
+            return filtered ? Kd * difference / (Tf * difference + Ts * back) : Kd * difference / Ts;
+        case DerivativeRule::filtered_trapezoidal:
+            return filtered ? 2 * Kd * difference / (2 * Tf * difference + Ts * (1.0 + back)) : Kd * difference / Ts;
+        case DerivativeRule::slope: return Kd * one_minus_back(law.slope_samples * x) / (law.slope_samples * Ts);
+        case DerivativeRule::four_points: {
+            const Complex cubed = back * back * back;
+            return Kd * (3.0 * (1.0 - cubed) + back - back * back) / (10 * Ts);
+        }
+    }
+    return 0;
+}
+
+Complex filter_part(const SampledPid& law, Complex difference) {
+    const double ratio = law.gains.filter.Tf / law.Ts;
+    const Complex lag = ratio * difference;  // s Tf by backward Euler
+    switch (law.gains.filter.type) {
+        case FilterType::measurement_first_order: return 1.0 / (1.0 + lag);
+        case FilterType::measurement_second_order: return 1.0 / (1.0 + lag + 0.5 * lag * lag);
+        default: return 1;
+    }
+}
+
+// Of a derivative filter by the forward rule: outside the circle for Tf < Ts/2.
+double forward_pole(const SampledPid& law) {
+    const bool runs = law.derivative == DerivativeRule::filtered_forward &&
+                      law.gains.filter.type == FilterType::derivative && law.gains.Kd != 0;
+    return runs ? 1 - law.Ts / law.gains.filter.Tf : 0;
+}
+
+}  // namespace
+
+Complex pulse_response(const SampledPid& law, double omega) {
+    const double x = omega * law.Ts;
+    const Complex difference = one_minus_back(x), back = std::polar(1.0, -x);
+    Complex sum = law.gains.Kp;
+    if (law.gains.Ki != 0) sum += integral_part(law, difference, back);
+    if (law.gains.Kd != 0) sum += derivative_part(law, difference, back, x);
+    return sum * filter_part(law, difference);
+}
+
+LoopPoint SampledLoop::at(double omega) const {
+    const Complex C = pulse_response(law_, omega), L = plant_.at(omega) * C, S = quotient(1.0, 1.0 + L);
+    if (!std::isfinite(magnitude(L))) return {L, 0, 1, 0};  // at a pole of the plant on the circle
+    return {L, S, L * S, C * S};
+}
+
+double SampledLoop::highest_frequency() const { return std::numbers::pi / law_.Ts; }
+
+bool SampledLoop::finite_at_zero() const { return law_.gains.Ki == 0 && plant_.plant().integrators() <= 0; }
+
+LoopGrid SampledLoop::grid_from(double step) const {
+    const double highest = highest_frequency();
+    std::vector<double> base = base_frequencies(
+        plant_.plant(), law_.gains, [&](double omega) { return open_loop(std::min(omega, highest)); }, kGridDensity,
+        highest);
+    for (const Complex pole : plant_.plant().poles()) {
+        if (pole.imag() <= highest || std::abs(pole.real()) > kLightDamping * std::abs(pole)) continue;
+        const double folded = std::abs(std::remainder(pole.imag(), 2 * highest));
+        const double width = std::max(std::abs(pole.real()), kLeastWidth * folded);
+        for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0}) base.push_back(folded + offset * width);
+    }
+    std::erase_if(base, [&](double omega) { return !(omega > 0 && omega < highest); });
+    base.push_back(highest);
+    if (base.size() < 2) base.push_back(kFarBelow * highest);
+    std::sort(base.begin(), base.end());
+    base.erase(std::unique(base.begin(), base.end()), base.end());
+    return refined_grid([&](double omega) { return at(omega); }, base, highest, step);
+}
+
+LoopGrid SampledLoop::grid() const {
+    LoopGrid grid = grid_from(kGridStep);
+    double largest = 0;
+    for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
+    const double rise = largest - 1;
+    return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep)) : grid;
+}
+
+Peaks SampledLoop::peaks(const LoopGrid& grid) const {
+    Peaks peaks = find_interior_peaks([&](double omega) { return at(omega); }, grid);
+    if (!finite_at_zero()) return peaks;
+    const LoopPoint zero = at(0);
+    const auto raise = [](Peak& peak, double value) {
+        if (value >= peak.value) peak = {value, 0};
+    };
+    raise(peaks.S, std::abs(zero.S));
+    raise(peaks.T, std::abs(zero.T));
+    raise(peaks.CS, std::abs(zero.CS));
+    return peaks;
+}
+
+Margins SampledLoop::margins(const LoopGrid& grid) const {
+    return find_interior_margins([&](double omega) { return open_loop(omega); }, grid);
+}
+
+namespace {
+
+/// q = prod (1 - p/z) (1 + L) over the open loop's poles that do not lie well within the circle: the closed loop's
+/// characteristic polynomial over a power of z. From omega = 0 to pi/Ts its argument falls by pi for each of its zeros
+/// outside the circle.
+class Characteristic {
+public:
+    explicit Characteristic(const SampledLoop& loop) : loop_(loop), poles_(loop.plant().poles()) {
+        if (loop.law().gains.Ki != 0) poles_.emplace_back(1.0);
+        if (const double pole = forward_pole(loop.law()); pole != 0) poles_.emplace_back(pole);
+    }
+
+    struct Value {
+        double omega;
+        Complex open, returned;  // q = open (1 + L), returned = 1 + L
+        double size;             // 1 + |L|
+    };
+    Value at(double omega) const {
+        const double x = omega * loop_.law().Ts;
+        const Complex back = std::polar(1.0, -x), difference = one_minus_back(x), L = loop_.open_loop(omega);
+        Complex open = 1;
+        for (const Complex pole : poles_) open *= pole == 1.0 ? difference : 1.0 - pole * back;
+        return {omega, open, 1.0 + L, 1 + magnitude(L)};
+    }
+
+private:
+    const SampledLoop& loop_;
+    std::vector<Complex> poles_;
+};
+
+struct Turn {
+    double angle = 0;
+    bool boundary = false;
+};
+
+Turn turn_between(const Characteristic& q, const Characteristic::Value& left, const Characteristic::Value& right,
+                  int depth) {
+    if (std::min(magnitude(left.returned) / left.size, magnitude(right.returned) / right.size) <= kBoundary)
+        return {0, true};
+    const Complex open = quotient(right.open, left.open), step = open * quotient(right.returned, left.returned);
+    // Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
+    if (left.size < 1 + kBelowOne && right.size < 1 + kBelowOne && magnitude(open - 1.0) <= kLargestTurn)
+        return {std::arg(open) + std::arg(right.returned) - std::arg(left.returned), false};
+    if (magnitude(step - 1.0) <= kLargestTurn * std::min(1.0, magnitude(step))) return {std::arg(step), false};
+    if (depth == 0) return {std::arg(step), true};
+    const auto centre = q.at(std::sqrt(left.omega * right.omega));
+    const Turn first = turn_between(q, left, centre, depth - 1);
+    if (first.boundary) return first;
+    const Turn second = turn_between(q, centre, right, depth - 1);
+    return {first.angle + second.angle, second.boundary};
+}
+
+}  // namespace
+
+StabilityCount SampledLoop::count_unstable_poles() const {
+    const Characteristic q(*this);
+    const LoopGrid along = grid_from(kGridStep);
+    auto left = q.at(along.omega.front());
+    // q is real at both ends: what its argument lacks there to a multiple of pi belongs to the turn.
+    const double start = std::arg(left.open * left.returned);
+    double angle = start - std::numbers::pi * std::round(start / std::numbers::pi);
+    StabilityCount count;
+    for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {
+        const auto right = q.at(along.omega[i]);
+        const Turn turn = turn_between(q, left, right, kMaxHalvings);
+        angle += turn.angle;
+        count.on_the_boundary = turn.boundary;
+        left = right;
+    }
+    count.unstable_poles = static_cast<int>(std::lround(-angle / std::numbers::pi));
+    return count;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,52 @@
+// A linear plant under a controller that computes once every sample time, over frequency: what the program's samples
+// see, 0 <= omega <= pi/Ts.
+//
+//   L = P(z) C(z), S = 1/(1 + L), T = L/(1 + L), C S at z = e^(j omega Ts), P the plant behind its hold (held_plant.h),
+//   C = -u/y of the program with r = 0, its filter included.
+//
+// Ms and Mt are the suprema of |S| and |T| there, both ends included. As Ts falls they become the continuous loop's.
+#pragma once
+
+#include <complex>
+
+#include "engine/controller/sampled/sampled_pid.h"
+#include "engine/loop/frequency_grid.h"
+#include "engine/loop/margins.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/sampled/held_plant.h"
+#include "engine/loop/stability.h"
+
+namespace tunewright {
+
+/// C(z) of the program, z = e^(j omega Ts); infinite at omega = 0 with integral action.
+std::complex<double> pulse_response(const SampledPid& law, double omega);
+
+class SampledLoop {
+public:
+    /// The plant must outlive this. `law.Ts` > 0, gains finite.
+    SampledLoop(const LinearPlant& plant, const SampledPid& law)
+        : plant_(plant, law.Ts, law.computation_delay), law_(law) {}
+
+    LoopPoint at(double omega) const;  ///< 0 < omega <= pi/Ts; at 0 without integrators in plant and controller
+    std::complex<double> open_loop(double omega) const { return plant_.at(omega) * pulse_response(law_, omega); }
+
+    /// Closed-loop poles on and outside the unit circle, by the argument principle along it.
+    StabilityCount count_unstable_poles() const;
+
+    LoopGrid grid() const;
+    Peaks peaks(const LoopGrid& grid) const;      ///< of a stable loop
+    Margins margins(const LoopGrid& grid) const;  ///< of a stable loop; the delay margin is that of L's phase
+
+    const HeldPlant& plant() const { return plant_; }
+    const SampledPid& law() const { return law_; }
+    double highest_frequency() const;  ///< pi/Ts
+
+private:
+    bool finite_at_zero() const;
+    LoopGrid grid_from(double step) const;
+
+    HeldPlant plant_;
+    SampledPid law_;
+};
+
+}  // namespace tunewright

@@ -1,0 +1,182 @@
+#include "engine/simulation/sampled/sampled_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/loop/sampled/held_plant.h"
+#include "engine/simulation/run/stopping_rule.h"
+#include "engine/simulation/sampled/held_motion.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kMostHalvings = 12;  // of a piece, before a node is set whatever the cubic says
+constexpr int kRestSamples = 10;   // beyond the dead time: the least that a response must have rested for
+
+/// Where the linear loop rests.
+struct Rest {
+    bool exists = false;
+    double y = 0, u = 0;
+};
+
+Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
+    const double gain = plant.low_frequency_gain();
+    const int integrators = plant.integrators();
+    if (integrators < 0) return {gains.Ki == 0 || in.r == 0, 0, gains.Ki == 0 ? gains.Kp * gains.b * in.r : -in.d};
+    if (gains.Ki != 0) return {true, in.r, integrators > 0 ? -in.d : in.r / gain - in.d};
+    const double u0 = gains.Kp * gains.b * in.r;
+    if (integrators > 0) return {gains.Kp != 0, (u0 + in.d) / gains.Kp, -in.d};
+    const double y = gain * (u0 + in.d) / (1 + gain * gains.Kp);
+    return {std::isfinite(y), y, u0 - gains.Kp * y};
+}
+
+/// A piece of a sample period within which the plant's input and the output's value are constant.
+struct Piece {
+    double from = 0;  // time into the period
+    HeldMotion motion;
+    bool arrived;  // u_{k-d} drives the plant here; before it u_{k-d-1}
+    bool given;    // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
+};
+
+class SampledRun {
+public:
+    SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits, const StepInputs& inputs,
+               const SampledOptions& options);
+    StepResponse result();
+
+private:
+    std::vector<Piece> pieces(const LinearPlant& plant) const;
+    double input(int k, bool arrived) const { return past(k - to_plant_.whole - (arrived ? 0 : 1)); }
+    double output(int k, bool given) const { return past(k - computed_.whole - (given ? 0 : 1)); }
+    double past(int k) const { return k < 0 ? 0 : u_[static_cast<Index>(k)]; }
+    void sample(int k);
+    void run_period(int k);
+    void run_piece(Piece& piece, int level, double t, double v, double u);
+    void add_node(double t, double v, double u);
+    void note(double t);
+
+    const SampledPid law_;
+    const StepInputs in_;
+    const SampledOptions options_;
+    PidProgram program_;
+    SampledDelay to_plant_, computed_, load_;
+    Rest rest_;
+    HeldReader reader_;
+    std::vector<Piece> pieces_;
+    HeldState state_;
+    std::vector<double> u_;
+    double largest_y_ = 0, largest_u_ = 0, scale_ = 0;
+    double last_v_ = 0;
+    StoppingRule rule_;
+    StepResponse response_;
+};
+
+SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
+                       const StepInputs& inputs, const SampledOptions& options)
+    : law_(law),
+      in_(inputs),
+      options_(options),
+      program_(law, limits),
+      to_plant_(in_samples(plant.dead_time() + law.computation_delay, law.Ts)),
+      computed_(in_samples(law.computation_delay, law.Ts)),
+      load_(in_samples(plant.dead_time(), law.Ts)),
+      rest_(rest_of(plant, law.gains, inputs)),
+      reader_(plant),
+      pieces_(pieces(plant)),
+      rule_(options.settled, (to_plant_.whole + kRestSamples) * law.Ts) {
+    state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
+}
+
+std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
+    std::vector<double> borders{0, to_plant_.rest, computed_.rest, in_.d != 0 ? load_.rest : 0, law_.Ts};
+    std::sort(borders.begin(), borders.end());
+    borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
+    std::vector<Piece> made;
+    for (Index i = 0; i + 1 < borders.size(); ++i)
+        made.push_back({borders[i], HeldMotion(plant, borders[i + 1] - borders[i]), borders[i] >= to_plant_.rest,
+                        borders[i] >= computed_.rest});
+    return made;
+}
+
+void SampledRun::add_node(double t, double v, double u) {
+    const HeldOutput now = reader_.at(state_.x, v);
+    response_.nodes.push_back({t, now.y, now.slope, u, 0, in_.r * t - state_.y_integral});
+    largest_y_ = std::max(largest_y_, std::abs(now.y));
+    largest_u_ = std::max(largest_u_, std::abs(u));
+}
+
+// From the last node over 2^-level of the piece: a node at its end, and more within where a cubic would not do.
+void SampledRun::run_piece(Piece& piece, int level, double t, double v, double u) {
+    const ResponseNode left = response_.nodes.back();
+    const HeldState start = state_;
+    const double h = std::ldexp(piece.motion.length(), -level);
+    piece.motion.advance(state_, v, level + 1);
+    const double y_middle = reader_.at(state_.x, v).y;
+    const HeldState middle = state_;
+    piece.motion.advance(state_, v, level + 1);
+    const HeldOutput end = reader_.at(state_.x, v);
+    const double cubic = 0.5 * (left.y + end.y) + 0.125 * h * (left.y_slope - end.slope);
+    const double scale = std::max(largest_y_, std::abs(y_middle));
+    if (std::abs(cubic - y_middle) > options_.tolerance * scale && level < kMostHalvings) {
+        state_ = start;
+        run_piece(piece, level + 1, t, v, u);
+        run_piece(piece, level + 1, t + 0.5 * h, v, u);
+        return;
+    }
+    add_node(t + h, v, u);
+}
+
+void SampledRun::run_period(int k) {
+    const double t_k = k * law_.Ts;
+    for (Piece& piece : pieces_) {
+        const double t = t_k + piece.from;
+        const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
+        const double v = input(k, piece.arrived) + (loaded ? in_.d : 0), u = output(k, piece.given);
+        const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
+        if (jumps) add_node(t, v, u);
+        last_v_ = v;
+        run_piece(piece, 0, t, v, u);
+    }
+}
+
+void SampledRun::sample(int k) {
+    // Taken just before anything changes at t_k: what arrives at that very instant is not seen yet.
+    const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
+    u_.push_back(program_.step(in_.r, reader_.at(state_.x, v).y));
+}
+
+void SampledRun::note(double t) {
+    const ResponseNode& node = response_.nodes.back();
+    rule_.note(t, std::abs(node.y - rest_.y), std::max(largest_y_, std::abs(rest_.y)), std::abs(u_.back() - rest_.u),
+               std::max(largest_u_, std::abs(rest_.u)));
+}
+
+StepResponse SampledRun::result() {
+    response_.settles = false;
+    for (int k = 0; k < options_.most_samples; ++k) {
+        sample(k);
+        run_period(k);
+        const double t = (k + 1) * law_.Ts;
+        if (k < 2) scale_ = std::max({largest_y_, largest_u_, std::abs(in_.r), std::abs(in_.d), std::abs(rest_.u)});
+        if (!(largest_u_ <= kEscaped * scale_ && largest_y_ <= kEscaped * scale_)) break;
+        note(t);
+        response_.settles = options_.horizon ? t >= *options_.horizon : rest_.exists && rule_.has_settled(t);
+        if (response_.settles) break;
+    }
+    response_.y_final = rest_.y;
+    response_.u_final = rest_.u;
+    if (response_.settles && law_.gains.Ki != 0) response_.error_integral_final = response_.nodes.back().error_integral;
+    return std::move(response_);
+}
+
+}  // namespace
+
+StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
+                              const StepInputs& inputs, const SampledOptions& options) {
+    return SampledRun(plant, law, limits, inputs, options).result();
+}
+
+}  // namespace tunewright

@@ -42,7 +42,10 @@ private:
     std::optional<Error> find_plant();
     std::optional<Error> take_record();
     void state_problem();
-    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
+    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control,
+                                         std::optional<built::Fitted>& fitted) const;
+    void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
+    void add_sample_time(TuningEntry& entry) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
     std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
     bool repeats(const TuningEntry& entry) const;
@@ -172,15 +175,48 @@ void TuningRun::state_problem() {
         problem_->relay_point = result_.model->limit_cycle->describing_function;
 }
 
-Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control) const {
+// `fitted`: the settings, where the method designs for the controller as it is built.
+Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control,
+                                                std::optional<built::Fitted>& fitted) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
+    if (problem_ && request_.implement && method.tune_as_built) {
+        auto design = method.tune_as_built(*problem_, options, *request_.implement, control);
+        if (!design) return design.error();
+        fitted = std::move(design->fitted);
+        return std::move(design->tuned);
+    }
     if (problem_) return method.tune(*problem_, options, control);
     if (method.tune_on_points) return method.tune_on_points(*subject_->measured(), options, control);
     return Error{ErrorKind::unsupported, "",
                  "The method " + method.id +
                      " needs a model of the plant; points of a frequency response serve the method robust."};
+}
+
+// What keeps a controller from being built is a warning: the ideal loop is answered all the same.
+void TuningRun::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) {
+    if (!request_.implement || !entry.evaluation) return;
+    const built::Build& build = *request_.implement;
+    auto built = fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, *entry.evaluation)
+                        : built_from(*subject_, build, request_.evaluate, *entry.evaluation, control);
+    if (!built) {
+        entry.evaluation->warnings.push_back({"not-as-built", built.error().message});
+        return;
+    }
+    warn_of_difference(*entry.evaluation, *built);
+    entry.as_built = std::move(*built);
+}
+
+void TuningRun::add_sample_time(TuningEntry& entry) const {
+    constexpr double kWithin = 1.05;
+    const LinearPlant* plant = subject_->linear();
+    if (plant == nullptr || !entry.evaluation || std::holds_alternative<Npid>(entry.evaluation->controller)) return;
+    const Robustness& r = entry.evaluation->robustness;
+    if (!r.stable || !r.Ms || !r.omega_Ms || !(*r.omega_Ms > 0)) return;
+    entry.longest_sample_time =
+        Figure(longest_sample_time(*plant, gains(entry.evaluation->controller), *r.Ms, *r.omega_Ms, kWithin),
+               "No sample time was found that keeps Ms within 5 % and a longer one that does not.");
 }
 
 TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) {
@@ -191,7 +227,8 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem_ || on_points.empty() ? planned.method->options : on_points, planned.options);
     const double started = now_ms();
-    auto tuned = tuned_with(planned, share(from, to));
+    std::optional<built::Fitted> fitted;
+    auto tuned = tuned_with(planned, share(from, to), fitted);
     if (!tuned) {
         entry.error = placed(tuned.error(), planned.where);
         return entry;
@@ -201,6 +238,8 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);
+    add_as_built(entry, std::move(fitted), control_);
+    add_sample_time(entry);
     if (entry.evaluation) {
         warn_of_region(*entry.evaluation, entry.Ms_limit, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
@@ -239,6 +278,7 @@ TuningEntry TuningRun::baseline() {
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
     add_reports(entry, nullptr);
+    add_as_built(entry, std::nullopt, control_);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))

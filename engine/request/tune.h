@@ -29,6 +29,7 @@ struct TuningRequest {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
+    std::optional<built::Build> implement;  ///< the user's own controller, for which entries are settled and judged
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
 };
 

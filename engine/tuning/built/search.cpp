@@ -12,7 +12,10 @@ namespace tunewright::built {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNoCost = 1e6;       // of a logarithm: where no gain serves
+constexpr double kNoCost = 1e6;       // of a logarithm: where no gain serves under any limits
+constexpr double kOutside = 1e3;      // the same where one does under wider limits; more the wider they are
+constexpr double kWidest = 30;        // times M - 1 of the limits
+constexpr double kWider = 0.02;       // of ln: how well the width is known
 constexpr double kFirstStep = 0.25;   // of ln Ti and ln Td
 constexpr double kLaterStep = 0.08;   // of the searches that start again from the best
 constexpr double kNoGain = 1e-5;      // relative: a search that gains less is the last
@@ -32,6 +35,9 @@ public:
 
     /// The cost is infinite where no gain serves.
     Settings at(double Ti, double Td);
+    /// How far the limits would have to be widened for some gain to serve, as a factor of M - 1; infinite: no width
+    /// helps. It leads a search from times without a gain to times with one.
+    double widening(double Ti, double Td) const;
     /// With a gain that the whole loop, on a grid of its own, confirms.
     Settings confirmed(double Ti, double Td);
 
@@ -61,6 +67,17 @@ Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
 }
 
 Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), limits_); }
+
+double Search::widening(double Ti, double Td) const {
+    const auto serves = [&](double factor) {
+        const Limits wider{1 + factor * (limits_.Ms - 1), 1 + factor * (limits_.Mt - 1), {}};
+        return largest_gain(limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider).has_value();
+    };
+    double low = 0, high = std::log(kWidest);
+    if (!serves(kWidest)) return kInfinity;
+    while (high - low > kWider) (serves(std::exp(0.5 * (low + high))) ? high : low) = 0.5 * (low + high);
+    return std::exp(high);
+}
 
 Settings Search::confirmed(double Ti, double Td) {
     Limits limits = limits_;
@@ -112,7 +129,9 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
             stop = control.stop.stop_requested();
             const auto [i, d] = times_of(point);
             const double IAE = local.at(i, d).load_IAE;
-            return std::isfinite(IAE) && IAE > 0 ? std::log(IAE) : kNoCost;
+            if (std::isfinite(IAE) && IAE > 0) return std::log(IAE);
+            const double factor = local.widening(shape.Ti.within(i), shape.Td.within(d));
+            return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
         };
         bool stop = false;
         double reached = cost(x, stop), step = kFirstStep;

@@ -1,0 +1,32 @@
+// The user's own controller in a request: which product, with which spans, or a program of the ideal form.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "api/describe/description.h"
+#include "engine/tuning/built/build.h"
+
+namespace tunewright::api {
+
+/// As sent.
+struct GivenBuild {
+    std::optional<std::string> product;
+    std::optional<std::vector<double>> y_span, u_span;
+    std::optional<double> sample_time;
+    std::optional<IntegralRule> integral;
+    enum class Derivative { difference, filtered };
+    std::optional<Derivative> derivative;
+    std::optional<bool> velocity;
+    double computation_delay = 0;
+    double u_resolution = 0, y_resolution = 0, dead_band = 0;
+};
+
+const Description<GivenBuild>& implement_contract();
+
+/// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a span or a
+/// sample time that the product needs, a label that is no unit of time.
+std::optional<built::Build> to_engine(const GivenBuild& given, const std::string& time_label, Reader& reader);
+
+}  // namespace tunewright::api

@@ -18,7 +18,7 @@ Figure percent_above(const Figure& built, const Figure& ideal) {
 Expected<BuiltLoop> loop_of(const Subject& subject, const built::Build& build, const built::Fitted& fitted,
                             const EvaluateOptions& options) {
     if (build.sampled()) return evaluate_sampled(subject, fitted.law, build.program, options);
-    auto evaluation = evaluate(subject, fitted.controller, options);
+    auto evaluation = evaluate(subject, built::continuous(fitted.controller), options);
     if (!evaluation) return evaluation.error();
     return BuiltLoop{evaluation->robustness, evaluation->performance, evaluation->responses, {}};
 }
@@ -40,9 +40,10 @@ Expected<built::Fitted> nearest(const Subject& subject, const built::Build& buil
     wish.start = pid;
     auto fitted = built::design(build, {plant}, wish, control);
     if (!fitted) return why;
-    fitted->notes.insert(fitted->notes.begin(),
-                         {"nearest-settings", why.message + " These settings are the best that the block has within the "
-                                                            "ideal loop's own Ms and Mt."});
+    fitted->notes.insert(
+        fitted->notes.begin(),
+        {"nearest-settings", why.message + " These settings are the best that the block has within the "
+                                           "ideal loop's own Ms and Mt."});
     return fitted;
 }
 
@@ -76,8 +77,9 @@ Expected<AsBuilt> built_from(const Subject& subject, const built::Build& build, 
 void warn_of_difference(Evaluation& evaluation, const AsBuilt& built) {
     if (!built.loop.robustness.stable) {
         evaluation.warnings.push_back(
-            {"unstable-as-built", "On the controller as it is built the loop is unstable: sample faster, or design for "
-                                  "the controller with the method robust."});
+            {"unstable-as-built",
+             "On the controller as it is built the loop is unstable: sample faster, or design for "
+             "the controller with the method robust."});
         return;
     }
     std::string moved;

@@ -26,7 +26,7 @@ struct TuningEntry {
     std::optional<AsBuilt> as_built;           ///< where asked for and possible
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;
-    std::optional<Evaluation> evaluation;      ///< warnings of the method come first in its list
+    std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 
     /// The report of this type; null if there is none.

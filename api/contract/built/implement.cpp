@@ -23,8 +23,9 @@ void check_rules(const Json& value, GivenBuild& given, Reader& reader) {
     check_span(given.y_span, "y_span", reader);
     check_span(given.u_span, "u_span", reader);
     if (!given.product && !given.sample_time)
-        reader.fault("implement names neither a product nor a sample_time; give the product's id (GET /v1/controllers "
-                     "lists them), or the sample_time of a program.");
+        reader.fault(
+            "implement names neither a product nor a sample_time; give the product's id (GET /v1/controllers "
+            "lists them), or the sample_time of a program.");
     if (!given.product) return;
     for (const char* name : {"integral", "derivative", "algorithm"})
         if (value.contains(name))
@@ -48,8 +49,7 @@ const Description<GivenBuild>& implement_contract() {
         d.field("product", &G::product, maybe(text(kLongestId)), "Id of a product, as GET /v1/controllers lists them.")
             .field("y_span", &G::y_span, maybe(numbers(2, 2)), "Low and high end of the measurement's range.",
                    {.unit = "y"})
-            .field("u_span", &G::u_span, maybe(numbers(2, 2)), "Low and high end of the output's range.",
-                   {.unit = "u"})
+            .field("u_span", &G::u_span, maybe(numbers(2, 2)), "Low and high end of the output's range.", {.unit = "u"})
             .field("sample_time", &G::sample_time, maybe(number({.exclusive_minimum = 0})),
                    "Period of the controller. Without it a product runs at its own default period where that is known, "
                    "else it counts as continuous.",
@@ -95,7 +95,8 @@ const product::Product* product_of(const std::string& id, Reader& reader) {
     std::string scratch;
     for (const product::Product& product : product::catalogue()) ids.push_back(known_id(product, scratch));
     const std::string meant = nearest(id, ids);
-    reader.fault_at("product", "product is \"" + id + "\", which is not in the catalogue; GET /v1/controllers lists it." +
+    reader.fault_at("product", "product is \"" + id +
+                                   "\", which is not in the catalogue; GET /v1/controllers lists it." +
                                    (meant.empty() ? "" : " Did you mean " + meant + "?"));
     return nullptr;
 }

@@ -10,6 +10,8 @@
 namespace tunewright::built {
 namespace {
 
+// Of M - 1, left for the rounding of what is typed: the least with which settings are found that hold the limits.
+constexpr double kMargins[] = {0, 0.001, 0.004, 0.015, 0.05};
 constexpr double kEqualTimes = 0.5;  // of sqrt(Ti Td): a start of a series form whose ideal twin has complex zeros
 
 /// Text and value of what is typed, one for each setting.
@@ -37,6 +39,11 @@ Law program_of(const Build& build, const IdealPid& pid) {
 
 }  // namespace
 
+IdealPid continuous(IdealPid pid) {
+    if (pid.filter.type != FilterType::derivative) pid.c = 0;
+    return pid;
+}
+
 Expected<Fitted> fit(const Build& build, const product::Settings& typed) {
     const product::Product& product = *build.product;
     Fitted fitted;
@@ -46,7 +53,7 @@ Expected<Fitted> fit(const Build& build, const product::Settings& typed) {
     if (!twin) return twin.error();
     fitted.controller = *twin;
     if (!build.sampled()) {
-        fitted.law.gains = to_parallel(*twin);
+        fitted.law.gains = to_parallel(continuous(*twin));
         return fitted;
     }
     fitted.law = product::sampled_law(product, fitted.typed, build.context, build.Ts);
@@ -121,7 +128,8 @@ IdealPid OwnForm::controller(double gain, double Ti, double Td) const {
 Settings start_of(const Build& build, const Wish& wish) {
     Settings start{wish.start.Kp, wish.start.Ti, wish.start.Td, 0};
     if (build.product == nullptr || build.product->form != product::Form::series || start.Td <= 0) return start;
-    const double alpha = series_alpha(*build.product), root = start.Ti * start.Ti - 4 * start.Ti * start.Td / (1 - alpha);
+    const double alpha = series_alpha(*build.product),
+                 root = start.Ti * start.Ti - 4 * start.Ti * start.Td / (1 - alpha);
     const double td = root > 0 ? 0.5 * (start.Ti - std::sqrt(root)) : kEqualTimes * std::sqrt(start.Ti * start.Td);
     start.Ti = std::max(start.Ti - (1 - alpha) * td, td);
     start.Td = td;
@@ -159,12 +167,17 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
         if (build.product == nullptr) law.derivative = rule_of(build, pid);
         return law;
     };
-    const auto found = search(plants, shape, wish.limits, {start}, control);
-    if (!found) return found.error();
-    const IdealPid pid = form.controller(std::abs(found->gain), found->Ti, found->Td);
-    auto fitted = fit(build, pid, true);
-    if (!fitted || build.product == nullptr) return fitted;
-    return on_grid(build, plants, wish.limits, std::move(*fitted), control);
+    Expected<Fitted> last = Error{};
+    for (const double margin : kMargins) {
+        const auto found = search(plants, shape, within(wish.limits, margin), {start}, control);
+        if (!found) return found.error();
+        start = *found;
+        last = fit(build, form.controller(std::abs(found->gain), found->Ti, found->Td), true);
+        if (!last || build.product == nullptr) return last;
+        last = on_grid(build, plants, wish.limits, std::move(*last), control);
+        if (last || last.error().kind != ErrorKind::no_feasible_controller) return last;
+    }
+    return last;
 }
 
 }  // namespace tunewright::built

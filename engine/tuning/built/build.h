@@ -18,8 +18,8 @@ namespace tunewright::built {
 /// How the user's controller computes: a product, or a sampled program of the ideal form.
 struct Build {
     const product::Product* product = nullptr;
-    product::Context context = {};                 ///< of the product
-    double Ts = 0;                                 ///< sample time, in the plant's unit; 0: continuous
+    product::Context context = {};                   ///< of the product
+    double Ts = 0;                                   ///< sample time, in the plant's unit; 0: continuous
     IntegralRule integral = IntegralRule::backward;  ///< this and the next two: without a product
     std::optional<DerivativeRule> derivative = {};   ///< empty: by the controller's filter
     bool velocity = false;
@@ -44,6 +44,10 @@ Expected<Fitted> fit(const Build& build, const IdealPid& pid, bool nearest = fal
 
 /// The same of settings as they stand in the product.
 Expected<Fitted> fit(const Build& build, const product::Settings& typed);
+
+/// The same loop as a continuous one can be: a difference of r without a filter has no finite step response there, so c
+/// is 0 then.
+IdealPid continuous(IdealPid pid);
 
 /// What a design is asked for.
 struct Wish {

@@ -69,8 +69,7 @@ PeakValues peaks_of(const LinearPlant& plant, const Law& law) {
 }
 
 double load_iae_of(const LinearPlant& plant, const Law& law) {
-    if (sampled(law))
-        return iae(simulate_sampled(plant, law, {}, {0, 1}, {kTolerance, kSettled, {}}));
+    if (sampled(law)) return iae(simulate_sampled(plant, law, {}, {0, 1}, {kTolerance, kSettled, {}}));
     ResponseOptions options;
     options.tolerance = kTolerance;
     options.settled = kSettled;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kInside = 1 - 1e-9;  // of a limit's gain: the limit itself holds to rounding
+constexpr double kJoin = 1e-9;        // relative: by so much a refined interval overlaps the grid's
 constexpr double kNearEnd = 0.999;    // of a gap's upper end: where its stability is asked
 
 struct Range {
@@ -58,6 +59,14 @@ double first_of(const Forbidden& f) {
     return first;
 }
 
+/// Where what a low gain may not be ends; 0 where nothing or everything above is forbidden.
+double last_of(const Forbidden& f) {
+    double last = 0;
+    for (const Range& range : {f.S, f.T, f.CS})
+        if (!range.empty() && range.to < kInfinity) last = std::max(last, range.to);
+    return last;
+}
+
 }  // namespace
 
 GainLimiter::GainLimiter(const LinearPlant& plant, const Law& law)
@@ -79,7 +88,7 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
         return forbidden_at(built_.at(omega) * C, C, limits);
     };
     std::vector<Interval> all;
-    std::vector<double> first(omega_.size());
+    std::vector<double> first(omega_.size()), last(omega_.size());
     std::optional<Forbidden> before;
     for (std::size_t i = 0; i < omega_.size(); ++i) {
         const std::complex<double> C = unit(omega_[i]), G = P_[i] * C;
@@ -93,19 +102,27 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
             const Range& here = f.*part;
             if (here.empty()) continue;
             // From one frequency to the next an interval moves without a break and forbids all that it sweeps over.
-            const Range last = before ? (*before).*part : Range{};
-            all.push_back({last.empty() ? here.from : std::min(here.from, last.from),
-                           last.empty() ? here.to : std::max(here.to, last.to), omega_[i]});
+            const Range past = before ? (*before).*part : Range{};
+            // Below the first the two integrators of plant and controller carry it on to 0.
+            const double first_from = i == 0 ? 0 : here.from;
+            all.push_back({past.empty() ? first_from : std::min(here.from, past.from),
+                           past.empty() ? here.to : std::max(here.to, past.to), omega_[i]});
         }
         first[i] = first_of(f);
+        last[i] = last_of(f);
         before = f;
     }
-    // Between two frequencies an interval may begin lower than at either: followed where the grid's is lowest.
+    // Between two frequencies an interval may begin lower or end higher than at either: followed where the grid's does.
     for (std::size_t i = 1; i + 1 < omega_.size(); ++i) {
+        if (last[i] > 0 && last[i] >= last[i - 1] && last[i] >= last[i + 1]) {
+            const auto f = [&](double omega) { return last_of(at(omega)); };
+            const Maximum most = log_maximum(f, omega_[i - 1], {omega_[i], last[i]}, omega_[i + 1]);
+            all.push_back({last[i] * (1 - kJoin), most.value, most.x});
+        }
         if (!(first[i] < kInfinity) || first[i] > first[i - 1] || first[i] > first[i + 1] || first[i] == 0) continue;
         const auto f = [&](double omega) { return 1 / first_of(at(omega)); };
         const Maximum least = log_maximum(f, omega_[i - 1], {omega_[i], 1 / first[i]}, omega_[i + 1]);
-        if (least.value > 0) all.push_back({1 / least.value, first[i] * (1 + 1e-9), least.x});
+        if (least.value > 0) all.push_back({1 / least.value, first[i] * (1 + kJoin), least.x});
     }
     std::sort(all.begin(), all.end(), [](const Interval& a, const Interval& b) { return a.from < b.from; });
     std::vector<Interval> joined;

@@ -28,7 +28,8 @@ public:
         double from = 0, to = 0;
         double omega = 0;  ///< that sets `from`
     };
-    std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit, const Limits& limits) const;
+    std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit,
+                                    const Limits& limits) const;
 
     const LinearPlant& plant() const { return built_.plant(); }
 

@@ -12,24 +12,35 @@ namespace tunewright::built {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNoCost = 1e6;       // of a logarithm: where no gain serves under any limits
-constexpr double kOutside = 1e3;      // the same where one does under wider limits; more the wider they are
-constexpr double kWidest = 30;        // times M - 1 of the limits
-constexpr double kWider = 0.02;       // of ln: how well the width is known
-constexpr double kFirstStep = 0.25;   // of ln Ti and ln Td
-constexpr double kLaterStep = 0.08;   // of the searches that start again from the best
-constexpr double kNoGain = 1e-5;      // relative: a search that gains less is the last
+constexpr double kNoCost = 1e6;      // of a logarithm: where no gain serves under any limits
+constexpr double kOutside = 1e3;     // the same where one does under wider limits; more the wider they are
+constexpr double kWidest = 30;       // times M - 1 of the limits
+constexpr double kWider = 0.02;      // of ln: how well the width is known
+constexpr double kFirstStep = 0.25;  // of ln Ti and ln Td
+constexpr double kLaterStep = 0.08;  // of the searches that start again from the best
+constexpr double kNoGain = 1e-5;     // relative: a search that gains less is the last
 constexpr int kMaxRestarts = 4;
 constexpr int kMostEvaluations = 150;  // of one simplex
 constexpr double kTolerance = 1e-6;    // of ln IAE
 constexpr int kMaxCorrections = 6;
-constexpr double kHolds = 1e-6;        // relative excess over a limit that counts as none
+constexpr double kMargin = 1e-5;  // of M - 1: where limits bound the gain from both sides, the last grid may differ
+constexpr double kHolds = 1e-6;   // relative excess over a limit that counts as none
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
+
+}  // namespace
+
+Limits within(const Limits& limits, double margin) {
+    Limits inner{1 + (limits.Ms - 1) * (1 - margin), 1 + (limits.Mt - 1) * (1 - margin), limits.Mks};
+    if (inner.Mks) *inner.Mks *= 1 - margin;
+    return inner;
+}
+
+namespace {
 
 class Search {
 public:
     Search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits, const Law& first)
-        : plants_(plants), shape_(shape), limits_(limits) {
+        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargin)) {
         for (const LinearPlant* plant : plants) limiters_.emplace_back(*plant, first);
     }
 
@@ -48,13 +59,14 @@ private:
 
     const std::vector<const LinearPlant*>& plants_;
     const Shape& shape_;
-    const Limits limits_;
+    const Limits limits_, inner_;
     std::vector<GainLimiter> limiters_;
 };
 
 Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
     Settings best{0, Ti, Td, kInfinity};
-    const auto k = largest_gain(limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits);
+    const auto k = largest_gain(
+        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits);
     if (!k || *k < shape_.gain.low) return best;
     const double most = std::min(*k, shape_.gain.high);
     best = {shape_.sign * most, Ti, Td, cost(most, Ti, Td)};
@@ -66,12 +78,14 @@ Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
     return best;
 }
 
-Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), limits_); }
+Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), inner_); }
 
 double Search::widening(double Ti, double Td) const {
     const auto serves = [&](double factor) {
-        const Limits wider{1 + factor * (limits_.Ms - 1), 1 + factor * (limits_.Mt - 1), {}};
-        return largest_gain(limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider).has_value();
+        const Limits wider{1 + factor * (inner_.Ms - 1), 1 + factor * (inner_.Mt - 1), {}};
+        return largest_gain(
+                   limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider)
+            .has_value();
     };
     double low = 0, high = std::log(kWidest);
     if (!serves(kWidest)) return kInfinity;
@@ -80,7 +94,7 @@ double Search::widening(double Ti, double Td) const {
 }
 
 Settings Search::confirmed(double Ti, double Td) {
-    Limits limits = limits_;
+    Limits limits = inner_;
     Settings found;
     for (int i = 0; i < kMaxCorrections; ++i) {
         found = with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), limits);
@@ -92,9 +106,7 @@ Settings Search::confirmed(double Ti, double Td) {
             excess = std::max(excess, peaks_of(*plant, built).excess(limits_));
         }
         if (excess <= kHolds) return found;
-        limits.Ms = 1 + (limits.Ms - 1) * (1 - 2 * excess);
-        limits.Mt = 1 + (limits.Mt - 1) * (1 - 2 * excess);
-        if (limits.Mks) *limits.Mks /= 1 + excess;
+        limits = within(limits, 2 * excess);
     }
     found.load_IAE = kInfinity;
     return found;

@@ -29,8 +29,12 @@ struct Settings {
     double load_IAE = 0;              ///< the search's own, to about 1e-4
 };
 
+/// Tighter limits: each M - 1 less by the share `margin`, Mks too.
+Limits within(const Limits& limits, double margin);
+
 /// By simplices over (Ti, Td), the gain at its largest within the limits, from each of `starts`, whose gains are only
-/// where the loop's frequencies are chosen at. `plants`: the nominal one first, whose load IAE counts; limits hold on all, to 1e-6. Errors: no_feasible_controller; cancelled.
+/// where the loop's frequencies are chosen at. `plants`: the nominal one first, whose load IAE counts; limits hold on
+/// all, to 1e-6. Errors: no_feasible_controller; cancelled.
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
                           const std::vector<Settings>& starts, const RunControl& control);
 

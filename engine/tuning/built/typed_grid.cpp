@@ -13,7 +13,7 @@ constexpr double kHolds = 1e-6;    // relative excess over a limit that counts a
 constexpr double kCoarse = 0.004;  // of a value: larger steps are worth a look at the neighbours too
 constexpr int kFarSteps = 2;       // so many steps beyond floor and ceiling, where they are coarse
 constexpr int kMostGains = 6;      // steps of the gain that are tried below the first
-constexpr double kALittle = 1.01;   // times a number, to see which way it acts
+constexpr double kALittle = 1.01;  // times a number, to see which way it acts
 constexpr int kTypedDigits = 4;    // of a number without a resolution of its own
 
 /// One number that can be typed.
@@ -107,9 +107,8 @@ void Grid::look_at_gains(product::Settings settings, const Number& gain) {
     std::vector<double> values = gain.values;
     // A proportional band runs against the gain.
     const bool band = weakens(build_, settings, gain.at);
-    std::sort(values.begin(), values.end(), [&](double a, double b) {
-        return band ? std::abs(a) < std::abs(b) : std::abs(a) > std::abs(b);
-    });
+    std::sort(values.begin(), values.end(),
+              [&](double a, double b) { return band ? std::abs(a) < std::abs(b) : std::abs(a) > std::abs(b); });
     for (int i = 0; i < kMostGains; ++i) {
         const double next = values.back() + (band ? gain_step_ : -gain_step_) * (first < 0 ? -1 : 1);
         if ((next > 0) == (first > 0)) values.push_back(next);

@@ -10,8 +10,8 @@ namespace {
 
 using namespace robust;
 
-constexpr double kHold = 0.5;         // of a sample: the mean delay of the hold
-constexpr double kTiedFilter = 0.1;   // Tf/Td where the plant suggests no filter time but the sampling bounds the gain
+constexpr double kHold = 0.5;        // of a sample: the mean delay of the hold
+constexpr double kTiedFilter = 0.1;  // Tf/Td where the plant suggests no filter time but the sampling bounds the gain
 
 /// The plant as a sampled program sees it, nearly: later by half a sample and by the computation. An ideal design for
 /// it is where the search starts; with any sampling it has a finite optimum.
@@ -63,7 +63,7 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
     auto fitted = built::design(build, plants, wish, control);
     if (!fitted) return fitted.error();
     BuiltDesign design{std::move(*start), std::move(*fitted)};
-    design.tuned.controller = design.fitted.controller;
+    design.tuned.controller = built::continuous(design.fitted.controller);
     design.tuned.warnings.clear();
     design.tuned.Ms_limit = options.Ms;
     if (options.objective != Objective::load_iae || options.constraint != Constraint::circles)

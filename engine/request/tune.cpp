@@ -45,6 +45,8 @@ private:
     Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control,
                                          std::optional<built::Fitted>& fitted) const;
     void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
+    void take_built(TuningEntry& entry, Expected<AsBuilt> built);
+    void add_baseline_as_built(TuningEntry& entry);
     void add_sample_time(TuningEntry& entry) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
     std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
@@ -200,12 +202,25 @@ void TuningRun::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fi
     const built::Build& build = *request_.implement;
     auto built = fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, *entry.evaluation)
                         : built_from(*subject_, build, request_.evaluate, *entry.evaluation, control);
+    take_built(entry, std::move(built));
+}
+
+void TuningRun::take_built(TuningEntry& entry, Expected<AsBuilt> built) {
     if (!built) {
         entry.evaluation->warnings.push_back({"not-as-built", built.error().message});
         return;
     }
     warn_of_difference(*entry.evaluation, *built);
     entry.as_built = std::move(*built);
+}
+
+// Settings that were given as typed are judged as they stand, whatever the others are made for.
+void TuningRun::add_baseline_as_built(TuningEntry& entry) {
+    if (!request_.baseline_settings || !entry.evaluation) return add_as_built(entry, std::nullopt, control_);
+    const auto& [build, settings] = *request_.baseline_settings;
+    auto fitted = built::fit(build, settings);
+    if (!fitted) return take_built(entry, fitted.error());
+    take_built(entry, judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, *entry.evaluation));
 }
 
 void TuningRun::add_sample_time(TuningEntry& entry) const {
@@ -278,7 +293,7 @@ TuningEntry TuningRun::baseline() {
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
     add_reports(entry, nullptr);
-    add_as_built(entry, std::nullopt, control_);
+    add_baseline_as_built(entry);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/contract/built/settings.h"
 #include "api/csv/time_stamp.h"
 #include "engine/controller/product/catalogue.h"
 
@@ -30,11 +31,6 @@ void check_rules(const Json& value, GivenBuild& given, Reader& reader) {
     for (const char* name : {"integral", "derivative", "algorithm"})
         if (value.contains(name))
             reader.fault_at(name, std::string(name) + " is the product's own; leave it out, or leave out product.");
-}
-
-const std::string& known_id(const product::Product& product, std::string& scratch) {
-    scratch = product.id;
-    return scratch;
 }
 
 }  // namespace
@@ -92,8 +88,7 @@ namespace {
 const product::Product* product_of(const std::string& id, Reader& reader) {
     if (const auto* product = product::find(id)) return product;
     std::vector<std::string> ids;
-    std::string scratch;
-    for (const product::Product& product : product::catalogue()) ids.push_back(known_id(product, scratch));
+    for (const product::Product& product : product::catalogue()) ids.emplace_back(product.id);
     const std::string meant = nearest(id, ids);
     reader.fault_at("product", "product is \"" + id +
                                    "\", which is not in the catalogue; GET /v1/controllers lists it." +
@@ -107,7 +102,7 @@ DerivativeRule rule_of(GivenBuild::Derivative given) {
 
 }  // namespace
 
-std::optional<built::Build> to_engine(const GivenBuild& given, const std::string& time_label, Reader& reader) {
+std::optional<built::Build> build_of(const GivenBuild& given, const std::string& time_label, Reader& reader) {
     built::Build build;
     if (given.product) {
         build.product = product_of(*given.product, reader);
@@ -142,6 +137,45 @@ std::optional<built::Build> to_engine(const GivenBuild& given, const std::string
     build.computation_delay = given.computation_delay;
     build.program = {{}, given.u_resolution, given.y_resolution, given.dead_band};
     return build;
+}
+
+void check_needs(const built::Build& build, Reader& reader) {
+    if (build.product == nullptr) return;
+    // Any law shows what the formulas need.
+    const auto any = product::to_settings(*build.product, IdealPid{.Kp = 1, .Ti = 10}, build.context, true);
+    if (!any && any.error().kind == ErrorKind::invalid_argument)
+        reader.fault_at(any.error().where, any.error().message);
+}
+
+GivenBuild GivenBaseline::build(const std::optional<GivenBuild>& others) const {
+    GivenBuild built;
+    built.product = product;
+    const GivenBuild other = others.value_or(GivenBuild{});
+    built.y_span = y_span ? y_span : other.y_span;
+    built.u_span = u_span ? u_span : other.u_span;
+    built.sample_time = sample_time ? sample_time : other.sample_time;
+    return built;
+}
+
+const Description<GivenBaseline>& baseline_settings_contract() {
+    static const auto description = [] {
+        using G = GivenBaseline;
+        Description<G> d("BaselineSettings", "Today's settings as they stand in a product.");
+        d.field("product", &G::product, text(kLongestId), "Id of the product.", {.required = true})
+            .field("settings", &G::settings, settings_codec(), "Its parameters by name, as typed.", {.required = true})
+            .field("y_span", &G::y_span, maybe(numbers(2, 2)),
+                   "Low and high end of the measurement's range; default: those of implement.", {.unit = "y"})
+            .field("u_span", &G::u_span, maybe(numbers(2, 2)),
+                   "Low and high end of the output's range; default: those of implement.", {.unit = "u"})
+            .field("sample_time", &G::sample_time, maybe(number({.exclusive_minimum = 0})),
+                   "Period of the controller; default: that of implement.", {.unit = "time"})
+            .check([](const Json&, G& given, Reader& reader) {
+                check_span(given.y_span, "y_span", reader);
+                check_span(given.u_span, "u_span", reader);
+            });
+        return d;
+    }();
+    return description;
 }
 
 }  // namespace tunewright::api

@@ -47,6 +47,7 @@ IdealPid continuous(IdealPid pid) {
 Expected<Fitted> fit(const Build& build, const product::Settings& typed) {
     const product::Product& product = *build.product;
     Fitted fitted;
+    fitted.product = build.product;
     fitted.settings = fitted.typed = typed;
     write_texts(product, fitted);
     const auto twin = product::to_controller(product, fitted.typed, build.context, fitted.notes);
@@ -62,7 +63,7 @@ Expected<Fitted> fit(const Build& build, const product::Settings& typed) {
 }
 
 Expected<Fitted> fit(const Build& build, const IdealPid& pid, bool nearest) {
-    if (build.product == nullptr) return Fitted{pid, program_of(build, pid), {}, {}, {}, {}};
+    if (build.product == nullptr) return Fitted{nullptr, pid, program_of(build, pid), {}, {}, {}, {}};
     auto converted = product::to_settings(*build.product, pid, build.context, nearest);
     if (!converted) return converted.error();
     auto fitted = fit(build, product::as_typed(*build.product, converted->settings));
@@ -148,6 +149,11 @@ Expected<Law> rules_of(const Build& build, const IdealPid& pid) {
 
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,
                         const RunControl& control) {
+    if (build.product != nullptr && build.product->form == product::Form::p_only)
+        return Error{ErrorKind::not_representable, "",
+                     std::string(build.product->name) +
+                         " has proportional action alone, and a design with integral "
+                         "action cannot be typed into it. Choose another controller."};
     const OwnForm form(build, wish);
     Settings start = start_of(build, wish);
     const auto rules = rules_of(build, form.controller(std::abs(start.gain), start.Ti, start.Td));

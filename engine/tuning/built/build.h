@@ -31,6 +31,7 @@ struct Build {
 
 /// A controller as it is typed.
 struct Fitted {
+    const product::Product* product = nullptr;
     IdealPid controller;         ///< the exact ideal twin of what is typed
     Law law;                     ///< what it computes
     product::Settings settings;  ///< in full precision, before they are rounded; empty without a product

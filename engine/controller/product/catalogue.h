@@ -17,9 +17,19 @@ const Product* find(std::string_view id);
 /// The groups, each in the source of its name.
 std::vector<Product> siemens_products();
 std::vector<Product> rockwell_products();
+std::vector<Product> schneider_products();
+std::vector<Product> abb_products();
 std::vector<Product> emerson_honeywell_products();
+std::vector<Product> yokogawa_foxboro_products();
+std::vector<Product> omron_mitsubishi_products();
+std::vector<Product> soft_plc_products();
 std::vector<Product> open_plc_products();
+std::vector<Product> mathworks_products();
 std::vector<Product> library_products();
+std::vector<Product> arduino_products();
+std::vector<Product> laboratory_products();
 std::vector<Product> printer_products();
+std::vector<Product> thermostat_products();
+std::vector<Product> flight_products();
 
 }  // namespace tunewright::product

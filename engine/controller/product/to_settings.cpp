@@ -72,6 +72,9 @@ void set_own_form(Work& work) {
     if (alpha > 0) own.Tf = alpha * series.td;
 }
 
+// Where one option sets both weights, c decides among those of the same b only.
+constexpr double kLessThanB = 1e-6;
+
 bool law_role(Role role) {
     return role == Role::gain || role == Role::multiplier || role == Role::integral || role == Role::derivative ||
            role == Role::sample_time;
@@ -128,7 +131,7 @@ const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
     const auto distance = [&](const Option& option) {
         double sum = 0;
         if (option.b) sum += std::abs(*option.b - pid.b);
-        if (option.c && pid.Td != 0) sum += std::abs(*option.c - pid.c);
+        if (option.c && pid.Td != 0) sum += kLessThanB * std::abs(*option.c - pid.c);
         const bool measured = pid.filter.type == FilterType::measurement_first_order ||
                               pid.filter.type == FilterType::measurement_second_order;
         if (option.filter) sum += (*option.filter == FilterType::measurement_second_order) != measured;

@@ -56,6 +56,30 @@ std::string filter_words(const Filter& filter) {
     return "no filter";
 }
 
+// A series block whose filter's ratio can be set has the design's own filter with another ratio than the settings'.
+void note_other_ratio(const Comparison& it, std::vector<Note>& notes) {
+    const Parameter* ratio = parameter_of(it.product, Role::filter);
+    if (it.product.form != Form::series || it.product.filter.kind != FilterKind::parameter || !ratio) return;
+    if (it.asked.filter.type != FilterType::derivative || it.asked.Td == 0) return;
+    const auto series = to_series(it.asked);
+    if (!series || series->Td == 0) return;
+    const double unit = it.context.seconds_per_time;
+    Quantities own = quantities_of(it.product, it.context);
+    own.Kp = std::abs(series->Kp);
+    own.Ti = series->Ti * unit;
+    own.Td = series->Td * unit;
+    own.Tf = it.asked.filter.Tf * unit;
+    const double alpha = value_of(ratio->term, own);
+    if (alpha < ratio->range.low || alpha > ratio->range.high) return;
+    std::string settings;
+    for (const Parameter& parameter : it.product.parameters) {
+        if (parameter.shape == Shape::power)
+            settings += (settings.empty() ? "" : ", ") + std::string(parameter.name) + " = " +
+                        text(value_of(parameter.term, own), 6);
+    }
+    notes.push_back({"filter-ratio", "With " + settings + " the block has the design's own filter, exactly."});
+}
+
 void note_filter(const Comparison& it, std::vector<Note>& notes) {
     const FilterKind kind = it.product.filter.kind;
     const Filter& asked = it.asked.filter;
@@ -142,6 +166,7 @@ std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) 
 void add_notes(const Comparison& comparison, std::vector<Note>& notes) {
     note_weights(comparison, notes);
     note_filter(comparison, notes);
+    if (!same(comparison.asked.filter.Tf, comparison.realised.filter.Tf)) note_other_ratio(comparison, notes);
     note_rounding(comparison, notes);
     note_algorithm(comparison, notes);
     note_evidence(comparison, notes);

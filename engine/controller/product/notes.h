@@ -18,7 +18,8 @@ struct Comparison {
 };
 
 /// Weights, filter, rounding, rules of the algorithm, clock, evidence: each that differs or that has to be known, with
-/// the codes setpoint-weights, prefilter, filter, rounding, discretisation, clock, unverified.
+/// the codes setpoint-weights, prefilter, filter, filter-ratio (of a series block: the settings that have the design's
+/// own), rounding, discretisation, clock, unverified.
 void add_notes(const Comparison& comparison, std::vector<Note>& notes);
 
 /// The set-point filter before the block that gives the weights asked for, exactly, as text; "" where there is none:

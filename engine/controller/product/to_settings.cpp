@@ -69,6 +69,7 @@ void set_own_form(Work& work) {
     own.Kp = series.Kc;
     own.Ti = series.ti;
     own.Td = series.td;
+    if (series.deviation) own.ideal_Td = to_ideal(SeriesPid{.Kp = own.Kp, .Ti = own.Ti, .Td = own.Td})->Td;
     if (alpha > 0) own.Tf = alpha * series.td;
 }
 

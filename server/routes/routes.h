@@ -24,6 +24,9 @@ void add_event_routes(http::Router& router, JobService& jobs, Places& places);
 /// /v1/jobs/{id}/result.csv
 void add_trace_routes(http::Router& router, JobService& jobs);
 
+/// /v1/jobs/{id}/controllers/{index}/code
+void add_code_routes(http::Router& router, JobService& jobs);
+
 struct BatchLimits {
     api::JobLimits job;
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch

@@ -40,10 +40,10 @@ Expected<built::Fitted> nearest(const Subject& subject, const built::Build& buil
     wish.start = pid;
     auto fitted = built::design(build, {plant}, wish, control);
     if (!fitted) return why;
-    fitted->notes.insert(
-        fitted->notes.begin(),
-        {"nearest-settings", why.message + " These settings are the best that the block has within the "
-                                           "ideal loop's own Ms and Mt."});
+    fitted->notes.insert(fitted->notes.begin(),
+                         {"nearest-settings", std::string(build.product->name) +
+                                                  " cannot be the method's controller. These settings have the least "
+                                                  "load IAE that it reaches within the ideal loop's own Ms and Mt."});
     return fitted;
 }
 

@@ -18,8 +18,8 @@ namespace {
 constexpr double kPeakMoves = 4;      // a sampled loop's peak lies within this factor of the continuous one's
 constexpr double kFirstSample = 0.1;  // of 1/omega_Ms: where the search for the longest sample time starts
 constexpr double kShortest = 1e-3;    // of 1/omega_Ms
-constexpr double kLongest = 1e3;        // of 1/omega_Ms: where it ends
-constexpr double kShorter = 0.9;        // of a sample time that the whole loop does not bear
+constexpr double kLongest = 1e3;      // of 1/omega_Ms: where it ends
+constexpr double kShorter = 0.9;      // of a sample time that the whole loop does not bear
 constexpr double kSampleTolerance = 3e-4;
 constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may lie above that near the peak
 

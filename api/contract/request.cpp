@@ -139,13 +139,17 @@ void check_baseline(JobRequest& request, const std::string& time, Reader& reader
     request.baseline = built::continuous(fitted->controller);
 }
 
+template <class Request>
+void resolve_build(Request& request, Reader& reader) {
+    if (!request.implement) return;
+    const Reader::At at(reader, "implement");
+    request.build = build_of(*request.implement, request.units.value_or(Units{}).time_or_default(), reader);
+    if (request.build) check_needs(*request.build, reader);
+}
+
 void check_implement(const Json&, JobRequest& request, Reader& reader) {
+    resolve_build(request, reader);
     const std::string time = request.units.value_or(Units{}).time_or_default();
-    if (request.implement) {
-        const Reader::At at(reader, "implement");
-        request.build = build_of(*request.implement, time, reader);
-        if (request.build) check_needs(*request.build, reader);
-    }
     if (request.baseline_settings) check_baseline(request, time, reader);
 }
 
@@ -280,7 +284,10 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
                    list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
+            .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
+                   "The user's own controller, on which they are judged too.")
             .check(check_controllers)
+            .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_build(request, reader); })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
         return d;

@@ -32,7 +32,9 @@ struct EvaluateRequest {
     std::optional<PlantModel> plant;
     std::optional<Subject> subject;  ///< that `plant` describes
     std::vector<Controller> controllers;
+    std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;
+    std::optional<built::Build> build;  ///< of `implement`
 };
 
 struct IdentifyRequest {

@@ -74,6 +74,8 @@ Expected<AsBuilt> built_from(const Subject& subject, const built::Build& build, 
     return judge_as_built(subject, build, std::move(*fitted), options, ideal);
 }
 
+namespace {
+
 void warn_of_difference(Evaluation& evaluation, const AsBuilt& built) {
     if (!built.loop.robustness.stable) {
         evaluation.warnings.push_back(
@@ -93,6 +95,17 @@ void warn_of_difference(Evaluation& evaluation, const AsBuilt& built) {
     evaluation.warnings.push_back(
         {"differs-as-built", "The controller as it is built, its rounding and its sampling included, moves " + moved +
                                  " from the ideal loop; the figures in implemented are what it does."});
+}
+
+}  // namespace
+
+void take_as_built(Expected<AsBuilt> built, Evaluation& evaluation, std::optional<AsBuilt>& beside) {
+    if (!built) {
+        evaluation.warnings.push_back({"not-as-built", built.error().message});
+        return;
+    }
+    warn_of_difference(evaluation, *built);
+    beside = std::move(*built);
 }
 
 }  // namespace tunewright

@@ -30,7 +30,9 @@ Expected<AsBuilt> judge_as_built(const Subject& subject, const built::Build& bui
 Expected<AsBuilt> built_from(const Subject& subject, const built::Build& build, const EvaluateOptions& options,
                              const Evaluation& ideal, const RunControl& control);
 
-/// Warns where the loop as built is another one: unstable, or Ms or the load IAE moved by more than 2 %.
-void warn_of_difference(Evaluation& evaluation, const AsBuilt& built);
+/// Puts it beside the evaluation, with a warning where the loop as built is another one: unstable, or Ms or the load
+/// IAE moved by more than 2 %. What keeps a controller from being built is a warning too: the ideal loop is answered
+/// all the same.
+void take_as_built(Expected<AsBuilt> built, Evaluation& evaluation, std::optional<AsBuilt>& beside);
 
 }  // namespace tunewright

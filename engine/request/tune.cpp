@@ -45,7 +45,6 @@ private:
     Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control,
                                          std::optional<built::Fitted>& fitted) const;
     void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
-    void take_built(TuningEntry& entry, Expected<AsBuilt> built);
     void add_baseline_as_built(TuningEntry& entry);
     void add_sample_time(TuningEntry& entry) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
@@ -196,22 +195,13 @@ Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const
                      " needs a model of the plant; points of a frequency response serve the method robust."};
 }
 
-// What keeps a controller from being built is a warning: the ideal loop is answered all the same.
 void TuningRun::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) {
     if (!request_.implement || !entry.evaluation) return;
     const built::Build& build = *request_.implement;
-    auto built = fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, *entry.evaluation)
-                        : built_from(*subject_, build, request_.evaluate, *entry.evaluation, control);
-    take_built(entry, std::move(built));
-}
-
-void TuningRun::take_built(TuningEntry& entry, Expected<AsBuilt> built) {
-    if (!built) {
-        entry.evaluation->warnings.push_back({"not-as-built", built.error().message});
-        return;
-    }
-    warn_of_difference(*entry.evaluation, *built);
-    entry.as_built = std::move(*built);
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : built_from(*subject_, build, request_.evaluate, ideal, control),
+                  ideal, entry.as_built);
 }
 
 // Settings that were given as typed are judged as they stand, whatever the others are made for.
@@ -219,8 +209,10 @@ void TuningRun::add_baseline_as_built(TuningEntry& entry) {
     if (!request_.baseline_settings || !entry.evaluation) return add_as_built(entry, std::nullopt, control_);
     const auto& [build, settings] = *request_.baseline_settings;
     auto fitted = built::fit(build, settings);
-    if (!fitted) return take_built(entry, fitted.error());
-    take_built(entry, judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, *entry.evaluation));
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : Expected<AsBuilt>(fitted.error()),
+                  ideal, entry.as_built);
 }
 
 void TuningRun::add_sample_time(TuningEntry& entry) const {

@@ -46,7 +46,6 @@ private:
                                          std::optional<built::Fitted>& fitted) const;
     void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
     void add_baseline_as_built(TuningEntry& entry);
-    void add_sample_time(TuningEntry& entry) const;
     TuningEntry entry(const PlannedRow& planned, double from, double to);
     std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
     bool repeats(const TuningEntry& entry) const;
@@ -215,17 +214,6 @@ void TuningRun::add_baseline_as_built(TuningEntry& entry) {
                   ideal, entry.as_built);
 }
 
-void TuningRun::add_sample_time(TuningEntry& entry) const {
-    constexpr double kWithin = 1.05;
-    const LinearPlant* plant = subject_->linear();
-    if (plant == nullptr || !entry.evaluation || std::holds_alternative<Npid>(entry.evaluation->controller)) return;
-    const Robustness& r = entry.evaluation->robustness;
-    if (!r.stable || !r.Ms || !r.omega_Ms || !(*r.omega_Ms > 0)) return;
-    entry.longest_sample_time =
-        Figure(longest_sample_time(*plant, gains(entry.evaluation->controller), *r.Ms, *r.omega_Ms, kWithin),
-               "No sample time was found that keeps Ms within 5 % and a longer one that does not.");
-}
-
 TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) {
     TuningEntry entry;
     entry.method = planned.method->id;
@@ -246,8 +234,8 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);
     add_as_built(entry, std::move(fitted), control_);
-    add_sample_time(entry);
     if (entry.evaluation) {
+        entry.longest_sample_time = longest_sample_time_of(*subject_, *entry.evaluation);
         warn_of_region(*entry.evaluation, entry.Ms_limit, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
         entry.evaluation->compute_ms = now_ms() - started;

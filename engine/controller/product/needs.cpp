@@ -59,6 +59,24 @@ std::optional<Error> missing_for_filter(const Product& product, const Context& c
     return missing_sample_time(product, "the delay of its derivative is counted in periods");
 }
 
+std::vector<std::string> needs_of(const Product& product) {
+    std::vector<std::string> needs;
+    Context context;
+    // Each is given in turn, until nothing is missing any more.
+    for (int k = 0; k < 3; ++k) {
+        std::optional<Error> missing = missing_for_filter(product, context);
+        for (const Parameter& parameter : product.parameters) {
+            if (!missing && parameter.role != Role::limit) missing = missing_for(product, parameter, context);
+        }
+        if (!missing) break;
+        needs.push_back(missing->where);
+        if (missing->where == "y_span") context.y_span_given = true;
+        if (missing->where == "u_span") context.u_span_given = true;
+        if (missing->where == "sample_time") context.sample_time_s = 1;
+    }
+    return needs;
+}
+
 bool uses_firmware_clock(const Product& product) {
     if (!product.algorithm.firmware_clock) return false;
     return product.filter.kind == FilterKind::parameter || product.filter.kind == FilterKind::slope;

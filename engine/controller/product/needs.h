@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/controller/product/formula.h"
 #include "engine/controller/product/settings.h"
@@ -24,6 +25,10 @@ std::optional<Error> missing_for(const Product& product, const Parameter& parame
 
 /// Of the filter, which may need the sample time without a parameter.
 std::optional<Error> missing_for_filter(const Product& product, const Context& context);
+
+/// What a caller has to give for this product: of "y_span", "u_span", "sample_time" those that some formula needs and
+/// nothing else supplies.
+std::vector<std::string> needs_of(const Product& product);
 
 /// Whether a formula has used the firmware's clock.
 bool uses_firmware_clock(const Product& product);

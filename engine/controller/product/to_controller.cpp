@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "engine/controller/product/needs.h"
@@ -8,6 +9,7 @@ namespace tunewright::product {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kMostSamples = 1e6;  // of a slope
 
 // What the settings say, in seconds and units of u per y, in the block's own form.
 struct Law {
@@ -191,6 +193,24 @@ IdealPid twin(const Product& product, const Law& law) {
     return pid;
 }
 
+// What no controller of the contract is: a filter that lets nothing pass, a series lead that its own filter outlasts.
+std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
+    const auto at = [&](Role role, const std::string& reason) {
+        const Parameter* parameter = parameter_of(product, role);
+        return no_twin(product, parameter ? parameter->name : product.parameters.front().name, reason);
+    };
+    if (!std::isfinite(pid.filter.Tf))
+        return at(Role::filter,
+                  "the filter's time becomes infinite, so no derivative is left. Give another value, or "
+                  "no derivative.");
+    if (pid.Td < 0)
+        return at(Role::derivative, "the filter outlasts the integral time, which makes the ideal form's Td " +
+                                        text(pid.Td) + ". Take a shorter derivative or a smaller ratio of the filter.");
+    if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Td) || std::isnan(pid.Ti) || !std::isfinite(pid.b))
+        return at(Role::gain, "the values together are beyond any number.");
+    return std::nullopt;
+}
+
 }  // namespace
 
 Expected<IdealPid> to_controller(const Product& product, const Settings& settings, const Context& context,
@@ -217,6 +237,7 @@ Expected<IdealPid> to_controller(const Product& product, const Settings& setting
     if (reading.missing()) return *reading.missing();
 
     IdealPid pid = twin(product, law);
+    if (auto wrong = beyond(product, pid)) return *wrong;
     const double unit = context.seconds_per_time;
     pid.Kp *= sign_of(product, settings);
     pid.Ti /= unit;
@@ -241,7 +262,7 @@ SampledPid sampled_law(const Product& product, const Settings& settings, const C
     if (product.filter.kind == FilterKind::slope) {
         const Parameter* samples = parameter_of(product, Role::filter);
         const double M = samples ? number_of(*samples, settings).value_or(1) : product.filter.value;
-        law.slope_samples = std::max(1, static_cast<int>(std::lround(M)));
+        law.slope_samples = static_cast<int>(std::lround(std::clamp(M, 1.0, kMostSamples)));
     }
     return law;
 }

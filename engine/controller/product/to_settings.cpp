@@ -18,6 +18,7 @@ struct Work {
     Settings settings = {};
     std::vector<Note> notes = {};
     std::vector<std::string> refusals = {};
+    std::string_view beyond = "";  ///< a parameter whose value is no number any more
 };
 
 double alpha_of(const Product& product) {
@@ -123,6 +124,7 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
     if (std::isfinite(value) && !(parameter.role == Role::filter && work.own.Td == 0 &&
                                   work.product.filter.kind == FilterKind::parameter && parameter.standard))
         return within_range(parameter, value, work);
+    if (law_role(parameter.role)) work.beyond = parameter.name;
     // The law leaves it open: there is no derivative, or no filter.
     if (parameter.off && work.own.Tf == 0) return parameter.off;
     return number_of(parameter, {});
@@ -224,6 +226,9 @@ Expected<Converted> to_settings(const Product& product, const IdealPid& pid, con
     work.own = quantities_of(product, context);
     set_own_form(work);
     if (auto missing = add_settings(work)) return *missing;
+    if (!work.beyond.empty())
+        return Error{ErrorKind::invalid_argument, "controller",
+                     std::string(work.beyond) + " would be beyond any number. Check the controller and the spans."};
     if (!work.refusals.empty() && !nearest) return refusal(work);
 
     const Settings typed = as_typed(product, work.settings);

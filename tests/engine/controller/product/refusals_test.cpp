@@ -162,6 +162,20 @@ TEST(ProductRefusals, WrongSettingsSayWhatIsTaken) {
     EXPECT_EQ(not_read("siemens_pid_compact", {{"Gain", 1.0}, {"InvertControl", 3.0}}).where, "settings/InvertControl");
 }
 
+TEST(ProductRefusals, SettingsThatNoControllerOfTheContractIsAreRefused) {
+    const Error silent = not_read("matlab_pidstd", {{"Kp", 1.0}, {"Td", 2.0}, {"N", 0.0}});
+    EXPECT_EQ(silent.where, "settings/N");
+    EXPECT_THAT(silent.message, HasSubstr("no derivative is left"));
+    // Td = (1 - alpha) td (ti - alpha td)/Ti.
+    const Error outlasted =
+        not_read("emerson_deltav_series", {{"GAIN", 1.0}, {"RESET", 1.0}, {"RATE", 10.0}, {"ALPHA", 0.5}});
+    EXPECT_EQ(outlasted.kind, ErrorKind::not_representable);
+    EXPECT_THAT(outlasted.message, HasSubstr("Td -3.333"));
+    const IdealPid huge{.Kp = 1e300, .Ti = 1, .b = 1};
+    const Context wide = Context::with_spans({.y_low = 0, .y_high = 1e300, .u_low = 0, .u_high = 1}, 1.0);
+    EXPECT_THAT(refused("emerson_deltav_standard", huge, wide).message, HasSubstr("beyond any number"));
+}
+
 TEST(ProductRefusals, MissingSettingsHaveTheMakersDefaults) {
     std::vector<Note> notes;
     const auto oscat = to_controller(product_of("oscat_ctrl_pid"), {{"KP", 2.0}}, {}, notes);

@@ -50,7 +50,9 @@ class CommandTest(unittest.TestCase):
         failed = {"controllers": [{"method": "simc", "error": {"detail": "The plant has no dead time."}}]}
         problem = self.refused(failed, "--language", "c")
         self.assertIn("Number 0 (simc) has no controller: The plant has no dead time.", problem["detail"])
-        self.assertEqual(self.refused("a text", "--language", "c")["status"], 404)
+        for other in ("a text", [], 3, {"controllers": 1}, {"controllers": [1]}, {"controllers": [{"method": 1}]},
+                      dict(result_of(ideal()), partial="no"), dict(result_of(ideal()), ranking={"a": 1}), {"result": None}):
+            self.assertEqual(self.refused(other, "--language", "c", "--sample-time", "1")["status"], 404, other)
         done = subprocess.run([BINARY, "code", "/nothing/here"], capture_output=True, text=True)
         self.assertEqual((done.returncode, json.loads(done.stderr)["status"]), (1, 404))
 

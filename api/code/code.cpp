@@ -12,6 +12,9 @@
 namespace tunewright::api {
 namespace {
 
+constexpr const char* kNoResult =
+    "This is no result with controllers. Give what `tune` or a succeeded job has answered.";
+
 Problem not_found(std::string sentence) { return {404, "not-found", "Not Found", std::move(sentence), {}, {}}; }
 
 /// What the source says: `entry` lies in `result`.
@@ -46,18 +49,20 @@ std::variant<std::size_t, Problem> index_of(const Json& result, const std::strin
 
 /// A result alone, or a job with its request.
 std::optional<Problem> read_source(const CodeSource& source, Found& found) {
-    auto parsed = parse(source.result);
-    if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
-    found.result = std::move(std::get<Json>(parsed));
-    found.request = source.request.empty() ? Json() : Json::parse(source.request, nullptr, false);
+    for (const auto& [text, value] :
+         {std::pair{source.result, &found.result}, std::pair{source.request, &found.request}}) {
+        if (value == &found.request && text.empty()) continue;
+        auto parsed = parse(text);
+        if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
+        *value = std::move(std::get<Json>(parsed));
+    }
     if (found.result.is_object() && found.result.contains("result")) {
         if (found.request.is_null()) found.request = found.result.value("request", Json());
         found.result = Json(found.result["result"]);
     }
     const bool holds = found.result.is_object() && found.result.contains("controllers") &&
                        found.result["controllers"].is_array() && !found.result["controllers"].empty();
-    if (!holds)
-        return not_found("This is no result with controllers. Give what `tune` or a succeeded job has answered.");
+    if (!holds) return not_found(kNoResult);
     return std::nullopt;
 }
 
@@ -185,16 +190,20 @@ std::variant<ControllerCode, Problem> written(const Found& found, const CodeQues
 
 std::variant<ControllerCode, Problem> controller_code(const CodeSource& source, const std::string& index,
                                                       const CodeWords& words) {
-    Found found;
-    if (auto problem = read_source(source, found)) return *std::move(problem);
-    if (auto problem = find_entry(index, found)) return *std::move(problem);
-    Reader reader;
-    CodeQuestion question;
-    read_words(words, question, reader);
-    const double unit = unit_of(found.result, reader);
-    const Controller controller = controller_of(found.entry(), reader);
-    if (auto problem = reader.problem()) return *std::move(problem);
-    return written(found, question, controller, unit);
+    try {
+        Found found;
+        if (auto problem = read_source(source, found)) return *std::move(problem);
+        if (auto problem = find_entry(index, found)) return *std::move(problem);
+        Reader reader;
+        CodeQuestion question;
+        read_words(words, question, reader);
+        const double unit = unit_of(found.result, reader);
+        const Controller controller = controller_of(found.entry(), reader);
+        if (auto problem = reader.problem()) return *std::move(problem);
+        return written(found, question, controller, unit);
+    } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
+        return not_found(kNoResult);
+    }
 }
 
 }  // namespace tunewright::api

@@ -161,11 +161,13 @@ void compare(SampledPid pid, const Scenario& scenario) {
     double plant = 50, u = scenario.options.bias;
     Gains now{pid.gains.Kp, pid.gains.Ki, pid.gains.Kd, pid.gains.b};
     for (int k = 0; k < 1500; ++k) {
-        if (k % 400 == 200) {
-            machine["Kp"] = 1 + 0.001 * k;
-            if (machine.has("Ti")) machine["Ti"] = 9.0 - 0.001 * k;
-            if (machine.has("Td")) machine["Td"] = 0.5 + 0.0005 * k;
-            machine["b"] = 0.3 + 0.0002 * k;
+        if (k % 100 == 50) {
+            // One setting at a time, so that each change counts by itself.
+            const int turn = k / 100 % 4;
+            if (turn == 0) machine["Kp"] = 1 + 0.001 * k;
+            if (turn == 1 && machine.has("Ti")) machine["Ti"] = 9.0 - 0.003 * k;
+            if (turn == 2 && machine.has("Td")) machine["Td"] = 0.5 + 0.001 * k;
+            if (turn == 3) machine["b"] = 0.3 + 0.0004 * k;
             const double Kp = machine["Kp"] * (direct ? -1 : 1);
             now = {Kp, machine.has("Ti") ? Kp / machine["Ti"] : 0, machine.has("Td") ? Kp * machine["Td"] : 0,
                    machine["b"]};

@@ -88,7 +88,8 @@ Answer controller_settings_call(std::string_view id, std::string_view body) {
     auto converted = product::to_settings(*product, *pid, request.context, request.nearest);
     if (!converted) return refusal(to_problem(converted.error()));
     Writer out;
-    settings_answer_contract().write({product, std::move(*converted)}, out);
+    settings_answer_contract().write(
+        {product, converted->settings, converted->settings, converted->realised, std::move(converted->notes)}, out);
     return {200, out.take()};
 }
 

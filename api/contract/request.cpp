@@ -3,6 +3,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
+#include "api/contract/product/settings.h"
 #include "engine/evaluation/evaluate.h"
 
 namespace tunewright::api {
@@ -128,6 +129,7 @@ Json baseline_schema(SchemaBook& book) {
 
 // Settings that are typed become their ideal twin, which is the baseline then.
 void check_baseline(JobRequest& request, const std::string& time, Reader& reader) {
+    if (!seconds_per_time(time, reader)) return;
     const Reader::At at(reader, "baseline");
     request.baseline_build = build_of(request.baseline_settings->build(request.implement), time, reader);
     if (!request.baseline_build) return;
@@ -142,8 +144,10 @@ void check_baseline(JobRequest& request, const std::string& time, Reader& reader
 template <class Request>
 void resolve_build(Request& request, Reader& reader) {
     if (!request.implement) return;
+    const std::string time = request.units.value_or(Units{}).time_or_default();
+    if (request.implement->product && !seconds_per_time(time, reader)) return;
     const Reader::At at(reader, "implement");
-    request.build = build_of(*request.implement, request.units.value_or(Units{}).time_or_default(), reader);
+    request.build = build_of(*request.implement, time, reader);
     if (request.build) check_needs(*request.build, reader);
 }
 

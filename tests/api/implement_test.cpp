@@ -34,7 +34,7 @@ TEST(Implement, FaultsNameThePlaceAndTheCure) {
     EXPECT_THAT(refusal(implement(R"("product": "siemens_fb41_cont_c", "u_span": [0, 100])"), "/implement/y_span"),
                 HasSubstr("y_span"));
     EXPECT_THAT(refusal(implement(R"("product": "klipper", "u_span": [100, 0])"), "/implement/u_span"),
-                HasSubstr("its high end must be above its low end"));
+                HasSubstr("its first number must be below the second"));
     EXPECT_THAT(refusal(implement(R"("integral": "forward")"), "/implement"),
                 HasSubstr("names neither a product nor a sample_time"));
     EXPECT_THAT(refusal(product("klipper", R"(, "integral": "forward")"), "/implement/integral"),
@@ -42,7 +42,7 @@ TEST(Implement, FaultsNameThePlaceAndTheCure) {
     EXPECT_THAT(refusal(implement(R"("sample_time": 0)"), "/implement/sample_time"), HasSubstr("> 0"));
     EXPECT_THAT(refusal(implement(R"("sample_time": 1, "derivative": "fir")"), "/implement/derivative"),
                 HasSubstr("backward or filtered"));
-    EXPECT_THAT(refusal(product("klipper") + R"(, "units": {"time": "fortnight"})", "/implement/product"),
+    EXPECT_THAT(refusal(product("klipper") + R"(, "units": {"time": "fortnight"})", "/units/time"),
                 HasSubstr("no unit of time"));
 }
 

@@ -1,23 +1,9 @@
 #include "api/contract/built/as_built.h"
 
-#include "api/contract/built/settings.h"
-#include "api/contract/controller.h"
 #include "api/contract/result/evaluation.h"
 
 namespace tunewright::api {
 namespace {
-
-Json texts_schema(SchemaBook&) { return Json{{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}; }
-
-const Description<product::Note>& note_contract() {
-    static const auto description = [] {
-        Description<product::Note> d("Note", "A remark on a conversion.");
-        d.field("code", &product::Note::code, words(), "For programs.")
-            .field("detail", &product::Note::detail, words(), "A sentence.");
-        return d;
-    }();
-    return description;
-}
 
 const Description<AsBuilt>& difference_contract() {
     static const auto description = [] {
@@ -41,46 +27,6 @@ void loop_field(Description<AsBuilt>& d, const char* name, M BuiltLoop::*member,
 }
 
 }  // namespace
-
-const Description<built::Fitted>& as_entered_contract() {
-    static const auto description = [] {
-        using F = built::Fitted;
-        Description<F> d("AsEntered", "What to type into the product, and what the product then does.");
-        d.field("settings", &F::settings, only_answered(settings_codec()), "In full precision.")
-            .field(
-                "as_typed", {},
-                [](const F& fitted, Writer& out) {
-                    out.begin_object();
-                    for (std::size_t i = 0; i < fitted.typed.size(); ++i) {
-                        out.key(fitted.typed[i].name);
-                        out.text(fitted.texts[i]);
-                    }
-                    out.end_object();
-                },
-                texts_schema, "As texts, in the product's resolution and range.")
-            .field(
-                "units", {},
-                [](const F& fitted, Writer& out) {
-                    out.begin_object();
-                    for (const product::Setting& setting : fitted.typed) {
-                        const auto* parameter = product::parameter_named(*fitted.product, setting.name);
-                        if (parameter == nullptr || parameter->unit.empty()) continue;
-                        out.key(setting.name);
-                        out.text(std::string(parameter->unit));
-                    }
-                    out.end_object();
-                },
-                texts_schema, "Of those that have one.")
-            .field(
-                "realised", {},
-                [](const F& fitted, Writer& out) { one_of(controller_contract()).write(fitted.controller, out); },
-                [](SchemaBook& book) { return one_of(controller_contract()).schema(book); },
-                "The exact ideal twin of what is typed, weights and filter included.")
-            .field("notes", &F::notes, list_of(answer(note_contract())), "Where it deviates, and what to know.");
-        return d;
-    }();
-    return description;
-}
 
 const Description<AsBuilt>& implemented_contract() {
     static const auto description = [] {

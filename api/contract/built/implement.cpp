@@ -1,8 +1,6 @@
 #include "api/contract/built/implement.h"
 
-#include <algorithm>
-
-#include "api/contract/built/settings.h"
+#include "api/contract/product/settings.h"
 #include "api/csv/time_stamp.h"
 #include "engine/controller/product/catalogue.h"
 
@@ -11,18 +9,10 @@ namespace {
 
 constexpr std::size_t kLongestId = 80;
 
-const char* const kSpanCure = "Give its low and high end in your units, such as [0, 200].";
-
-void check_span(const std::optional<std::vector<double>>& span, const char* name, Reader& reader) {
-    if (span && !((*span)[0] < (*span)[1]))
-        reader.fault_at(name, std::string(name) + " is [" + full_digits((*span)[0]) + ", " + full_digits((*span)[1]) +
-                                  "]; its high end must be above its low end. " + kSpanCure);
-}
-
 // Rules of the program belong to one that is not a product's own.
 void check_rules(const Json& value, GivenBuild& given, Reader& reader) {
-    check_span(given.y_span, "y_span", reader);
-    check_span(given.u_span, "u_span", reader);
+    check_span("y_span", given.y_span, reader);
+    check_span("u_span", given.u_span, reader);
     if (!given.product && !given.sample_time)
         reader.fault(
             "implement names neither a product nor a sample_time; give the product's id (GET /v1/controllers "
@@ -108,22 +98,9 @@ std::optional<built::Build> build_of(const GivenBuild& given, const std::string&
         build.product = product_of(*given.product, reader);
         if (build.product == nullptr) return std::nullopt;
         const auto seconds = seconds_per(time_label);
-        if (!seconds) {
-            reader.fault_at("product", "units.time is \"" + time_label +
-                                           "\", which is no unit of time that is known here, so the product's own "
-                                           "times cannot be told. Use s, ms, min, h or d.");
-            return std::nullopt;
-        }
+        if (!seconds) return std::nullopt;  // which resolving the request's units has said
+        build.context = context_of(given.y_span, given.u_span, *seconds);
         product::Context& context = build.context;
-        context.seconds_per_time = *seconds;
-        if ((context.y_span_given = given.y_span.has_value())) {
-            context.spans.y_low = (*given.y_span)[0];
-            context.spans.y_high = (*given.y_span)[1];
-        }
-        if ((context.u_span_given = given.u_span.has_value())) {
-            context.spans.u_low = (*given.u_span)[0];
-            context.spans.u_high = (*given.u_span)[1];
-        }
         auto period = product::default_sample_time_s(*build.product);
         if (given.sample_time) period = context.loop_clock_s = *given.sample_time * *seconds;
         context.sample_time_s = period;
@@ -170,8 +147,8 @@ const Description<GivenBaseline>& baseline_settings_contract() {
             .field("sample_time", &G::sample_time, maybe(number({.exclusive_minimum = 0})),
                    "Period of the controller; default: that of implement.", {.unit = "time"})
             .check([](const Json&, G& given, Reader& reader) {
-                check_span(given.y_span, "y_span", reader);
-                check_span(given.u_span, "u_span", reader);
+                check_span("y_span", given.y_span, reader);
+                check_span("u_span", given.u_span, reader);
             });
         return d;
     }();

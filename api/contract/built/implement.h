@@ -41,8 +41,8 @@ const Description<GivenBaseline>& baseline_settings_contract();
 /// Faults at the reader's place where the product needs a span or a sample time that is not given.
 void check_needs(const built::Build& build, Reader& reader);
 
-/// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a span or a
-/// sample time that the product needs, a label that is no unit of time.
+/// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a label
+/// that is no unit of time.
 std::optional<built::Build> build_of(const GivenBuild& given, const std::string& time_label, Reader& reader);
 
 }  // namespace tunewright::api

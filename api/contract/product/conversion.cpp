@@ -1,40 +1,19 @@
 #include "api/contract/controller.h"
 #include "api/contract/product/product.h"
-#include "api/contract/product/value.h"
-#include "api/csv/time_stamp.h"
+#include "api/contract/product/settings.h"
 
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxWord = 200;
-
 Codec<std::optional<std::vector<double>>> span() { return maybe(numbers(2, 2)); }
-
-void check_span(const char* name, const std::optional<std::vector<double>>& given, Reader& reader) {
-    if (given && !((*given)[0] < (*given)[1]))
-        reader.fault_at(name, std::string(name) + " is [" + full_digits((*given)[0]) + ", " + full_digits((*given)[1]) +
-                                  "]; its first number must be below the second.");
-}
 
 void set_context(const Json&, BlockContext& request, Reader& reader) {
     check_span("y_span", request.y_span, reader);
     check_span("u_span", request.u_span, reader);
-    const std::string unit = request.units.value_or(Units{}).time_or_default();
-    const auto seconds = seconds_per(unit);
-    if (!seconds) {
-        const Reader::At at(reader, "units");
-        reader.fault_at("time", "units.time is " + shown(unit) +
-                                    ", which is no unit of time that is known; the block's times are in its own. Use "
-                                    "s, min, h or another.");
-        return;
-    }
-    product::Context& context = request.context;
-    context.seconds_per_time = *seconds;
-    context.y_span_given = request.y_span.has_value();
-    context.u_span_given = request.u_span.has_value();
-    if (request.y_span) context.spans.y_low = (*request.y_span)[0], context.spans.y_high = (*request.y_span)[1];
-    if (request.u_span) context.spans.u_low = (*request.u_span)[0], context.spans.u_high = (*request.u_span)[1];
-    if (request.sample_time) context.sample_time_s = *request.sample_time * *seconds;
+    const auto seconds = seconds_per_time(request.units.value_or(Units{}).time_or_default(), reader);
+    if (!seconds) return;
+    request.context = context_of(request.y_span, request.u_span, *seconds);
+    if (request.sample_time) request.context.sample_time_s = *request.sample_time * *seconds;
 }
 
 template <class Request>
@@ -47,22 +26,6 @@ void add_context(Description<Request>& d) {
         .field("units", &Request::units, maybe(object(units_contract())),
                "Labels; time is also the unit of the controller's times, s if not given.")
         .check([](const Json& json, Request& request, Reader& reader) { set_context(json, request, reader); });
-}
-
-void read_settings(const Json& value, TwinRequest& request, Reader& reader) {
-    if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"Gain\": 1.5}", reader));
-    for (const auto& [name, member] : value.items()) {
-        const Reader::At at(reader, name);
-        if (member.is_number()) {
-            if (const auto number = read_number(member, {}, reader)) request.settings.push_back({name, *number});
-        } else if (member.is_boolean()) {
-            request.settings.push_back({name, member.get<bool>()});
-        } else if (member.is_string() && member.get_ref<const std::string&>().size() <= kMaxWord) {
-            request.settings.push_back({name, member.get<std::string>()});
-        } else {
-            reader.fault(wrong_kind(member, "a number, a short string, true or false", reader));
-        }
-    }
 }
 
 Json notes_schema(SchemaBook&) {
@@ -87,19 +50,6 @@ void write_notes(const std::vector<product::Note>& notes, Writer& out) {
         out.end_object();
     }
     out.end_array();
-}
-
-// A text for each setting that has one.
-template <class Text>
-void write_texts(const SettingsAnswer& answer, const Text& text, Writer& out) {
-    out.begin_object();
-    for (const product::Setting& setting : answer.converted.settings) {
-        const std::string words = text(setting);
-        if (words.empty()) continue;
-        out.key(setting.name);
-        out.text(words);
-    }
-    out.end_object();
 }
 
 Json texts_by_name(SchemaBook&) { return {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}; }
@@ -135,36 +85,38 @@ const Description<SettingsAnswer>& settings_answer_contract() {
     static const auto contract = [] {
         using Answer = SettingsAnswer;
         Description<Answer> d("SettingsAnswer", "What is to be typed, and what the product then does.");
-        d.field(
-             "settings", {}, [](const Answer& a, Writer& out) { write_settings(a.converted.settings, out); },
-             [](SchemaBook&) { return settings_schema(); }, "In full precision.")
+        d.field("settings", &Answer::settings, only_answered(settings_codec()), "In full precision.")
             .field(
                 "units", {},
                 [](const Answer& a, Writer& out) {
-                    const auto unit = [&](const product::Setting& setting) {
+                    out.begin_object();
+                    for (const product::Setting& setting : a.settings) {
                         const product::Parameter* parameter = product::parameter_named(*a.product, setting.name);
-                        return std::string(parameter ? parameter->unit : "");
-                    };
-                    write_texts(a, unit, out);
+                        if (parameter == nullptr || parameter->unit.empty()) continue;
+                        out.key(setting.name);
+                        out.text(std::string(parameter->unit));
+                    }
+                    out.end_object();
                 },
                 texts_by_name, "Of the settings that have one.")
             .field(
                 "as_typed", {},
                 [](const Answer& a, Writer& out) {
-                    write_texts(
-                        a, [&](const product::Setting& setting) { return product::typed_text(*a.product, setting); },
-                        out);
+                    out.begin_object();
+                    for (const product::Setting& setting : a.typed) {
+                        out.key(setting.name);
+                        out.text(product::typed_text(*a.product, setting));
+                    }
+                    out.end_object();
                 },
                 texts_by_name, "As a person types them, in the product's resolution.")
             .field(
                 "realised", {},
-                [](const Answer& a, Writer& out) {
-                    controller_contract().write(Controller(a.converted.realised), out);
-                },
+                [](const Answer& a, Writer& out) { controller_contract().write(Controller(a.realised), out); },
                 controller_schema,
                 "What the product then does, weights and filter included; whole numbers as they are rounded.")
             .field(
-                "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.converted.notes, out); }, notes_schema,
+                "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.notes, out); }, notes_schema,
                 "What it does differently, and what of it is not verified.");
         return d;
     }();
@@ -174,12 +126,9 @@ const Description<SettingsAnswer>& settings_answer_contract() {
 const Description<TwinRequest>& twin_request_contract() {
     static const auto contract = [] {
         Description<TwinRequest> d("ProductSettings", "Settings of a product.");
-        d.field(
-            "settings", read_settings,
-            [](const TwinRequest& request, Writer& out) { write_settings(request.settings, out); },
-            [](SchemaBook&) { return settings_schema(); },
-            "Values by the names of the parameters. What is missing has the maker's default, or is not there.",
-            {.required = true});
+        d.field("settings", &TwinRequest::settings, settings_codec(),
+                "Values by the names of the parameters. What is missing has the maker's default, or is not there.",
+                {.required = true});
         add_context(d);
         d.example({{"settings", {{"GAIN", 2.32793}, {"RESET", 93.1174}, {"RATE", 30.723}, {"ALPHA", 0.125}}},
                    {"y_span", {0, 200}},

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "api/contract/controller.h"
-#include "api/contract/product/value.h"
+#include "api/contract/product/settings.h"
 #include "engine/controller/product/needs.h"
 
 namespace tunewright::api {
@@ -294,8 +294,8 @@ const Description<product::Example>& example_contract() {
             .field("y_span", {}, span(&Example::y_span), span_schema, "Range of the measurement.")
             .field("u_span", {}, span(&Example::u_span), span_schema, "Range of the output.")
             .field(
-                "settings", {}, [](const Example& e, Writer& out) { write_settings(e.settings, out); },
-                [](SchemaBook&) { return settings_schema(); }, "What is typed.");
+                "settings", {}, [](const Example& e, Writer& out) { settings_codec().write(e.settings, out); },
+                settings_codec().schema, "What is typed.");
         return std::move(a.description);
     }();
     return contract;

@@ -31,9 +31,13 @@ struct SettingsRequest : BlockContext {
 };
 const Description<SettingsRequest>& settings_request_contract();
 
+/// What is to be typed, also beside an entry of a result.
 struct SettingsAnswer {
     const product::Product* product = nullptr;
-    product::Converted converted;
+    product::Settings settings;  ///< in full precision
+    product::Settings typed;     ///< as they are typed
+    IdealPid realised;
+    std::vector<product::Note> notes;
 };
 const Description<SettingsAnswer>& settings_answer_contract();
 

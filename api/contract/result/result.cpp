@@ -6,6 +6,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
+#include "api/contract/product/product.h"
 #include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
 #include "api/contract/result/identified_model.h"
@@ -142,8 +143,11 @@ void add_as_built(Description<TuningEntry>& d) {
          {.unit = "time"}, [](const TuningEntry& entry) { return !entry.longest_sample_time; })
         .field(
             "as_entered", {},
-            [](const TuningEntry& entry, Writer& out) { as_entered_contract().write(entry.as_built->fitted, out); },
-            [](SchemaBook& book) { return as_entered_contract().schema(book); },
+            [](const TuningEntry& entry, Writer& out) {
+                const built::Fitted& f = entry.as_built->fitted;
+                settings_answer_contract().write({f.product, f.settings, f.typed, f.controller, f.notes}, out);
+            },
+            [](SchemaBook& book) { return settings_answer_contract().schema(book); },
             "With implement.product: what to type into the product.", {},
             [](const TuningEntry& entry) { return !entry.as_built || entry.as_built->fitted.typed.empty(); })
         .field(

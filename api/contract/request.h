@@ -1,7 +1,7 @@
 // Requests of the contract: a tuning job, an evaluation, an identification.
 #pragma once
 
-#include "api/contract/built/implement.h"
+#include "api/contract/built/built.h"
 #include "api/contract/record.h"
 #include "engine/request/tune.h"
 

@@ -9,7 +9,6 @@
 #include "engine/evaluation/robustness_figures.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/numerics/sign_change.h"
-#include "engine/simulation/sampled/sampled_nonlinear.h"
 #include "engine/simulation/sampled/sampled_response.h"
 
 namespace tunewright {

@@ -1,4 +1,4 @@
-#include "api/contract/built/as_built.h"
+#include "api/contract/built/built.h"
 
 #include "api/contract/result/evaluation.h"
 

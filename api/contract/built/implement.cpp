@@ -1,4 +1,4 @@
-#include "api/contract/built/implement.h"
+#include "api/contract/built/built.h"
 
 #include "api/contract/product/settings.h"
 #include "api/csv/time_stamp.h"

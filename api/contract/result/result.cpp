@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "api/contract/built/as_built.h"
+#include "api/contract/built/built.h"
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"

@@ -11,6 +11,7 @@
 
 #include "engine/controller/sampled/pid_program.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/nonlinear/nonlinear_system.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
@@ -26,6 +27,12 @@ struct SampledOptions {
 /// where `most_samples` came first, or where y is beyond any use. `error_integral_final` is what has been integrated
 /// when y is at rest; with integral action only. No errors: an unstable loop grows until it ends.
 StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
+                              const StepInputs& inputs, const SampledOptions& options);
+
+/// The same on a nonlinear plant, whose equations are integrated between the changes of their input
+/// (nonlinear/plant_run.h). `settles` is false also where the states leave the domain of the equations. With integral
+/// action y rests at r, else where it stays.
+StepResponse simulate_sampled(const NonlinearSystem& system, const SampledPid& law, const ProgramLimits& limits,
                               const StepInputs& inputs, const SampledOptions& options);
 
 }  // namespace tunewright

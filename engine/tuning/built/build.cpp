@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/tuning/built/typed_grid.h"
 
 namespace tunewright::built {
 namespace {

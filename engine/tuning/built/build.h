@@ -67,4 +67,12 @@ struct Wish {
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,
                         const RunControl& control);
 
+/// The number that a text says; `otherwise` where it is none.
+double number_of(const std::string& text, double otherwise);
+
+/// `near` is a design within the limits before its settings were rounded. All ways to round its numbers up or down are
+/// tried, and where a step is coarse the neighbours too. Error: no_feasible_controller where none holds the limits.
+Expected<Fitted> on_grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits,
+                         Fitted near, const RunControl& control);
+
 }  // namespace tunewright::built

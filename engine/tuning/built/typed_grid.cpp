@@ -1,4 +1,4 @@
-#include "engine/tuning/built/typed_grid.h"
+#include "engine/tuning/built/build.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,9 +1,8 @@
-#include "engine/tuning/robust/built_robust.h"
+#include "engine/tuning/robust/robust.h"
 
 #include <cmath>
 
 #include "engine/tuning/robust/family.h"
-#include "engine/tuning/robust/filter_rule.h"
 
 namespace tunewright {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/tuning/robust/filter_rule.h"
+#include "engine/tuning/robust/robust.h"
 
 #include <algorithm>
 #include <cmath>

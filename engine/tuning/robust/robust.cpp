@@ -6,9 +6,7 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/reaction_curve/amigo.h"
-#include "engine/tuning/robust/built_robust.h"
 #include "engine/tuning/robust/family.h"
-#include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {

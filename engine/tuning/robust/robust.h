@@ -33,6 +33,12 @@ struct RobustOptions {
 Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustOptions& options,
                                       const RunControl& control);
 
+/// As the method robust, on the controller's own law. Its objective is the load IAE, whatever the options say; a
+/// warning says so. `ideal`: the method on the ideal law, for the start. Errors: those of the method and of
+/// built::design.
+Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const RobustOptions& options,
+                                           const built::Build& build, const RunControl& control);
+
 TuningMethod robust_method();
 
 /// The method's default PID on one plant under several limits, Ms = Mt = M: the front of load IAE against robustness. A
@@ -65,3 +71,18 @@ struct CostSurface : MethodReport {
 };
 
 }  // namespace tunewright
+
+namespace tunewright::robust {
+
+/// The filter that the options give, if they do. Error: invalid_argument for Tf_over_Td of a PI.
+Expected<std::optional<FilterRule>> explicit_filter(const RobustFilterOptions& options, bool pid);
+
+/// The contract's filter rule: what is given; else none for PI, Tf = 0.1 Td for plants with a dead time, a
+/// right-half-plane zero or pole excess >= 3, and Tf = 0.05 of the lags minus the leads for the others. Error:
+/// unbounded_optimum ("filter") for a plant with neither dead time nor lags.
+Expected<FilterRule> filter_rule(const TuningProblem& problem, const RobustFilterOptions& options, bool pid);
+
+/// Low gain of the right sign must push the output towards the set point: K/T of the plant's first slope decides.
+double first_sign(const LinearPlant& plant);
+
+}  // namespace tunewright::robust

@@ -1,4 +1,5 @@
-// The user's own controller in a request: which product, with which spans, or a program of the ideal form.
+// The user's own controller: in a request which product, with which spans, or a program of the ideal form; in an answer
+// the loop that it makes.
 #pragma once
 
 #include <optional>
@@ -6,7 +7,7 @@
 #include <vector>
 
 #include "api/describe/description.h"
-#include "engine/tuning/built/build.h"
+#include "engine/request/as_built.h"
 
 namespace tunewright::api {
 
@@ -44,5 +45,8 @@ void check_needs(const built::Build& build, Reader& reader);
 /// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a label
 /// that is no unit of time.
 std::optional<built::Build> build_of(const GivenBuild& given, const std::string& time_label, Reader& reader);
+
+/// {"sample_time", "robustness", "performance", "responses", "difference"}.
+const Description<AsBuilt>& implemented_contract();
 
 }  // namespace tunewright::api

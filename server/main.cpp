@@ -192,6 +192,8 @@ int main(int argc, char** argv) {
 
     KeyCommand naming;
     CLI::App* methods_app = app.add_subcommand("methods", "The tuning methods with their options, as JSON");
+    CLI::App* controllers_app =
+        app.add_subcommand("controllers", "The controllers that settings can be converted for, as JSON");
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
     key_app->add_option("name", naming.name, "Name of the owner, to whom jobs belong")->required();
     key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
@@ -210,6 +212,10 @@ int main(int argc, char** argv) {
         if (code_app->parsed()) return code(coding);
         if (methods_app->parsed()) {
             std::cout << tunewright::api::methods_json() << "\n";
+            return 0;
+        }
+        if (controllers_app->parsed()) {
+            std::cout << tunewright::api::controllers_json() << "\n";
             return 0;
         }
         return serving->parsed() ? serve(config) : tune(file);

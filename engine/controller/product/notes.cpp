@@ -36,7 +36,7 @@ void note_weights(const Comparison& it, std::vector<Note>& notes) {
     if (derivative) sentence += ", c = " + text(it.realised.c);
     sentence += " where the design has b = " + text(it.asked.b);
     if (derivative) sentence += ", c = " + text(it.asked.c);
-    sentence += "; the answer to loads is the same.";
+    sentence += "; the answer to loads does not depend on them.";
     notes.push_back({"setpoint-weights", with_text(std::move(sentence), it.product.weights.text)});
     const std::string prefilter = setpoint_prefilter(it.asked, it.realised);
     if (prefilter.empty()) return;

@@ -14,7 +14,8 @@ const Action kDeltaVAction{.kind = Action::Kind::switched,
                            .text = "Direct_Acting stands in CONTROL_OPTS."};
 
 Algorithm deltav_algorithm() {
-    return {.text = "position algorithm; the integral is a lag in positive feedback (external reset)",
+    return {.published = false,
+            .text = "position algorithm; the integral is a lag in positive feedback (external reset)",
             .anti_windup = "outside ARW_HI_LIM and ARW_LO_LIM, in engineering units, RESET is divided by 16",
             .sample_time_text = "the scan of the module"};
 }

@@ -32,7 +32,7 @@ Product esphome() {
     return {
         .id = "esphome_pid",
         .maker = "ESPHome",
-        .name = "climate: pid",
+        .name = "ESPHome climate: pid",
         .form = Form::parallel,
         .law = "duty = kp e + (ki/s) e - kd (mean slope of y over M samples), duty from -1 to 1",
         .gain_basis = "duty per degree",

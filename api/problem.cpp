@@ -22,6 +22,7 @@ constexpr Row kTable[] = {
     {ErrorKind::unstable_plant, 422, "No controller of this kind stabilises the plant"},
     {ErrorKind::no_feasible_controller, 422, "No controller keeps the limits"},
     {ErrorKind::unbounded_optimum, 422, "The optimum runs away"},
+    {ErrorKind::not_representable, 422, "The product cannot be this controller"},
     {ErrorKind::cancelled, 409, "The job was cancelled"},
     {ErrorKind::timeout, 504, "The time allowed is over"},
     {ErrorKind::numerical_failure, 500, "The computation did not reach its accuracy"},

@@ -6,28 +6,12 @@
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
+#include "api/describe/body.h"
 #include "api/json/digest.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
-
-template <class Request>
-std::variant<Request, Problem> decode(const Json& value, const Description<Request>& contract) {
-    Request request;
-    Reader reader;
-    contract.read(value, request, reader);
-    if (auto problem = reader.problem()) return std::move(*problem);
-    return request;
-}
-
-/// The same from the text of a body.
-template <class Request>
-std::variant<Request, Problem> read_body(std::string_view body, const Description<Request>& contract) {
-    const auto parsed = parse(body);
-    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
-    return decode(std::get<Json>(parsed), contract);
-}
 
 Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
@@ -210,7 +194,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
-    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, control);
+    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, request.build, control);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);

@@ -77,6 +77,12 @@ struct CsvRequest {
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
 Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
 
+std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for
+Answer controller_json(std::string_view id);  ///< GET /v1/controllers/{id}; 404 for none
+/// POST /v1/controllers/{id}/settings and .../controller: what is typed for a controller, and what settings are.
+Answer controller_settings_call(std::string_view id, std::string_view body);
+Answer controller_twin_call(std::string_view id, std::string_view body);
+
 std::string methods_json();               ///< GET /v1/methods
 Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none
 std::string examples_json();              ///< GET /v1/examples

@@ -13,6 +13,7 @@ enum class ErrorKind {
     unstable_plant,          ///< no controller of the asked kind stabilises the plant
     no_feasible_controller,  ///< no controller meets the limits: relax them (the sentence says how far)
     unbounded_optimum,       ///< the optimum runs away: fix a filter or limit Mks
+    not_representable,       ///< a product cannot be this controller: take the nearest, or tune under its limits
     cancelled,               ///< somebody asked to stop
     timeout,                 ///< the time allowed is over
     numerical_failure,       ///< the computation could not be finished to its accuracy
@@ -27,6 +28,7 @@ inline const char* to_string(ErrorKind kind) {
         case ErrorKind::unstable_plant: return "unstable-plant";
         case ErrorKind::no_feasible_controller: return "no-feasible-controller";
         case ErrorKind::unbounded_optimum: return "unbounded-optimum";
+        case ErrorKind::not_representable: return "not-representable";
         case ErrorKind::cancelled: return "cancelled";
         case ErrorKind::timeout: return "timeout";
         case ErrorKind::numerical_failure: return "numerical-failure";

@@ -95,4 +95,14 @@ int identify(const IdentifyCommand& command) {
     return failed ? 1 : 0;
 }
 
+int code(const CodeCommand& command) {
+    std::string result, request;
+    if (!read_input(command.file, result)) return fail(unreadable(command.file));
+    if (!command.request.empty() && !read_input(command.request, request)) return fail(unreadable(command.request));
+    const auto written = api::controller_code({result, request}, command.controller, command.words);
+    if (const auto* problem = std::get_if<api::Problem>(&written)) return fail(*problem);
+    std::cout << std::get<api::ControllerCode>(written).text;
+    return 0;
+}
+
 }  // namespace tunewright::server

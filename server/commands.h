@@ -1,9 +1,10 @@
-// The commands that need no service of their own: `tunewright tune` and `tunewright identify` answer one request, and
-// `tunewright health` asks a running service.
+// The commands that need no service of their own: `tunewright tune` and `tunewright identify` answer one request,
+// `tunewright code` writes a controller of a result, and `tunewright health` asks a running service.
 #pragma once
 
 #include <string>
 
+#include "api/code/code.h"
 #include "api/service.h"
 
 namespace tunewright::server {
@@ -21,6 +22,17 @@ struct IdentifyCommand {
 /// goes to standard output and 0 is returned; a problem goes to standard error as problem JSON and 1 is returned. The
 /// only limit on the file's size is that of a record, 2,000,000 samples.
 int identify(const IdentifyCommand& command);
+
+struct CodeCommand {
+    std::string file;        ///< a result or a job; "-": standard input
+    std::string request;     ///< file of the request that it answers; "": not known
+    std::string controller;  ///< its number in the result; "": the best
+    api::CodeWords words;    ///< parameters of GET /v1/jobs/{id}/controllers/{index}/code
+};
+
+/// Writes the controller as source text to standard output and returns 0; a problem goes to standard error as problem
+/// JSON and 1 is returned.
+int code(const CodeCommand& command);
 
 /// GET `url` (http://HOST:PORT/PATH, HOST an address or a name), answered within three seconds. Returns 0 where the
 /// status is 200; else 1, and standard error says why. 2 where the url cannot be used.

@@ -1,5 +1,6 @@
 // The command line of the one binary: its options and commands, each of which is a function elsewhere.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <exception>
 #include <iostream>
@@ -117,6 +118,36 @@ void add_serve_options(CLI::App& app, Config& config) {
     add_port_options(app, config);
 }
 
+/// An option of the command that is a parameter of the call too, under the same name: --sample-time is sample_time.
+void code_word(CLI::App& app, const std::string& name, tunewright::api::CodeWords& words, const std::string& help) {
+    std::string parameter = name;
+    std::replace(parameter.begin(), parameter.end(), '-', '_');
+    app.add_option_function<std::string>(
+           "--" + name, [&words, parameter](const std::string& word) { words.emplace_back(parameter, word); }, help)
+        ->type_name("WORD");
+}
+
+void add_code_options(CLI::App& app, tunewright::server::CodeCommand& command) {
+    app.add_option("file", command.file, "A result of tune, or a job as JSON; - reads standard input")->required();
+    app.add_option("--controller", command.controller, "Number in the result, from 0 (default: the best)");
+    app.add_option("--request", command.request, "File of the request, for the head comment and its sample time");
+    auto& words = command.words;
+    code_word(app, "language", words, "st, c or python");
+    code_word(app, "sample-time", words, "Time from call to call, in the result's unit of time");
+    code_word(app, "integral", words, "backward, forward or trapezoidal");
+    code_word(app, "derivative", words,
+              "difference, filtered_backward, filtered_forward, filtered_trapezoidal, slope or four_points");
+    code_word(app, "slope-samples", words, "Sample times that the rule slope spans");
+    code_word(app, "form", words, "position or velocity");
+    code_word(app, "anti-windup", words, "back_calculation or clamping");
+    code_word(app, "tracking-time", words, "Tracking time of back-calculation");
+    code_word(app, "u-min", words, "Least u");
+    code_word(app, "u-max", words, "Largest u");
+    code_word(app, "rate-limit", words, "Most that u moves in a unit of time");
+    code_word(app, "bias", words, "u at the operating point");
+    code_word(app, "y0", words, "y at the operating point");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -155,6 +186,10 @@ int main(int argc, char** argv) {
     identify_app->add_flag("--traces", identifying.question.traces,
                            "CSV: answer the record beside the models' free runs too");
 
+    CodeCommand coding;
+    CLI::App* code_app = app.add_subcommand("code", "A controller of a result as Structured Text, C or Python");
+    add_code_options(*code_app, coding);
+
     KeyCommand naming;
     CLI::App* methods_app = app.add_subcommand("methods", "The tuning methods with their options, as JSON");
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
@@ -172,6 +207,7 @@ int main(int argc, char** argv) {
         if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
         if (identify_app->parsed()) return identify(identifying);
+        if (code_app->parsed()) return code(coding);
         if (methods_app->parsed()) {
             std::cout << tunewright::api::methods_json() << "\n";
             return 0;

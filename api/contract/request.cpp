@@ -110,6 +110,49 @@ void check_source(const Json& value, JobRequest&, Reader& reader) {
     }
 }
 
+void read_baseline(const Json& value, JobRequest& request, Reader& reader) {
+    const bool settings = value.is_object() && value.contains("product");
+    if (settings) return object(baseline_settings_contract()).read(value, request.baseline_settings.emplace(), reader);
+    maybe(one_of(controller_contract())).read(value, request.baseline, reader);
+}
+
+void write_baseline(const JobRequest& request, Writer& out) {
+    if (request.baseline_settings) return baseline_settings_contract().write(*request.baseline_settings, out);
+    maybe(one_of(controller_contract())).write(request.baseline, out);
+}
+
+Json baseline_schema(SchemaBook& book) {
+    return Json{{"oneOf",
+                 Json::array({one_of(controller_contract()).schema(book), baseline_settings_contract().schema(book)})}};
+}
+
+// Settings that are typed become their ideal twin, which is the baseline then.
+void check_baseline(JobRequest& request, const std::string& time, Reader& reader) {
+    const Reader::At at(reader, "baseline");
+    request.baseline_build = build_of(request.baseline_settings->build(request.implement), time, reader);
+    if (!request.baseline_build) return;
+    const std::size_t before = reader.count();
+    check_needs(*request.baseline_build, reader);
+    if (!reader.clean_since(before)) return;
+    const auto fitted = built::fit(*request.baseline_build, request.baseline_settings->settings);
+    if (!fitted) return reader.fault_below(fitted.error().where, 0, fitted.error().message);
+    request.baseline = built::continuous(fitted->controller);
+}
+
+template <class Request>
+void resolve_build(Request& request, Reader& reader) {
+    if (!request.implement) return;
+    const Reader::At at(reader, "implement");
+    request.build = build_of(*request.implement, request.units.value_or(Units{}).time_or_default(), reader);
+    if (request.build) check_needs(*request.build, reader);
+}
+
+void check_implement(const Json&, JobRequest& request, Reader& reader) {
+    resolve_build(request, reader);
+    const std::string time = request.units.value_or(Units{}).time_or_default();
+    if (request.baseline_settings) check_baseline(request, time, reader);
+}
+
 void check_job(const Json&, JobRequest& request, Reader& reader) {
     if (request.uncertainty == "identified" && !request.record) {
         reader.fault_at("uncertainty",
@@ -204,8 +247,12 @@ const Description<JobRequest>& job_contract() {
             .field("identify", &JobRequest::identify, object(identify_contract()), "How the record becomes a model.")
             .field("tune", &JobRequest::tune, tune_list(),
                    "The methods, one entry of the answer each; \"all\": every one.")
-            .field("baseline", &JobRequest::baseline, maybe(one_of(controller_contract())),
-                   "Today's settings, answered as the last entry.")
+            .field(
+                "baseline", read_baseline, write_baseline, baseline_schema,
+                "Today's settings, answered as the last entry: a controller, or a product with its settings as typed.",
+                {}, [](const JobRequest& request) { return !request.baseline && !request.baseline_settings; })
+            .field("implement", &JobRequest::implement, maybe(object(implement_contract())),
+                   "The user's own controller, for which entries are settled and judged.")
             .field("evaluate", &JobRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
             .field("uncertainty", &JobRequest::uncertainty,
@@ -215,6 +262,7 @@ const Description<JobRequest>& job_contract() {
             .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .check_presence(check_source)
+            .check(check_implement)
             .check(check_job)
             .check(resolve_record<JobRequest>)
             .example({{"name", "TIC-101"},
@@ -236,7 +284,10 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
                    list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
+            .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
+                   "The user's own controller, on which they are judged too.")
             .check(check_controllers)
+            .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_build(request, reader); })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
         return d;
@@ -265,6 +316,9 @@ TuningRequest to_engine(JobRequest request) {
     out.identify = request.identify;
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;
+    out.implement = request.build;
+    if (request.baseline_settings)
+        out.baseline_settings = {*request.baseline_build, request.baseline_settings->settings};
     out.evaluate = request.evaluate;
     out.identified_region = request.uncertainty == "identified" ? IdentifiedRegion::held
                             : request.uncertainty == "none"     ? IdentifiedRegion::unused

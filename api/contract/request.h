@@ -1,6 +1,7 @@
 // Requests of the contract: a tuning job, an evaluation, an identification.
 #pragma once
 
+#include "api/contract/built/implement.h"
 #include "api/contract/record.h"
 #include "engine/request/tune.h"
 
@@ -15,10 +16,14 @@ struct JobRequest {
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
+    std::optional<GivenBaseline> baseline_settings;  ///< in its place: as typed on a product
+    std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;
     std::string uncertainty = "auto";
     double timeout_s = 60;
-    ReadRecord read;  ///< of `record`
+    ReadRecord read;                             ///< of `record`
+    std::optional<built::Build> build;           ///< of `implement`
+    std::optional<built::Build> baseline_build;  ///< of `baseline_settings`
 };
 
 struct EvaluateRequest {
@@ -27,7 +32,9 @@ struct EvaluateRequest {
     std::optional<PlantModel> plant;
     std::optional<Subject> subject;  ///< that `plant` describes
     std::vector<Controller> controllers;
+    std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;
+    std::optional<built::Build> build;  ///< of `implement`
 };
 
 struct IdentifyRequest {

@@ -1,3 +1,4 @@
+#include "api/contract/product/product.h"
 #include "api/contract/relay.h"
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
@@ -45,6 +46,12 @@ std::string openapi_json() {
         identify_answer_contract().schema(book);
         relay_request_contract().schema(book);
         relay_answer_contract().schema(book);
+        product_summary_contract().schema(book);
+        product_contract().schema(book);
+        settings_request_contract().schema(book);
+        settings_answer_contract().schema(book);
+        twin_request_contract().schema(book);
+        twin_answer_contract().schema(book);
         Json& schemas = document["components"]["schemas"];
         for (auto& [name, schema] : book.components.items()) schemas[name] = schema;
 

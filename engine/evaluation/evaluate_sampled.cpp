@@ -8,7 +8,6 @@
 #include "engine/evaluation/performance_figures.h"
 #include "engine/evaluation/robustness_figures.h"
 #include "engine/loop/sampled/sampled_loop.h"
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/sign_change.h"
 #include "engine/simulation/sampled/sampled_nonlinear.h"
 #include "engine/simulation/sampled/sampled_response.h"
@@ -19,7 +18,9 @@ namespace {
 constexpr double kPeakMoves = 4;      // a sampled loop's peak lies within this factor of the continuous one's
 constexpr double kFirstSample = 0.1;  // of 1/omega_Ms: where the search for the longest sample time starts
 constexpr double kShortest = 1e-3;    // of 1/omega_Ms
-constexpr double kSampleTolerance = 5e-4;
+constexpr double kLongest = 1e3;      // of 1/omega_Ms: where it ends
+constexpr double kShorter = 0.9;      // of a sample time that the whole loop does not bear
+constexpr double kSampleTolerance = 3e-4;
 constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may lie above that near the peak
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
@@ -48,11 +49,6 @@ void add_performance(BuiltLoop& built, const Simulate& simulate, const ProgramLi
                                 setpoint.settles && load.settles};
 }
 
-Robustness robustness_of(const SampledLoop& loop) {
-    const LoopGrid grid = loop.grid();
-    return tunewright::robustness_of(loop.peaks(grid), loop.margins(grid));
-}
-
 }  // namespace
 
 Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& law, const ProgramLimits& limits,
@@ -64,13 +60,14 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
                      "lies above half the sampling frequency. Identify a model first."};
     BuiltLoop built;
     const SampledLoop loop(*linear, law);
-    const StabilityCount count = loop.count_unstable_poles();
+    const LoopGrid grid = loop.grid();
+    const StabilityCount count = loop.count_unstable_poles(grid);
     if (!count.stable()) {
         built.robustness = unstable_robustness(count);
         built.performance = no_performance("The loop as built is unstable.");
         return built;
     }
-    built.robustness = robustness_of(loop);
+    built.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));
     if (auto error = stopped(options)) return *error;
     const NonlinearSystem* system = subject.equations();
     ProgramLimits all = limits;
@@ -85,46 +82,67 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
     return built;
 }
 
+namespace {
+
+/// |S| at the top of its hill near where it was last, as the sample time changes: by a parabola through three points in
+/// ln omega, good to 1e-4 and quick. Another hill that takes over is not seen.
+class TrackedPeak {
+public:
+    TrackedPeak(const LinearPlant& plant, const ParallelPid& gains, double omega)
+        : plant_(plant), gains_(gains), omega_(omega) {}
+
+    double at(double Ts) {
+        const SampledLoop loop(plant_, {.gains = gains_, .Ts = Ts});
+        const double highest = loop.highest_frequency();
+        const auto S = [&](double omega) { return std::abs(loop.at(std::min(omega, highest)).S); };
+        omega_ = std::min(omega_, highest / kStep);
+        double below = S(omega_ / kStep), here = S(omega_), above = S(omega_ * kStep);
+        for (int i = 0; i < kMostSteps && (below > here || above > here); ++i) {
+            const bool up = above > below;
+            if (up && omega_ * kStep * kStep > highest) break;
+            omega_ *= up ? kStep : 1 / kStep;
+            (up ? below : above) = here;
+            here = up ? above : below;
+            (up ? above : below) = S(up ? omega_ * kStep : omega_ / kStep);
+        }
+        const double bend = below - 2 * here + above, slope = 0.5 * (above - below);
+        return bend < 0 ? here - 0.5 * slope * slope / bend : std::max({below, here, above});
+    }
+
+private:
+    static constexpr double kStep = 1.12;
+    static constexpr int kMostSteps = 30;
+    const LinearPlant& plant_;
+    ParallelPid gains_;
+    double omega_;
+};
+
+double whole_peak(const LinearPlant& plant, const ParallelPid& gains, double Ts) {
+    const SampledLoop loop(plant, {.gains = gains, .Ts = Ts});
+    const LoopGrid grid = loop.grid();
+    if (!loop.count_unstable_poles(grid).stable()) return std::numeric_limits<double>::infinity();
+    return loop.peaks(grid).S.value;
+}
+
+}  // namespace
+
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor) {
-    const auto law = [&](double Ts) { return SampledPid{.gains = gains, .Ts = Ts}; };
-    // |S| near the continuous loop's peak alone: quick, and right unless another peak takes over.
-    const auto near_peak = [&](double Ts) {
-        const SampledLoop loop(plant, law(Ts));
-        const double highest = loop.highest_frequency();
-        const auto S = [&](double omega) { return std::abs(loop.at(omega).S); };
-        const double from = std::min(omega_Ms / kPeakMoves, 0.25 * highest);
-        const double to = std::min(omega_Ms * kPeakMoves, highest);
-        Maximum best{from, S(from)};
-        constexpr int kLooks = 8;
-        const double ratio = std::pow(to / from, 1.0 / kLooks);
-        for (int i = 1; i <= kLooks; ++i) {
-            const double omega = i < kLooks ? from * std::pow(ratio, i) : to, value = S(omega);
-            if (value > best.value) best = {omega, value};
-        }
-        if (best.x <= from || best.x >= to) return best.value;
-        return log_maximum(S, std::max(from, best.x / ratio), best, std::min(to, best.x * ratio)).value;
-    };
-    const auto whole = [&](double Ts) {
-        const SampledLoop loop(plant, law(Ts));
-        if (!loop.count_unstable_poles().stable()) return std::numeric_limits<double>::infinity();
-        return loop.peaks(loop.grid()).S.value;
-    };
-    const auto excess = [&](double Ts) { return std::log(near_peak(Ts) / (factor * Ms)); };
-    const double shortest = kShortest / omega_Ms;
-    double low = shortest, f_low = excess(low);
-    if (f_low > 0) return std::nullopt;
-    double high = kFirstSample / omega_Ms, f_high = excess(high);
-    while (f_high <= 0 && high < 1e3 / omega_Ms) {
+    TrackedPeak peak(plant, gains, omega_Ms);
+    const auto excess = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
+    const double longest = kLongest / omega_Ms;
+    double low = 0, f_low = -std::log(factor), high = kFirstSample / omega_Ms, f_high = excess(high);
+    while (f_high <= 0 && high < longest) {
         low = high;
         f_low = f_high;
         high *= 2;
         f_high = excess(high);
     }
     if (f_high <= 0) return std::nullopt;
-    double found = log_root(excess, low, high, f_low, f_high, kSampleTolerance);
+    double found = root_between(excess, low, high, f_low, f_high, kSampleTolerance * high);
     // Another peak, or a loop that is unstable: shorter until the whole loop says the same.
-    while (found > shortest && !(whole(found) <= factor * Ms * (1 + kWholeLoop))) found *= 0.9;
+    const double shortest = kShortest / omega_Ms;
+    while (found > shortest && !(whole_peak(plant, gains, found) <= factor * Ms * (1 + kWholeLoop))) found *= kShorter;
     return found > shortest ? std::optional(found) : std::nullopt;
 }
 

@@ -31,7 +31,7 @@ std::vector<double> row_times(std::span<const double> a, std::span<const double>
     return row;
 }
 
-std::vector<double> product(std::span<const double> A, std::span<const double> B, int n) {
+std::vector<double> matrix_product(std::span<const double> A, std::span<const double> B, int n) {
     std::vector<double> result(A.size());
     Eigen::Map<Matrix>(result.data(), n, n).noalias() =
         Eigen::Map<const Matrix>(A.data(), n, n) * Eigen::Map<const Matrix>(B.data(), n, n);

@@ -28,7 +28,7 @@ inline void multiply(std::span<const double> A, std::span<const double> x, std::
 std::vector<double> row_times(std::span<const double> a, std::span<const double> A);
 
 /// A B, both n x n.
-std::vector<double> product(std::span<const double> A, std::span<const double> B, int n);
+std::vector<double> matrix_product(std::span<const double> A, std::span<const double> B, int n);
 
 /// The rows of a matrix one after another.
 std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);

@@ -73,7 +73,7 @@ const ExactStep& Propagator::level(int level) {
 ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) const {
     ExactStep whole;
     whole.h = first.h + second.h;
-    whole.Phi = product(second.Phi, first.Phi, n_);
+    whole.Phi = matrix_product(second.Phi, first.Phi, n_);
     std::vector<double> carried(Index(n_), 0.0);
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
     for (int j = 0; j < 4; ++j) {

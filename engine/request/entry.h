@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
+#include "engine/request/as_built.h"
 #include "engine/request/optimum_at_ms.h"
 #include "engine/tuning/method/method.h"
 
@@ -22,7 +23,10 @@ struct TuningEntry {
     std::optional<double> Ms_limit;            ///< that the method was asked for
     Reports reports;                           ///< of the method, and what was asked for of every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
-    std::optional<Evaluation> evaluation;      ///< warnings of the method come first in its list
+    std::optional<AsBuilt> as_built;           ///< where asked for and possible
+    /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
+    std::optional<Figure> longest_sample_time;
+    std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
 
     /// The report of this type; null if there is none.

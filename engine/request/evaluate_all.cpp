@@ -26,7 +26,8 @@ Error out_of_time(std::size_t done) {
 }  // namespace
 
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
-                                        const EvaluateOptions& options, const RunControl& control) {
+                                        const EvaluateOptions& options, const std::optional<built::Build>& implement,
+                                        const RunControl& control) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
@@ -48,6 +49,8 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         if (tradeoffs)
             entry.reports.push_back(std::make_shared<TradeoffReport>(tradeoffs->of(controllers[i], std::nullopt)));
         if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
+        if (implement)
+            take_as_built(built_from(subject, *implement, watched, *evaluation, control), *evaluation, entry.as_built);
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }

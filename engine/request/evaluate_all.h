@@ -23,7 +23,9 @@ struct EvaluationResult {
 /// result has none. `options` are the same for all: steps, actuator, horizon, traces.
 ///
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
+/// `implement`: each is also settled for the user's own controller and judged on it.
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
-                                        const EvaluateOptions& options, const RunControl& control);
+                                        const EvaluateOptions& options, const std::optional<built::Build>& implement,
+                                        const RunControl& control);
 
 }  // namespace tunewright

@@ -42,7 +42,10 @@ private:
     std::optional<Error> find_plant();
     std::optional<Error> take_record();
     void state_problem();
-    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control) const;
+    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control,
+                                         std::optional<built::Fitted>& fitted) const;
+    void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
+    void add_baseline_as_built(TuningEntry& entry);
     TuningEntry entry(const PlannedRow& planned, double from, double to);
     std::vector<TuningEntry> entries(const PlannedRow& planned, double from, double to);
     bool repeats(const TuningEntry& entry) const;
@@ -172,15 +175,43 @@ void TuningRun::state_problem() {
         problem_->relay_point = result_.model->limit_cycle->describing_function;
 }
 
-Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control) const {
+// `fitted`: the settings, where the method designs for the controller as it is built.
+Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control,
+                                                std::optional<built::Fitted>& fitted) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
+    if (problem_ && request_.implement && method.tune_as_built) {
+        auto design = method.tune_as_built(*problem_, options, *request_.implement, control);
+        if (!design) return design.error();
+        fitted = std::move(design->fitted);
+        return std::move(design->tuned);
+    }
     if (problem_) return method.tune(*problem_, options, control);
     if (method.tune_on_points) return method.tune_on_points(*subject_->measured(), options, control);
     return Error{ErrorKind::unsupported, "",
                  "The method " + method.id +
                      " needs a model of the plant; points of a frequency response serve the method robust."};
+}
+
+void TuningRun::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) {
+    if (!request_.implement || !entry.evaluation) return;
+    const built::Build& build = *request_.implement;
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : built_from(*subject_, build, request_.evaluate, ideal, control),
+                  ideal, entry.as_built);
+}
+
+// Settings that were given as typed are judged as they stand, whatever the others are made for.
+void TuningRun::add_baseline_as_built(TuningEntry& entry) {
+    if (!request_.baseline_settings || !entry.evaluation) return add_as_built(entry, std::nullopt, control_);
+    const auto& [build, settings] = *request_.baseline_settings;
+    auto fitted = built::fit(build, settings);
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(*subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : Expected<AsBuilt>(fitted.error()),
+                  ideal, entry.as_built);
 }
 
 TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) {
@@ -191,7 +222,8 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem_ || on_points.empty() ? planned.method->options : on_points, planned.options);
     const double started = now_ms();
-    auto tuned = tuned_with(planned, share(from, to));
+    std::optional<built::Fitted> fitted;
+    auto tuned = tuned_with(planned, share(from, to), fitted);
     if (!tuned) {
         entry.error = placed(tuned.error(), planned.where);
         return entry;
@@ -201,7 +233,9 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);
+    add_as_built(entry, std::move(fitted), control_);
     if (entry.evaluation) {
+        entry.longest_sample_time = longest_sample_time_of(*subject_, *entry.evaluation);
         warn_of_region(*entry.evaluation, entry.Ms_limit, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
         entry.evaluation->compute_ms = now_ms() - started;
@@ -239,6 +273,7 @@ TuningEntry TuningRun::baseline() {
     const double started = now_ms();
     evaluate_into(entry, *request_.baseline, {});
     add_reports(entry, nullptr);
+    add_baseline_as_built(entry);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_ms() - started;
     if (entry.error && entry.error->where.starts_with("controller"))

@@ -29,6 +29,12 @@ struct TuningRequest {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
+    struct TypedSettings {
+        built::Build build;
+        product::Settings settings;
+    };
+    std::optional<TypedSettings> baseline_settings;  ///< whose ideal twin `baseline` is
+    std::optional<built::Build> implement;  ///< the user's own controller, for which entries are settled and judged
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
 };
 

@@ -17,13 +17,16 @@ http::Handler constant(std::string body) {
     };
 }
 
-Response method(const Call& call) {
-    if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
-    api::Answer answer = api::method_json(call.path.at("id"));
-    Response response;
-    response.status = answer.status;
-    response.body = std::move(answer.body);
-    return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+/// What the path's id names.
+http::Handler one_of(api::Answer (*describe)(std::string_view)) {
+    return [describe](const Call& call) {
+        if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
+        api::Answer answer = describe(call.path.at("id"));
+        Response response;
+        response.status = answer.status;
+        response.body = std::move(answer.body);
+        return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+    };
 }
 
 }  // namespace
@@ -32,7 +35,9 @@ void add_description_routes(http::Router& router) {
     router.quick("GET", "/openapi.json", constant(api::openapi_json()));
     router.quick("GET", "/v1/methods", constant(api::methods_json()));
     router.quick("GET", "/v1/examples", constant(api::examples_json()));
-    router.add("GET", "/v1/methods/{id}", method);
+    router.quick("GET", "/v1/controllers", constant(api::controllers_json()));
+    router.add("GET", "/v1/methods/{id}", one_of(api::method_json));
+    router.add("GET", "/v1/controllers/{id}", one_of(api::controller_json));
 }
 
 }  // namespace tunewright::server

@@ -24,6 +24,9 @@ void add_event_routes(http::Router& router, JobService& jobs, Places& places);
 /// /v1/jobs/{id}/result.csv
 void add_trace_routes(http::Router& router, JobService& jobs);
 
+/// /v1/jobs/{id}/controllers/{index}/code
+void add_code_routes(http::Router& router, JobService& jobs);
+
 struct BatchLimits {
     api::JobLimits job;
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch
@@ -33,11 +36,11 @@ struct BatchLimits {
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
                       const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/identify and /v1/experiments/relay: computed while the client waits, when its turn has come, with
-/// a deadline, or until `closing`.
+/// /v1/evaluate, /v1/identify, /v1/experiments/relay and the conversions below /v1/controllers: computed while the
+/// client waits, when its turn has come, with a deadline, or until `closing`.
 void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing);
 
-/// /v1/methods, /v1/examples, /openapi.json: the same for the life of the process.
+/// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.
 void add_description_routes(http::Router& router);
 
 /// /healthz, /readyz, /metrics.

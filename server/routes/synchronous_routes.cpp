@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stop_token>
@@ -16,11 +17,12 @@ namespace {
 using http::Call;
 using http::problem_response;
 using http::Response;
-using SyncCall = api::Answer (*)(std::string_view, const RunControl&);
+using SyncCall = std::function<api::Answer(const Call&, const RunControl&)>;
 
 constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
+constexpr std::chrono::seconds kConversionTime{10};
 constexpr std::chrono::milliseconds kLook{250};  // for clients that have gone
 
 double monotonic_ms() {
@@ -69,14 +71,14 @@ private:
 };
 
 /// The answer of `work`, which runs on this thread. Its turn has come.
-Response compute(SyncCall work, const http::Request& request, std::chrono::seconds limit,
+Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit,
                  const std::shared_ptr<Overseer>& overseer, const std::stop_token& closing) {
     const std::stop_callback on_closing(closing, [overseer] { overseer->stop(); });
     RunControl control;
     control.stop = overseer->token();
     control.now_ms = monotonic_ms;
     const double start = monotonic_ms();
-    const api::Answer answer = work(request.body, control);
+    const api::Answer answer = work(call, control);
     if (answer.status >= 400 && closing.stop_requested()) return closing_down();
     if (answer.status >= 400 && control.stop.stop_requested()) return too_slow(limit);
 
@@ -88,7 +90,7 @@ Response compute(SyncCall work, const http::Request& request, std::chrono::secon
 }
 
 /// The time counts from the arrival of the request, waiting for its turn included.
-http::Handler synchronous(SyncCall work, std::chrono::seconds limit, Turns& turns, Timer& timer,
+http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turns& turns, Timer& timer,
                           const std::stop_token& closing) {
     return [=, &turns, &timer](const Call& call) {
         const auto deadline = Turns::Clock::now() + limit;
@@ -107,16 +109,31 @@ http::Handler synchronous(SyncCall work, std::chrono::seconds limit, Turns& turn
             overseer->end();
             turns.give_back();
         });
-        return compute(work, call.request, limit, overseer, closing);
+        return compute(work, call, limit, overseer, closing);
     };
+}
+
+/// A call that asks for nothing but its body.
+SyncCall of_body(api::Answer (*work)(std::string_view, const RunControl&)) {
+    return [work](const Call& call, const RunControl& control) { return work(call.request.body, control); };
+}
+
+/// A conversion for the product that the path names.
+SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
+    return [work](const Call& call, const RunControl&) { return work(call.path.at("id"), call.request.body); };
 }
 
 }  // namespace
 
 void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing) {
-    router.add("POST", "/v1/evaluate", synchronous(api::evaluate_call, kEvaluateTime, turns, timer, closing));
-    router.add("POST", "/v1/identify", synchronous(api::identify_call, kIdentifyTime, turns, timer, closing));
-    router.add("POST", "/v1/experiments/relay", synchronous(api::relay_call, kRelayTime, turns, timer, closing));
+    const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit) {
+        router.add("POST", path, synchronous(work, limit, turns, timer, closing));
+    };
+    add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);
+    add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
+    add("/v1/experiments/relay", of_body(api::relay_call), kRelayTime);
+    add("/v1/controllers/{id}/settings", of_product(api::controller_settings_call), kConversionTime);
+    add("/v1/controllers/{id}/controller", of_product(api::controller_twin_call), kConversionTime);
 }
 
 }  // namespace tunewright::server

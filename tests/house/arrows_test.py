@@ -14,6 +14,7 @@ ROOMS = {
     "numerics": set(),
     "plant": {"numerics"},
     "controller": {"numerics"},
+    "code": {"controller", "numerics"},
     "loop": {"plant", "controller", "numerics"},
     "simulation": {"loop", "plant", "controller", "numerics"},
     "reduction": {"simulation", "loop", "plant", "numerics"},

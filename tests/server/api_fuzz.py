@@ -139,6 +139,8 @@ def calls(draw, api, ids):
                 value = known[draw(st.integers(0, len(known) - 1))]
             elif path.startswith("/v1/methods") and not odd:
                 value = draw(st.sampled_from(["robust", "simc", "all", "rimc"]))
+            elif path.startswith("/v1/controllers") and not odd:
+                value = draw(st.sampled_from(["emerson_deltav_series", "klipper", "simple_pid", "omron_pid190"]))
             path = path.replace("{%s}" % name, urllib.parse.quote(str(value) or "-", safe=""))
         elif parameter["in"] == "query" and (parameter.get("required") or draw(st.booleans())):
             query.append((name, value if isinstance(value, str) else json.dumps(value)))

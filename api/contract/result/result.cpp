@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "api/contract/built/as_built.h"
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
@@ -126,6 +127,32 @@ void add_method_fields(Description<TuningEntry>& d) {
             [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
 }
 
+void add_as_built(Description<TuningEntry>& d) {
+    const auto none = [](const TuningEntry& entry) { return !entry.as_built; };
+    d.field(
+         "longest_sample_time", {},
+         [](const TuningEntry& entry, Writer& out) {
+             *entry.longest_sample_time ? out.number(**entry.longest_sample_time) : out.null();
+         },
+         [](SchemaBook&) {
+             return Json{{"type", {"number", "null"}}};
+         },
+         "The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's; "
+         "null: none was found. Only of designs.",
+         {.unit = "time"}, [](const TuningEntry& entry) { return !entry.longest_sample_time; })
+        .field(
+            "as_entered", {},
+            [](const TuningEntry& entry, Writer& out) { as_entered_contract().write(entry.as_built->fitted, out); },
+            [](SchemaBook& book) { return as_entered_contract().schema(book); },
+            "With implement.product: what to type into the product.", {},
+            [](const TuningEntry& entry) { return !entry.as_built || entry.as_built->fitted.typed.empty(); })
+        .field(
+            "implemented", {},
+            [](const TuningEntry& entry, Writer& out) { implemented_contract().write(*entry.as_built, out); },
+            [](SchemaBook& book) { return implemented_contract().schema(book); },
+            "With implement: the loop as the user's controller computes it.", {}, none);
+}
+
 const Description<TuningEntry>& entry_contract() {
     static const auto description = [] {
         Description<TuningEntry> d("Entry", "One controller with everything known about it, or why there is none.");
@@ -158,6 +185,7 @@ const Description<TuningEntry>& entry_contract() {
                          "How the figures were checked.");
         evaluation_field(d, "region", &Evaluation::region, maybe(answer(region_contract())),
                          "On every plant that the controller must serve; left out where that is one.");
+        add_as_built(d);
         add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");

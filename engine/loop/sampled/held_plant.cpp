@@ -54,7 +54,7 @@ HeldPlant::HeldPlant(const LinearPlant& plant, double sample_time, double comput
         if (h > 0) multiply(integrated_exponential(r.A, r.n, h), r.B, gamma);
         return gamma;
     };
-    E_ = product(r.A, integrated_exponential(r.A, r.n, Ts_), r.n);
+    E_ = matrix_product(r.A, integrated_exponential(r.A, r.n, Ts_), r.n);
     Gamma0_ = effect_of_hold(Ts_ - delta_);
     Gamma1_.assign(n, 0.0);
     if (delta_ > 0) {

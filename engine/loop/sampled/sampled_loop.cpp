@@ -244,9 +244,10 @@ public:
         Complex open, returned;  // q = open (1 + L), returned = 1 + L
         double size;             // 1 + |L|
     };
-    Value at(double omega) const {
+    Value at(double omega) const { return at(omega, loop_.open_loop(omega)); }
+    Value at(double omega, Complex L) const {
         const double x = omega * loop_.law().Ts;
-        const Complex back = std::polar(1.0, -x), difference = one_minus_back(x), L = loop_.open_loop(omega);
+        const Complex back = std::polar(1.0, -x), difference = one_minus_back(x);
         Complex open = 1;
         for (const Complex pole : poles_) open *= pole == 1.0 ? difference : 1.0 - pole * back;
         return {omega, open, 1.0 + L, 1 + magnitude(L)};
@@ -281,16 +282,17 @@ Turn turn_between(const Characteristic& q, const Characteristic::Value& left, co
 
 }  // namespace
 
-StabilityCount SampledLoop::count_unstable_poles() const {
+StabilityCount SampledLoop::count_unstable_poles() const { return count_unstable_poles(grid_from(kGridStep)); }
+
+StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
     const Characteristic q(*this);
-    const LoopGrid along = grid_from(kGridStep);
-    auto left = q.at(along.omega.front());
+    auto left = q.at(along.omega.front(), along.point.front().L);
     // q is real at both ends: what its argument lacks there to a multiple of pi belongs to the turn.
     const double start = std::arg(left.open * left.returned);
     double angle = start - std::numbers::pi * std::round(start / std::numbers::pi);
     StabilityCount count;
     for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {
-        const auto right = q.at(along.omega[i]);
+        const auto right = q.at(along.omega[i], along.point[i].L);
         const Turn turn = turn_between(q, left, right, kMaxHalvings);
         angle += turn.angle;
         count.on_the_boundary = turn.boundary;

@@ -32,6 +32,7 @@ public:
 
     /// Closed-loop poles on and outside the unit circle, by the argument principle along it.
     StabilityCount count_unstable_poles() const;
+    StabilityCount count_unstable_poles(const LoopGrid& grid) const;  ///< the same along the loop's own grid
 
     LoopGrid grid() const;
     Peaks peaks(const LoopGrid& grid) const;      ///< of a stable loop

@@ -85,7 +85,7 @@ public:
         const auto [t_plus, t_minus] = point.durations;
         const Half plus = half(point.x, t_plus, levels_.u_plus);
         const Half minus = half(plus.end, t_minus, levels_.u_minus);
-        const std::vector<double> whole = product(minus.step.Phi, plus.step.Phi, n_);
+        const std::vector<double> whole = matrix_product(minus.step.Phi, plus.step.Phi, n_);
         std::vector<double> carried(Index(n_), 0.0);
         multiply(minus.step.Phi, plus.end_rate, carried);
         for (int i = 0; i < n_; ++i) {

@@ -16,6 +16,7 @@
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
+#include "engine/tuning/built/build.h"
 #include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"
 #include "engine/tuning/method/report.h"
@@ -39,6 +40,12 @@ struct TunedController {
     const Report* report_as() const {
         return dynamic_cast<const Report*>(report.get());
     }
+};
+
+/// A design for a controller as it is built, and the settings that are typed.
+struct BuiltDesign {
+    TunedController tuned;  ///< its controller is the ideal twin of the settings
+    built::Fitted fitted;
 };
 
 /// The controller that the method answers.
@@ -84,6 +91,11 @@ struct TuningMethod {
     /// For a plant known by measured points of its frequency response; empty: the method needs a model.
     std::function<Expected<TunedController>(const MeasuredPlant&, const MethodOptions&, const RunControl&)>
         tune_on_points = {};
+    /// For a controller as it is built: the limits hold on the loop as it computes. Empty: the method designs the ideal
+    /// law, which is then fitted.
+    std::function<Expected<BuiltDesign>(const TuningProblem&, const MethodOptions&, const built::Build&,
+                                        const RunControl&)>
+        tune_as_built = {};
     std::vector<OptionDescription> options_on_points = {};  ///< with other defaults; empty: the same options
 
     /// The options and the function that takes them as a struct: `solve(problem, options)`, or with the RunControl
@@ -100,6 +112,14 @@ struct TuningMethod {
         options_on_points = set.descriptions();
         tune_on_points = [set, solve](const MeasuredPlant& plant, const MethodOptions& given,
                                       const RunControl& control) { return solve(plant, set.read(given), control); };
+    }
+
+    template <class Options, class Solve>
+    void serve_as_built(const OptionSet<Options>& set, Solve solve) {
+        tune_as_built = [set, solve](const TuningProblem& problem, const MethodOptions& given,
+                                     const built::Build& build, const RunControl& control) {
+            return solve(problem, set.read(given), build, control);
+        };
     }
 
 private:

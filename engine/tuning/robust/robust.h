@@ -29,6 +29,10 @@ struct RobustOptions {
     RobustFilterOptions filter = {};
 };
 
+/// The design on the ideal law.
+Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustOptions& options,
+                                      const RunControl& control);
+
 TuningMethod robust_method();
 
 /// The method's default PID on one plant under several limits, Ms = Mt = M: the front of load IAE against robustness. A

@@ -1,0 +1,383 @@
+#include "api/contract/product/product.h"
+
+#include <cmath>
+
+#include "api/contract/controller.h"
+#include "api/contract/product/value.h"
+#include "engine/controller/product/needs.h"
+
+namespace tunewright::api {
+namespace {
+
+using product::Parameter;
+using product::Product;
+using Texts = std::vector<std::string_view>;
+
+Json text_schema(SchemaBook&) { return Json{{"type", "string"}}; }
+Json texts_schema(SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", "string"}}}}; }
+Json maybe_number_schema(SchemaBook&) { return Json{{"type", {"number", "null"}}}; }
+Json flag_schema(SchemaBook&) { return Json{{"type", "boolean"}}; }
+
+template <class List>
+void write_texts(const List& texts, Writer& out) {
+    out.begin_array();
+    for (const auto& text : texts) out.text(text);
+    out.end_array();
+}
+
+/// Members that only answers carry, from any part of T.
+template <class T>
+class Answers {
+public:
+    Answers(std::string name, std::string sentence) : description(std::move(name), std::move(sentence)) {}
+
+    template <class Get>
+    Answers& text(std::string name, Get get, std::string sentence) {
+        description.field(
+            std::move(name), {}, [get](const T& value, Writer& out) { out.text(get(value)); }, text_schema,
+            std::move(sentence));
+        return *this;
+    }
+    /// Left out where it is empty.
+    template <class Get>
+    Answers& maybe_text(std::string name, Get get, std::string sentence) {
+        description.field(
+            std::move(name), {}, [get](const T& value, Writer& out) { out.text(get(value)); }, text_schema,
+            std::move(sentence), {}, [get](const T& value) { return get(value).empty(); });
+        return *this;
+    }
+    template <class Get>
+    Answers& texts(std::string name, Get get, std::string sentence) {
+        description.field(
+            std::move(name), {}, [get](const T& value, Writer& out) { write_texts(get(value), out); }, texts_schema,
+            std::move(sentence));
+        return *this;
+    }
+    /// null where there is none.
+    template <class Get>
+    Answers& number(std::string name, Get get, std::string sentence, std::string unit = "") {
+        description.field(std::move(name), {},
+                          [get](const T& value, Writer& out) {
+                              const std::optional<double> number = get(value);
+                              number ? out.number(*number) : out.null();
+                          },
+                          maybe_number_schema, std::move(sentence), {.unit = std::move(unit)});
+        return *this;
+    }
+    template <class Get>
+    Answers& flag(std::string name, Get get, std::string sentence) {
+        description.field(
+            std::move(name), {}, [get](const T& value, Writer& out) { out.boolean(get(value)); }, flag_schema,
+            std::move(sentence));
+        return *this;
+    }
+    template <class Part, class Get>
+    Answers& part(std::string name, const Description<Part>& inner, Get get, std::string sentence) {
+        const Description<Part>* what = &inner;
+        description.field(
+            std::move(name), {}, [what, get](const T& value, Writer& out) { what->write(get(value), out); },
+            [what](SchemaBook& book) { return what->schema(book); }, std::move(sentence));
+        return *this;
+    }
+
+    Description<T> description;
+};
+
+std::optional<double> finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
+
+void write_choices(const Parameter& parameter, Writer& out) {
+    out.begin_array();
+    for (const product::Option& option : parameter.options) {
+        out.begin_object();
+        out.key("value");
+        write_value(option.value, out);
+        for (const auto& [name, weight] : {std::pair{"b", option.b}, {"c", option.c}}) {
+            if (!weight) continue;
+            out.key(name);
+            out.number(*weight);
+        }
+        out.end_object();
+    }
+    out.end_array();
+}
+
+Json choices_schema(SchemaBook&) {
+    return {{"type", "array"},
+            {"items",
+             {{"type", "object"},
+              {"properties", {{"value", value_schema()}, {"b", {{"type", "number"}}}, {"c", {{"type", "number"}}}}},
+              {"required", {"value"}},
+              {"additionalProperties", false}}}};
+}
+
+/// What a parameter needs of its product is put beside it for writing.
+struct Row {
+    const Product* product = nullptr;
+    const Parameter* parameter = nullptr;
+};
+
+const Description<Row>& parameter_contract() {
+    static const auto contract = [] {
+        Answers<Row> a("ControllerParameter", "A parameter of a controller as its maker builds it.");
+        a.text(
+             "name", [](const Row& row) { return row.parameter->name; }, "The name in settings.")
+            .text(
+                "label", [](const Row& row) { return row.parameter->label; }, "As in the maker's software or manual.")
+            .text(
+                "unit", [](const Row& row) { return row.parameter->unit; }, "Unit, \"\" for none.")
+            .text(
+                "role", [](const Row& row) { return product::to_string(row.parameter->role); },
+                "gain, multiplier, integral, derivative, filter, weight_b, weight_c, choice, sample_time, fixed or "
+                "limit.")
+            .text(
+                "formula", [](const Row& row) { return product::formula_text(*row.product, *row.parameter); },
+                "From the law: Kp, Ti, Td, Tf in seconds; Kc, ti, td of the series form; Sy, Su the spans, Ts the "
+                "sample time, dt the firmware's clock.")
+            .number(
+                "low", [](const Row& row) { return finite(row.parameter->range.low); }, "Least value; null: none.")
+            .number(
+                "high", [](const Row& row) { return finite(row.parameter->range.high); }, "Largest value; null: none.")
+            .number(
+                "resolution",
+                [](const Row& row) {
+                    const double step = row.parameter->resolution;
+                    return step > 0 ? std::optional(step) : std::nullopt;
+                },
+                "Step of what can be typed; null: a floating-point number.")
+            .number(
+                "off", [](const Row& row) { return row.parameter->off; }, "The value that means: no such part.")
+            .flag(
+                "written", [](const Row& row) { return row.parameter->always && !row.parameter->elsewhere; },
+                "false: settings hold it only where it differs from its default, or it is decided elsewhere.")
+            .maybe_text(
+                "remark", [](const Row& row) { return row.parameter->remark; }, "What else there is to it.");
+        a.description
+            .field(
+                "default", {}, [](const Row& row, Writer& out) { write_value(*row.parameter->standard, out); },
+                [](SchemaBook&) { return value_schema(); }, "The maker's, where it is known.", {},
+                [](const Row& row) { return !row.parameter->standard; })
+            .field(
+                "choices", {}, [](const Row& row, Writer& out) { write_choices(*row.parameter, out); }, choices_schema,
+                "What it takes, the default first, with the set-point weights that follow.", {},
+                [](const Row& row) { return row.parameter->options.empty(); });
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const char* sign_word(const Product& product) {
+    switch (product.action.kind) {
+        case product::Action::Kind::signed_gain: return "gain";
+        case product::Action::Kind::switched: return "switch";
+        case product::Action::Kind::reverse_only: return "reverse only";
+    }
+    return "gain";
+}
+
+const char* rule_word(IntegralRule rule) {
+    switch (rule) {
+        case IntegralRule::backward: return "backward";
+        case IntegralRule::forward: return "forward";
+        case IntegralRule::trapezoidal: return "trapezoidal";
+    }
+    return "backward";
+}
+
+const char* rule_word(DerivativeRule rule) {
+    switch (rule) {
+        case DerivativeRule::difference: return "difference";
+        case DerivativeRule::filtered_backward: return "filtered, backward";
+        case DerivativeRule::filtered_forward: return "filtered, forward";
+        case DerivativeRule::filtered_trapezoidal: return "filtered, trapezoidal";
+        case DerivativeRule::slope: return "slope";
+        case DerivativeRule::four_points: return "four points";
+    }
+    return "difference";
+}
+
+const Description<product::Weights>& weights_contract() {
+    static const auto contract = [] {
+        Answers<product::Weights> a("ControllerWeights", "Set-point weights where no parameter sets them.");
+        a.number(
+             "b", [](const product::Weights& w) { return std::optional(w.b); }, "Of the proportional part.")
+            .number(
+                "c", [](const product::Weights& w) { return std::optional(w.c); }, "Of the derivative part.")
+            .maybe_text(
+                "text", [](const product::Weights& w) { return w.text; }, "In words.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const Description<Product>& action_contract() {
+    static const auto contract = [] {
+        Answers<Product> a("ControllerAction", "How the sign of Kp is typed.");
+        a.text("by", sign_word, "gain: its sign; switch: a parameter; reverse only: there is no direct action.")
+            .maybe_text(
+                "name", [](const Product& p) { return p.action.name; }, "The switch's name in settings.")
+            .maybe_text(
+                "text", [](const Product& p) { return p.action.text; }, "In words.");
+        a.description.field(
+            "direct", {}, [](const Product& p, Writer& out) { write_value(p.action.direct, out); },
+            [](SchemaBook&) { return value_schema(); }, "The switch's value for a negative Kp.", {},
+            [](const Product& p) { return p.action.kind != product::Action::Kind::switched; });
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const Description<product::Algorithm>& algorithm_contract() {
+    static const auto contract = [] {
+        using product::Algorithm;
+        Answers<Algorithm> a("ControllerAlgorithm", "How the law is computed.");
+        a.text(
+             "integral", [](const Algorithm& x) { return rule_word(x.integral); }, "Rule of the integral.")
+            .text(
+                "derivative", [](const Algorithm& x) { return rule_word(x.derivative); }, "Rule of the derivative.")
+            .text(
+                "form", [](const Algorithm& x) { return x.velocity ? "velocity" : "position"; },
+                "position or velocity.")
+            .flag(
+                "published", [](const Algorithm& x) { return x.published; },
+                "false: the rules could not be read and are assumed.")
+            .number(
+                "sample_time", [](const Algorithm& x) { return x.sample_time_s; }, "Default; null: none.", "s")
+            .flag(
+                "clock_fixed", [](const Algorithm& x) { return x.firmware_clock; },
+                "The firmware fixes that sample time, and formulas use it.")
+            .maybe_text(
+                "sample_time_text", [](const Algorithm& x) { return x.sample_time_text; },
+                "Where the sample time comes from.")
+            .maybe_text(
+                "anti_windup", [](const Algorithm& x) { return x.anti_windup; }, "What happens at limits.")
+            .maybe_text(
+                "text", [](const Algorithm& x) { return x.text; }, "In words.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const Description<product::Evidence>& evidence_contract() {
+    static const auto contract = [] {
+        using product::Evidence;
+        Answers<Evidence> a("ControllerEvidence", "What of this was read, and where.");
+        a.text(
+             "level", [](const Evidence& e) { return product::to_string(e.level); },
+             "read: what fixes form, parameters and units was read in code or the maker's text; partly: of third "
+             "parties, or not all of it; unverified.")
+            .texts(
+                "read", [](const Evidence& e) -> const Texts& { return e.read; }, "What was read.")
+            .texts(
+                "unverified", [](const Evidence& e) -> const Texts& { return e.unverified; }, "What was not.")
+            .texts(
+                "sources", [](const Evidence& e) -> const Texts& { return e.sources; }, "Where.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const Description<product::Example>& example_contract() {
+    static const auto contract = [] {
+        using product::Example;
+        Answers<Example> a("ControllerExample", "A design and what is typed for it, to six digits.");
+        a.number(
+            "sample_time", [](const Example& e) { return std::optional(e.sample_time_s); }, "Sample time.", "s");
+        const auto span = [](double Example::*member) {
+            return [member](const Example& e, Writer& out) { out.numbers(std::vector{0.0, e.*member}); };
+        };
+        const auto span_schema = [](SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", "number"}}}}; };
+        a.description
+            .field(
+                "controller", {},
+                [](const Example& e, Writer& out) { controller_contract().write(Controller(e.design), out); },
+                [](SchemaBook& book) { return controller_contract().schema(book); }, "The design; times in s.")
+            .field("y_span", {}, span(&Example::y_span), span_schema, "Range of the measurement.")
+            .field("u_span", {}, span(&Example::u_span), span_schema, "Range of the output.")
+            .field(
+                "settings", {}, [](const Example& e, Writer& out) { write_settings(e.settings, out); },
+                [](SchemaBook&) { return settings_schema(); }, "What is typed.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+void add_head(Answers<Product>& a) {
+    a.text(
+         "id", [](const Product& p) { return p.id; }, "The name in requests.")
+        .text(
+            "maker", [](const Product& p) { return p.maker; }, "Who makes it.")
+        .text(
+            "name", [](const Product& p) { return p.name; }, "The block, library or firmware.")
+        .text(
+            "form", [](const Product& p) { return product::to_string(p.form); }, "ideal, parallel, series or p_only.")
+        .texts(
+            "needs", [](const Product& p) { return product::needs_of(p); },
+            "Which of y_span, u_span and sample_time its conversions need.");
+}
+
+void write_parameters(const Product& p, Writer& out) {
+    out.begin_array();
+    for (const Parameter& parameter : p.parameters) parameter_contract().write({&p, &parameter}, out);
+    out.end_array();
+}
+
+}  // namespace
+
+const Description<Product>& product_summary_contract() {
+    static const auto contract = [] {
+        Answers<Product> a("ControllerSummary", "A controller as its maker builds it, in short.");
+        add_head(a);
+        a.text(
+             "evidence", [](const Product& p) { return product::to_string(p.evidence.level); },
+             "read, partly or unverified.")
+            .texts(
+                "parameters",
+                [](const Product& p) {
+                    Texts names;
+                    for (const Parameter& parameter : p.parameters) names.push_back(parameter.name);
+                    return names;
+                },
+                "The names of its parameters.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+const Description<Product>& product_contract() {
+    static const auto contract = [] {
+        Answers<Product> a("ControllerProduct", "A controller as its maker builds it.");
+        add_head(a);
+        a.text(
+             "law", [](const Product& p) { return p.law; }, "Its law over the parameters' names.")
+            .text(
+                "gain_basis", [](const Product& p) { return p.gain_basis; }, "What its gain counts.");
+        a.description.field(
+            "parameters", {}, write_parameters,
+            [](SchemaBook& book) {
+                return Json{{"type", "array"}, {"items", parameter_contract().schema(book)}};
+            },
+            "Its parameters.");
+        a.maybe_text(
+             "filter", [](const Product& p) { return p.filter.text; }, "How it filters.")
+            .part(
+                "setpoint_weights", weights_contract(),
+                [](const Product& p) -> const product::Weights& { return p.weights; }, "Set-point weights.")
+            .part(
+                "action", action_contract(), [](const Product& p) -> const Product& { return p; }, "Direction.")
+            .part(
+                "algorithm", algorithm_contract(),
+                [](const Product& p) -> const product::Algorithm& { return p.algorithm; }, "Algorithm.")
+            .texts(
+                "traps", [](const Product& p) -> const Texts& { return p.traps; }, "What goes wrong easily.")
+            .part(
+                "evidence", evidence_contract(),
+                [](const Product& p) -> const product::Evidence& { return p.evidence; }, "Evidence.")
+            .part(
+                "example", example_contract(), [](const Product& p) -> const product::Example& { return p.example; },
+                "Example.");
+        return std::move(a.description);
+    }();
+    return contract;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,111 @@
+// Controllers as they are built: the calls about them.
+#include <algorithm>
+
+#include "api/contract/product/product.h"
+#include "api/describe/body.h"
+#include "api/describe/suggest.h"
+#include "api/service.h"
+#include "engine/controller/product/catalogue.h"
+
+namespace tunewright::api {
+namespace {
+
+using product::Product;
+
+Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
+
+Answer no_such_controller(std::string_view id) {
+    std::vector<std::string> ids;
+    for (const Product& product : product::catalogue()) ids.emplace_back(product.id);
+    Problem problem{404, "not-found", "There is no such controller", "", {}, {}};
+    const std::string meant = nearest(id, ids);
+    problem.detail = meant.empty() ? "GET /v1/controllers lists them." : "Did you mean " + meant + "?";
+    return refusal(problem);
+}
+
+/// The ideal form of a request's controller; of the nonlinear one its linear part, where the nearest is asked for.
+Expected<IdealPid> ideal_of(const SettingsRequest& request) {
+    if (std::holds_alternative<Npid>(*request.controller) && !request.nearest)
+        return Error{ErrorKind::not_representable, "controller/form",
+                     "No product of the catalogue has an integral that sees little of large errors. The nearest is the "
+                     "form ideal with the same Kp, Ti and Td."};
+    auto ideal = to_ideal(*request.controller);
+    if (!ideal) {
+        ideal.error().kind = ErrorKind::not_representable;
+        ideal.error().where = "controller";
+    }
+    return ideal;
+}
+
+/// Names that the product does not know, each with what may have been meant.
+std::optional<Problem> unknown_names(const Product& product, const product::Settings& settings) {
+    std::vector<std::string> names;
+    for (const product::Parameter& parameter : product.parameters) names.emplace_back(parameter.name);
+    if (!product.action.name.empty()) names.emplace_back(product.action.name);
+    Reader reader;
+    const Reader::At at(reader, "settings");
+    for (const product::Setting& setting : settings) {
+        if (std::find(names.begin(), names.end(), setting.name) != names.end()) continue;
+        const std::string meant = nearest(setting.name, names);
+        reader.fault_at(setting.name, setting.name + " is not a parameter here; known are " + listed(names, "and") +
+                                          "." + (meant.empty() ? "" : " Did you mean " + meant + "?"));
+    }
+    return reader.problem();
+}
+
+}  // namespace
+
+std::string controllers_json() {
+    static const std::string text = [] {
+        Writer out;
+        out.begin_object();
+        out.key("controllers");
+        out.begin_array();
+        for (const Product& product : product::catalogue()) product_summary_contract().write(product, out);
+        out.end_array();
+        out.end_object();
+        return out.take();
+    }();
+    return text;
+}
+
+Answer controller_json(std::string_view id) {
+    const Product* product = product::find(id);
+    if (!product) return no_such_controller(id);
+    Writer out;
+    product_contract().write(*product, out);
+    return {200, out.take()};
+}
+
+Answer controller_settings_call(std::string_view id, std::string_view body) {
+    const Product* product = product::find(id);
+    if (!product) return no_such_controller(id);
+    const auto decoded = read_body(body, settings_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<SettingsRequest>(decoded);
+    const auto pid = ideal_of(request);
+    if (!pid) return refusal(to_problem(pid.error()));
+    auto converted = product::to_settings(*product, *pid, request.context, request.nearest);
+    if (!converted) return refusal(to_problem(converted.error()));
+    Writer out;
+    settings_answer_contract().write({product, std::move(*converted)}, out);
+    return {200, out.take()};
+}
+
+Answer controller_twin_call(std::string_view id, std::string_view body) {
+    const Product* product = product::find(id);
+    if (!product) return no_such_controller(id);
+    const auto decoded = read_body(body, twin_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<TwinRequest>(decoded);
+    if (const auto problem = unknown_names(*product, request.settings)) return refusal(*problem);
+    TwinAnswer answer;
+    const auto pid = product::to_controller(*product, request.settings, request.context, answer.notes);
+    if (!pid) return refusal(to_problem(pid.error()));
+    answer.controller = *pid;
+    Writer out;
+    twin_answer_contract().write(answer, out);
+    return {200, out.take()};
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,41 @@
+// The one statement of what a controller's program computes in a call. Every language is printed from it.
+//
+// Its law is that of sampled_pid.h: from rest, in automatic and within its limits u is that law's to rounding. Around
+// it stand what a controller in a plant needs: limits of u and of its rate, anti-windup, manual and automatic, settings
+// that change at run time, and a first call. All times are in seconds.
+//
+// The integral part is a term in u. Where u has to be a given value (manual, the first call, a change of settings) the
+// term is set so that it is, and so nothing jumps. The velocity form has no such term: what it last gave stands for it.
+#pragma once
+
+#include <optional>
+
+#include "engine/code/program.h"
+#include "engine/controller/sampled/sampled_pid.h"
+#include "engine/expected.h"
+
+namespace tunewright::code {
+
+enum class AntiWindup {
+    back_calculation,  ///< the integral part moves by (Ts/Tt)(u - raw), at most the whole way, raw the law's u
+    clamping,          ///< it stands still while the law's u is beyond a limit and it would move further beyond
+};
+
+struct CodeOptions {
+    AntiWindup anti_windup = AntiWindup::back_calculation;  ///< the velocity form winds nothing up and has none
+    std::optional<double> u_min = {}, u_max = {};           ///< as the actuator sees u; u_min < u_max
+    double rate_limit = 0;                                  ///< > 0: of u, a second; 0: none
+    double bias = 0;                                        ///< u at the operating point
+    double y0 = 0;                                          ///< y there
+    std::optional<double> delta_r = {};                     ///< of the nonlinear PID: its integral sees phi(e)
+    std::optional<double> tracking_time = {};               ///< > 0; without it tracking_time() of settings.h, or Ts
+};
+
+constexpr int kMostSlopeSamples = 1000;
+constexpr double kNoLimit = 1e30;  ///< what u_min and u_max are in size where there is none
+
+/// Errors (invalid_argument or unsupported, `where` names the field): Ts, Tf, slope_samples or limits out of range; the
+/// forward rule unstable at this Ts; a velocity form without integral action, whose u nothing would bring back.
+Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options);
+
+}  // namespace tunewright::code

@@ -1,0 +1,245 @@
+#include "engine/code/builder.h"
+
+namespace tunewright::code {
+
+void Builder::add_gains() {
+    const bool ideal = plan_.settings.ideal;
+    gain_ = local("gain", "Kp with the sign of the action");
+    add(remark("The gains with the sign of the action."));
+    add(assign(gain_, Kp_));
+    add(when(direct_, {assign(gain_, -Kp_)}));
+    if (plan_.integral) {
+        gain_i_ = local("gain_i", "integral gain");
+        add(assign(gain_i_, ideal ? Expr(0.0) : Ki_));
+        add(ideal ? when(Ti_ > 0, {assign(gain_i_, gain_ / Ti_)}) : when(direct_, {assign(gain_i_, -Ki_)}));
+    }
+    if (!plan_.derivative) return;
+    gain_d_ = local("gain_d", "derivative gain");
+    add(assign(gain_d_, ideal ? gain_ * Td_ : Kd_));
+    if (!ideal) add(when(direct_, {assign(gain_d_, -Kd_)}));
+}
+
+void Builder::add_first_call() {
+    add(remark("The first call: the states are those of a loop in which nothing has moved yet."));
+    add(when(restart_, {assign(started_, truth(false))}));
+    Block start{assign(setpoint_last_, setpoint_), assign(y_f_, measurement_),
+                when(at_rest_, {assign(setpoint_last_, y0_), assign(y_f_, y0_)})};
+    if (plan_.smooths_twice()) start.push_back(assign(filter_rate_, 0.0));
+    if (plan_.keeps_error) {
+        if (plan_.options.delta_r) {
+            error_ = local("error", "r - y_f");
+            start.push_back(assign(error_, setpoint_last_ - y_f_));
+            start.push_back(assign(fed_last_, fed(error_)));
+        } else {
+            start.push_back(assign(fed_last_, setpoint_last_ - y_f_));
+        }
+    }
+    if (plan_.derivative) start_derivative(start);
+    start.push_back(assign(u_last_, bias_));
+    if (plan_.position) {
+        start.push_back(assign(integral_, bias_ - law_part(y0_, y0_)));
+        start.push_back(assign(gain_last_, gain_));
+        if (plan_.derivative) start.push_back(assign(gain_d_last_, gain_d_));
+        start.push_back(assign(b_last_, b_));
+    }
+    add(when(inverse(started_), std::move(start)));
+}
+
+void Builder::start_derivative(Block& start) {
+    start.push_back(assign(slope_, 0.0));
+    const Expr lead = c_ * setpoint_last_ - y_f_;
+    if (plan_.rule == DerivativeRule::slope) {
+        const Expr k = local("k", "counts", Type::integer);
+        start.push_back(repeat(k, plan_.pid.slope_samples, {assign(element(history_, k), lead)}));
+        start.push_back(assign(place_, whole(0)));
+        return;
+    }
+    start.push_back(assign(lead_last_, lead));
+    if (plan_.rule != DerivativeRule::four_points) return;
+    start.push_back(assign(lead_2_, lead_last_));
+    start.push_back(assign(lead_3_, lead_last_));
+}
+
+void Builder::add_change_of_settings() {
+    Expr changed = either(gain_ != gain_last_, b_ != b_last_), sum = law_part(setpoint_last_, y_f_);
+    if (plan_.derivative) {
+        changed = either(changed, gain_d_ != gain_d_last_);
+        sum = sum + gain_d_ * slope_;
+    }
+    const Expr pd_now = local("pd_now", "what pd_last is with the new settings");
+    add(remark("Settings have changed: the integral part takes over what the other parts of the last u lose."));
+    add(when(changed, {assign(pd_now, sum), assign(integral_, integral_ + pd_last_ - pd_now)}));
+}
+
+void Builder::add_signals() {
+    add(remark(plan_.smooths() ? "The measurement's filter, and the error." : "The error."));
+    if (!plan_.position) {
+        y_f_last_ = local("y_f_last", "y_f of the last call");
+        add(assign(y_f_last_, y_f_));
+    }
+    add_filter();
+    if (plan_.integral) {
+        if (!(plan_.keeps_error && plan_.options.delta_r)) error_ = local("error", "r - y_f");
+        add(assign(error_, setpoint_ - y_f_));
+    }
+    if (plan_.derivative) add_slope();
+}
+
+void Builder::add_filter() {
+    if (plan_.filter == FilterType::measurement_first_order) {
+        add(assign(y_f_, (Tf_ * y_f_ + Ts_ * measurement_) / (Tf_ + Ts_)));
+    } else if (plan_.smooths_twice()) {
+        const Expr ratio = local("ratio", "Ts/Tf"), divisor = local("divisor", "of the filter");
+        add(assign(ratio, Ts_ / Tf_));
+        add(assign(divisor, 1 + 2 * ratio + 2 * ratio * ratio));
+        add(assign(filter_rate_, (filter_rate_ + 2 * ratio / Tf_ * (measurement_ - y_f_)) / divisor));
+        add(assign(y_f_, y_f_ + Ts_ * filter_rate_));
+    } else {
+        add(assign(y_f_, measurement_));
+    }
+}
+
+void Builder::add_slope() {
+    add(remark("What the derivative acts on, and its slope."));
+    lead_ = local("lead", "c r - y_f");
+    if (!plan_.position) {
+        slope_last_ = local("slope_last", "slope of the last call");
+        add(assign(slope_last_, slope_));
+    }
+    add(assign(lead_, c_ * setpoint_ - y_f_));
+    const auto step = [&] { return lead_ - lead_last_; };
+    switch (plan_.rule) {
+        case DerivativeRule::difference: add(assign(slope_, step() / Ts_)); break;
+        case DerivativeRule::filtered_backward: add(assign(slope_, (Tf_ * slope_ + step()) / (Tf_ + Ts_))); break;
+        case DerivativeRule::filtered_forward: add(assign(slope_, (1 - Ts_ / Tf_) * slope_ + step() / Tf_)); break;
+        case DerivativeRule::filtered_trapezoidal:
+            add(assign(slope_, ((2 * Tf_ - Ts_) * slope_ + 2 * step()) / (2 * Tf_ + Ts_)));
+            break;
+        case DerivativeRule::slope: {
+            const int samples = plan_.pid.slope_samples;
+            const Expr oldest = element(history_, place_);
+            add(assign(slope_, (lead_ - oldest) / (static_cast<double>(samples) * Ts_)));
+            add(assign(oldest, lead_));
+            add(assign(place_, place_ + whole(1)));
+            add(when(place_ >= whole(samples), {assign(place_, whole(0))}));
+            return;
+        }
+        case DerivativeRule::four_points:
+            add(assign(slope_, (3 * lead_ + lead_last_ - lead_2_ - 3 * lead_3_) / (10 * Ts_)));
+            add(assign(lead_3_, lead_2_));
+            add(assign(lead_2_, lead_last_));
+            break;
+    }
+    add(assign(lead_last_, lead_));
+}
+
+void Builder::add_terms() {
+    const bool position = plan_.position;
+    add(remark(position ? "The parts of u." : "What the parts of u gain."));
+    proportional_ = local("proportional", position ? "proportional part" : "what the proportional part gains");
+    add(assign(proportional_,
+               position ? law_part(setpoint_, y_f_) : law_part(setpoint_ - setpoint_last_, y_f_ - y_f_last_)));
+    if (plan_.derivative) {
+        derivative_ = local("derivative", position ? "derivative part" : "what the derivative part gains");
+        add(assign(derivative_, gain_d_ * (position ? slope_ : slope_ - slope_last_)));
+    }
+    if (!plan_.integral) return;
+    increment_ = local("increment", "what the integral part gains");
+    Expr share = error_;
+    if (plan_.options.delta_r) {
+        share = local("fed", "what the integral is fed with");
+        add(assign(share, fed(error_)));
+    }
+    switch (plan_.pid.integral) {
+        case IntegralRule::backward: add(assign(increment_, gain_i_ * Ts_ * share)); break;
+        case IntegralRule::forward: add(assign(increment_, gain_i_ * Ts_ * fed_last_)); break;
+        case IntegralRule::trapezoidal: add(assign(increment_, gain_i_ * Ts_ * (share + fed_last_) / 2)); break;
+    }
+    if (plan_.keeps_error) add(assign(fed_last_, share));
+}
+
+void Builder::add_bounds() {
+    low_ = local("low", "least u of this call");
+    high_ = local("high", "largest u of this call");
+    add(remark("How far u may go in this call."));
+    add(assign(low_, u_min_));
+    add(assign(high_, u_max_));
+    Block rate{assign(low_, u_last_ - rate_limit_ * Ts_), assign(high_, u_last_ + rate_limit_ * Ts_)};
+    bound(rate, low_, u_min_, u_max_);
+    bound(rate, high_, u_min_, u_max_);
+    add(when(rate_limit_ > 0, std::move(rate)));
+}
+
+// Without integral action u has its level from the operating point, so that the first call obeys the law at once.
+void Builder::add_output() {
+    const Expr first = both(inverse(started_), inverse(at_rest_));
+    add(remark(plan_.integral
+                   ? "In manual, and in a first call that is not at rest, u is given and the rest follows it."
+                   : "In manual u is given, and the level from which automatic goes on follows it."));
+    add(when(plan_.integral ? either(manual_, first) : manual_, held(),
+             plan_.position ? position_output() : velocity_output()));
+}
+
+Block Builder::held() {
+    Block block{assign(u_, plan_.integral ? bias_ : manual_output_)};
+    if (plan_.integral) block.push_back(when(manual_, {assign(u_, manual_output_)}));
+    bound(block, u_, u_min_, u_max_);
+    if (plan_.position) {
+        const Expr left = u_ - proportional_;
+        block.push_back(assign(integral_, plan_.derivative ? left - derivative_ : left));
+    }
+    return block;
+}
+
+Block Builder::position_output() {
+    const auto sum = [&](const Expr& integral) {
+        return plan_.derivative ? proportional_ + integral + derivative_ : proportional_ + integral;
+    };
+    Block block;
+    if (!plan_.integral) {
+        block.push_back(assign(u_, sum(integral_)));
+        bound(block, u_, low_, high_);
+        return block;
+    }
+    const Expr raw = local("raw", "u of the law alone");
+    if (!plan_.tracks) {
+        const Expr wound = local("wound", "true: the integral part would go further beyond", Type::boolean);
+        block.push_back(assign(raw, sum(integral_ + increment_)));
+        block.push_back(assign(wound, either(both(raw > high_, increment_ > 0), both(raw < low_, increment_ < 0))));
+        block.push_back(when(inverse(wound), {assign(integral_, integral_ + increment_)}));
+        block.push_back(assign(u_, sum(integral_)));
+        bound(block, u_, low_, high_);
+        return block;
+    }
+    const Expr tracking = local("tracking", "share of what is missing that the integral part follows");
+    block.push_back(assign(integral_, integral_ + increment_));
+    block.push_back(assign(raw, sum(integral_)));
+    block.push_back(assign(u_, raw));
+    bound(block, u_, low_, high_);
+    block.push_back(assign(tracking, 1.0));
+    block.push_back(when(Tt_ > Ts_, {assign(tracking, Ts_ / Tt_)}));
+    block.push_back(when(gain_i_ != 0, {assign(integral_, integral_ + tracking * (u_ - raw))}));
+    return block;
+}
+
+Block Builder::velocity_output() {
+    const Expr sum = u_last_ + proportional_ + increment_;
+    Block block{assign(u_, plan_.derivative ? sum + derivative_ : sum)};
+    bound(block, u_, low_, high_);
+    return block;
+}
+
+void Builder::add_memory() {
+    add(remark("For the next call."));
+    add(assign(setpoint_last_, setpoint_));
+    add(assign(u_last_, u_));
+    if (plan_.position) {
+        add(assign(gain_last_, gain_));
+        if (plan_.derivative) add(assign(gain_d_last_, gain_d_));
+        add(assign(b_last_, b_));
+        add(assign(pd_last_, plan_.derivative ? proportional_ + derivative_ : proportional_));
+    }
+    add(assign(started_, truth(true)));
+}
+
+}  // namespace tunewright::code

@@ -1,0 +1,155 @@
+#include "engine/code/print.h"
+
+#include "engine/number_text.h"
+
+namespace tunewright::code {
+namespace {
+
+// The tighter an operation binds the higher. Logical operands are always in parentheses: languages order them apart.
+int binding(Operation operation) {
+    switch (operation) {
+        case Operation::logical_or:
+        case Operation::logical_and:
+        case Operation::logical_not: return 0;
+        case Operation::less:
+        case Operation::greater:
+        case Operation::greater_equal:
+        case Operation::not_equal: return 1;
+        case Operation::add:
+        case Operation::subtract: return 2;
+        case Operation::multiply:
+        case Operation::divide: return 3;
+        case Operation::negate: return 4;
+        case Operation::exponential: return 5;
+    }
+    return 0;
+}
+
+bool is_logical(Operation operation) { return binding(operation) == 0; }
+
+const Operated* operated(const Expr& expression) { return std::get_if<Operated>(&expression->what); }
+
+std::string operand(const Expr& expression, Operation outer, bool right, const Dialect& dialect) {
+    const std::string inside = text_of(expression, dialect);
+    const auto* literal = std::get_if<Literal>(&expression->what);
+    if (literal != nullptr) return literal->value < 0 ? "(" + inside + ")" : inside;
+    const Operated* inner = operated(expression);
+    if (inner == nullptr || inner->operation == Operation::exponential) return inside;
+    const int of_inner = binding(inner->operation), of_outer = binding(outer);
+    if (is_logical(outer) && !right && inner->operation == outer) return inside;  // a or b or c
+    const bool bare = !is_logical(outer) && inner->operation != Operation::negate &&
+                      (right ? of_inner > of_outer : of_inner >= of_outer);
+    return bare ? inside : "(" + inside + ")";
+}
+
+std::string literal_text(const Literal& literal, Type type, const Dialect& dialect) {
+    switch (type) {
+        case Type::real: return dialect.real(literal.value);
+        case Type::boolean: return dialect.boolean(literal.value != 0);
+        case Type::integer: return text(literal.value, 17);
+    }
+    return {};
+}
+
+std::string operated_text(const Operated& what, const Dialect& dialect) {
+    if (what.operation == Operation::exponential) return dialect.exponential(text_of(what.operands[0], dialect));
+    const std::string mark = dialect.mark(what.operation);
+    if (what.operands.size() == 1) return mark + operand(what.operands[0], what.operation, true, dialect);
+    return operand(what.operands[0], what.operation, false, dialect) + mark +
+           operand(what.operands[1], what.operation, true, dialect);
+}
+
+class Lines {
+public:
+    Lines(const Dialect& dialect, int depth) : dialect_(dialect), depth_(depth) {}
+
+    void operator()(const Assignment& what) {
+        add(dialect_.assign(text_of(what.target, dialect_), text_of(what.value, dialect_)));
+    }
+    void operator()(const Decision& what) {
+        add(dialect_.open_decision(text_of(what.condition, dialect_)));
+        inside(what.then);
+        if (!what.otherwise.empty()) {
+            add(dialect_.otherwise());
+            inside(what.otherwise);
+        }
+        close(dialect_.close_decision());
+    }
+    void operator()(const Repetition& what) {
+        add(dialect_.open_repetition(text_of(what.index, dialect_), what.count));
+        inside(what.body);
+        close(dialect_.close_repetition());
+    }
+    void operator()(const Remark& what) {
+        if (!out_.empty()) out_ += "\n";
+        add(dialect_.remark(what.text));
+    }
+
+    std::string take() { return std::move(out_); }
+
+private:
+    void add(const std::string& line) { out_ += indentation(depth_) + line + "\n"; }
+    void inside(const Block& block) { out_ += text_of(block, dialect_, depth_ + 1); }
+    void close(const std::string& line) {
+        if (!line.empty()) add(line);
+    }
+
+    const Dialect& dialect_;
+    int depth_;
+    std::string out_;
+};
+
+}  // namespace
+
+std::string text_of(const Expr& expression, const Dialect& dialect) {
+    struct Visit {
+        Type type;
+        const Dialect& dialect;
+        std::string operator()(const Literal& what) const { return literal_text(what, type, dialect); }
+        std::string operator()(const Place& what) const {
+            const std::string name = dialect.variable(what);
+            return what.index.empty() ? name : name + "[" + text_of(what.index[0], dialect) + "]";
+        }
+        std::string operator()(const Operated& what) const { return operated_text(what, dialect); }
+    };
+    return std::visit(Visit{expression->type, dialect}, expression->what);
+}
+
+std::string text_of(const Block& block, const Dialect& dialect, int depth) {
+    Lines lines(dialect, depth);
+    for (const Statement& statement : block) std::visit(lines, statement.what);
+    return lines.take();
+}
+
+std::string real_literal(double value, char exponent) {
+    const std::string shortest = exact_text(value);
+    const std::size_t e = shortest.find('e');
+    std::string out = shortest.substr(0, e);
+    if (out.find('.') == out.npos) out += ".0";
+    if (e == shortest.npos) return out;
+    // "e-05", "e+30": the sign of a positive exponent and its leading zeros say nothing.
+    std::string power = shortest.substr(e + 1);
+    const bool negative = power.front() == '-';
+    power.erase(0, power.find_first_not_of("+-0"));
+    return out + exponent + (negative ? "-" : "") + power;
+}
+
+std::string indentation(int depth) { return std::string(static_cast<std::size_t>(4 * depth), ' '); }
+
+std::vector<Declaration> of_role(const Program& program, Role role) {
+    std::vector<Declaration> out;
+    for (const Declaration& variable : program.variables)
+        if (variable.role == role) out.push_back(variable);
+    return out;
+}
+
+std::string print(const Program& program, Language language, const Provenance& provenance) {
+    switch (language) {
+        case Language::structured_text: return print_structured_text(program, provenance);
+        case Language::c: return print_c(program, provenance);
+        case Language::python: return print_python(program, provenance);
+    }
+    return {};
+}
+
+}  // namespace tunewright::code

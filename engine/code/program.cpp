@@ -1,0 +1,106 @@
+#include "engine/code/program.h"
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+namespace tunewright::code {
+namespace {
+
+void require(bool holds, const char* rule) {
+    if (!holds) throw std::logic_error(std::string("program: ") + rule);
+}
+
+Expr operated(Type type, Operation operation, std::vector<Expr> operands) {
+    return Expr(Expression{type, Operated{operation, std::move(operands)}});
+}
+
+Expr arithmetic(Operation operation, const Expr& a, const Expr& b) {
+    require(a->type == b->type && a->type != Type::boolean, "both operands must be numbers of one type");
+    return operated(a->type, operation, {a, b});
+}
+
+Expr comparison(Operation operation, const Expr& a, const Expr& b) {
+    require(a->type == b->type && a->type != Type::boolean, "only numbers of one type are compared");
+    return operated(Type::boolean, operation, {a, b});
+}
+
+Expr logical(Operation operation, const Expr& a, const Expr& b) {
+    require(a->type == Type::boolean && b->type == Type::boolean, "and, or: both operands must be true or false");
+    return operated(Type::boolean, operation, {a, b});
+}
+
+// Structured Text does not tell upper from lower case.
+bool same_name(const std::string& a, const std::string& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+}  // namespace
+
+Expr::Expr(double number) : Expr(Expression{Type::real, Literal{number}}) {}
+Expr::Expr(Expression expression) : node_(std::make_shared<const Expression>(std::move(expression))) {}
+
+Expr truth(bool value) { return Expr(Expression{Type::boolean, Literal{value ? 1.0 : 0.0}}); }
+Expr whole(int value) { return Expr(Expression{Type::integer, Literal{static_cast<double>(value)}}); }
+
+Expr element(const Expr& array, const Expr& index) {
+    const auto* place = std::get_if<Place>(&array->what);
+    require(place != nullptr && index->type == Type::integer, "an element has an array and a whole number");
+    return Expr(Expression{array->type, Place{place->role, place->name, {index}}});
+}
+
+Expr operator+(const Expr& a, const Expr& b) { return arithmetic(Operation::add, a, b); }
+Expr operator-(const Expr& a, const Expr& b) { return arithmetic(Operation::subtract, a, b); }
+Expr operator*(const Expr& a, const Expr& b) { return arithmetic(Operation::multiply, a, b); }
+Expr operator/(const Expr& a, const Expr& b) {
+    require(a->type == Type::real, "whole numbers are not divided: languages round them differently");
+    return arithmetic(Operation::divide, a, b);
+}
+Expr operator-(const Expr& a) {
+    require(a->type == Type::real, "only a real number is negated");
+    return operated(Type::real, Operation::negate, {a});
+}
+Expr operator<(const Expr& a, const Expr& b) { return comparison(Operation::less, a, b); }
+Expr operator>(const Expr& a, const Expr& b) { return comparison(Operation::greater, a, b); }
+Expr operator>=(const Expr& a, const Expr& b) { return comparison(Operation::greater_equal, a, b); }
+Expr operator!=(const Expr& a, const Expr& b) { return comparison(Operation::not_equal, a, b); }
+Expr both(const Expr& a, const Expr& b) { return logical(Operation::logical_and, a, b); }
+Expr either(const Expr& a, const Expr& b) { return logical(Operation::logical_or, a, b); }
+Expr inverse(const Expr& a) {
+    require(a->type == Type::boolean, "not: the operand must be true or false");
+    return operated(Type::boolean, Operation::logical_not, {a});
+}
+Expr exponential(const Expr& a) {
+    require(a->type == Type::real, "exp: the operand must be real");
+    return operated(Type::real, Operation::exponential, {a});
+}
+
+Statement assign(const Expr& target, const Expr& value) {
+    const auto* place = std::get_if<Place>(&target->what);
+    require(place != nullptr && place->role != Role::input && place->role != Role::parameter,
+            "only states, locals and the output are assigned");
+    require(target->type == value->type, "an assignment keeps the type");
+    return {Assignment{target, value}};
+}
+
+Statement when(const Expr& condition, Block then, Block otherwise) {
+    require(condition->type == Type::boolean && !then.empty(), "a decision has a condition and a first branch");
+    return {Decision{condition, std::move(then), std::move(otherwise)}};
+}
+
+Statement repeat(const Expr& index, int count, Block body) {
+    require(index->type == Type::integer && count > 0, "a repetition counts whole numbers");
+    return {Repetition{index, count, std::move(body)}};
+}
+
+Statement remark(std::string text) { return {Remark{std::move(text)}}; }
+
+Expr Program::declare(Declaration declaration) {
+    for (const Declaration& known : variables) require(!same_name(known.name, declaration.name), "a name is taken");
+    Expr variable(Expression{declaration.type, Place{declaration.role, declaration.name}});
+    variables.push_back(std::move(declaration));
+    return variable;
+}
+
+}  // namespace tunewright::code

@@ -1,0 +1,151 @@
+// A controller's program before it is written in a language: declarations, and statements over typed expressions.
+//
+// There are assignments, decisions, a counted loop and remarks; numbers, variables, elements of arrays, + - * /,
+// comparisons, and, or, not, exp. That is what Structured Text, C and Python have in common, with one meaning.
+//
+//     Program program;
+//     const Expr x = program.declare({.role = Role::state, .name = "x", .comment = "the sum"});
+//     program.body.push_back(assign(x, x + 2 * program.declare({.role = Role::input, .name = "y"})));
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tunewright::code {
+
+enum class Type { real, boolean, integer };
+
+/// Whose a variable is, and how long it lives.
+enum class Role {
+    input,      ///< given with each call
+    parameter,  ///< a setting: has an initial value, the user may write it between two calls
+    state,      ///< kept from call to call, nobody else's business
+    local,      ///< of one call; assigned before it is read
+    output,     ///< what a call answers; the program has one
+};
+
+struct Declaration {
+    Role role = Role::local;
+    Type type = Type::real;
+    std::string name = {};
+    std::string comment = {};  ///< a phrase for the reader, one line
+    double initial = 0;        ///< of parameters and states; 0 is false
+    int length = 0;            ///< > 0: an array with so many elements, from 0
+};
+
+enum class Operation {
+    add,
+    subtract,
+    multiply,
+    divide,
+    less,
+    greater,
+    greater_equal,
+    not_equal,
+    logical_and,
+    logical_or,
+    negate,  ///< of one operand, as are the next two
+    logical_not,
+    exponential,
+};
+
+struct Expression;
+
+/// A value that an expression has. Operators make larger ones; operands of the wrong type throw std::logic_error, for
+/// they are a fault of the program that builds.
+class Expr {
+public:
+    Expr(double number);  // NOLINT(google-explicit-constructor)
+    explicit Expr(Expression expression);
+
+    const Expression* operator->() const { return node_.get(); }
+    const Expression& operator*() const { return *node_; }
+
+private:
+    std::shared_ptr<const Expression> node_;
+};
+
+struct Literal {
+    double value = 0;
+};
+
+/// A variable, or an element of one.
+struct Place {
+    Role role = Role::local;
+    std::string name;
+    std::vector<Expr> index = {};  ///< none, or one
+};
+
+struct Operated {
+    Operation operation;
+    std::vector<Expr> operands;  ///< one or two
+};
+
+struct Expression {
+    Type type = Type::real;
+    std::variant<Literal, Place, Operated> what;
+};
+
+Expr truth(bool value);
+Expr whole(int value);
+Expr element(const Expr& array, const Expr& index);
+
+Expr operator+(const Expr& a, const Expr& b);
+Expr operator-(const Expr& a, const Expr& b);
+Expr operator*(const Expr& a, const Expr& b);
+Expr operator/(const Expr& a, const Expr& b);
+Expr operator-(const Expr& a);
+Expr operator<(const Expr& a, const Expr& b);
+Expr operator>(const Expr& a, const Expr& b);
+Expr operator>=(const Expr& a, const Expr& b);
+Expr operator!=(const Expr& a, const Expr& b);
+Expr both(const Expr& a, const Expr& b);
+Expr either(const Expr& a, const Expr& b);
+Expr inverse(const Expr& a);
+Expr exponential(const Expr& a);
+
+struct Statement;
+using Block = std::vector<Statement>;
+
+struct Assignment {
+    Expr target, value;
+};
+
+struct Decision {
+    Expr condition;
+    Block then, otherwise;
+};
+
+/// `index` runs from 0 to count - 1.
+struct Repetition {
+    Expr index;
+    int count = 0;
+    Block body;
+};
+
+/// Stands above the statements that it explains.
+struct Remark {
+    std::string text;
+};
+
+struct Statement {
+    std::variant<Assignment, Decision, Repetition, Remark> what;
+};
+
+Statement assign(const Expr& target, const Expr& value);
+Statement when(const Expr& condition, Block then, Block otherwise = {});
+Statement repeat(const Expr& index, int count, Block body);
+Statement remark(std::string text);
+
+struct Program {
+    std::vector<std::string> notes;  ///< paragraphs for the reader: what it computes and how
+    std::vector<Declaration> variables;
+    Block body;
+
+    /// The variable as an expression. Throws std::logic_error for a name that is taken, whatever its case.
+    Expr declare(Declaration declaration);
+};
+
+}  // namespace tunewright::code

@@ -1,0 +1,88 @@
+#include "engine/code/print.h"
+
+namespace tunewright::code {
+namespace {
+
+class Python : public Dialect {
+public:
+    std::string real(double value) const override { return real_literal(value, 'e'); }
+    std::string boolean(bool value) const override { return value ? "True" : "False"; }
+    std::string variable(const Place& place) const override {
+        const bool field = place.role == Role::parameter || place.role == Role::state;
+        return field ? "self." + place.name : place.name;
+    }
+    std::string exponential(const std::string& argument) const override { return "math.exp(" + argument + ")"; }
+    std::string mark(Operation operation) const override {
+        switch (operation) {
+            case Operation::add: return " + ";
+            case Operation::subtract: return " - ";
+            case Operation::multiply: return " * ";
+            case Operation::divide: return " / ";
+            case Operation::less: return " < ";
+            case Operation::greater: return " > ";
+            case Operation::greater_equal: return " >= ";
+            case Operation::not_equal: return " != ";
+            case Operation::logical_and: return " and ";
+            case Operation::logical_or: return " or ";
+            case Operation::negate: return "-";
+            case Operation::logical_not: return "not ";
+            case Operation::exponential: break;
+        }
+        return {};
+    }
+
+    std::string assign(const std::string& target, const std::string& value) const override {
+        return target + " = " + value;
+    }
+    std::string open_decision(const std::string& condition) const override { return "if " + condition + ":"; }
+    std::string otherwise() const override { return "else:"; }
+    std::string open_repetition(const std::string& index, int count) const override {
+        return "for " + index + " in range(" + std::to_string(count) + "):";
+    }
+    std::string close_decision() const override { return {}; }
+    std::string close_repetition() const override { return {}; }
+    std::string remark(const std::string& text) const override { return "# " + text; }
+};
+
+std::string attribute(const Declaration& variable) {
+    const Python python;
+    std::string value = variable.type == Type::real      ? python.real(variable.initial)
+                        : variable.type == Type::boolean ? python.boolean(variable.initial != 0)
+                                                         : "0";
+    if (variable.length > 0) value = "[" + value + "] * " + std::to_string(variable.length);
+    return indentation(2) + "self." + variable.name + " = " + value + "  # " + variable.comment + "\n";
+}
+
+std::string arguments(const Program& program) {
+    std::string out = "self";
+    for (const Declaration& variable : of_role(program, Role::input)) {
+        out += ", " + variable.name;
+        // Whoever knows no manual leaves it out.
+        if (variable.name == "manual") out += "=False";
+        if (variable.name == "manual_output") out += "=0.0";
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string print_python(const Program& program, const Provenance& provenance) {
+    const std::vector<std::string> call{
+        "Call, for each controller:", "    pid = TunewrightPid()",
+        "and then every Ts seconds:", "    u = pid.step(setpoint, measurement, manual=False, manual_output=0.0)",
+        "Settings are attributes: pid.Kp = 2.0"};
+    std::string out;
+    for (const std::string& line : head_lines(program, provenance, call))
+        out += line.empty() ? "#\n" : "# " + line + "\n";
+    const std::string body = text_of(program.body, Python(), 2);
+    out += body.find("math.") == body.npos ? "\n\n" : "\nimport math\n\n\n";
+    out += "class TunewrightPid:\n    \"\"\"A sampled PID controller.\"\"\"\n\n    def __init__(self):\n";
+    for (const Declaration& variable : of_role(program, Role::parameter)) out += attribute(variable);
+    out += "\n        # Memory; nothing to write to.\n";
+    for (const Declaration& variable : of_role(program, Role::state)) out += attribute(variable);
+    out += "\n    def step(" + arguments(program) +
+           "):\n        \"\"\"One call every Ts seconds; the answer is u.\"\"\"\n";
+    return out + body + "        return " + of_role(program, Role::output).front().name + "\n";
+}
+
+}  // namespace tunewright::code

@@ -1,0 +1,86 @@
+#include "engine/code/print.h"
+
+namespace tunewright::code {
+namespace {
+
+class StructuredText : public Dialect {
+public:
+    std::string real(double value) const override { return real_literal(value, 'E'); }
+    std::string boolean(bool value) const override { return value ? "TRUE" : "FALSE"; }
+    std::string variable(const Place& place) const override { return place.name; }
+    std::string exponential(const std::string& argument) const override { return "EXP(" + argument + ")"; }
+    std::string mark(Operation operation) const override {
+        switch (operation) {
+            case Operation::add: return " + ";
+            case Operation::subtract: return " - ";
+            case Operation::multiply: return " * ";
+            case Operation::divide: return " / ";
+            case Operation::less: return " < ";
+            case Operation::greater: return " > ";
+            case Operation::greater_equal: return " >= ";
+            case Operation::not_equal: return " <> ";
+            case Operation::logical_and: return " AND ";
+            case Operation::logical_or: return " OR ";
+            case Operation::negate: return "-";
+            case Operation::logical_not: return "NOT ";
+            case Operation::exponential: break;
+        }
+        return {};
+    }
+
+    std::string assign(const std::string& target, const std::string& value) const override {
+        return target + " := " + value + ";";
+    }
+    std::string open_decision(const std::string& condition) const override { return "IF " + condition + " THEN"; }
+    std::string otherwise() const override { return "ELSE"; }
+    std::string open_repetition(const std::string& index, int count) const override {
+        return "FOR " + index + " := 0 TO " + std::to_string(count - 1) + " DO";
+    }
+    std::string close_decision() const override { return "END_IF;"; }
+    std::string close_repetition() const override { return "END_FOR;"; }
+    std::string remark(const std::string& text) const override { return "(* " + text + " *)"; }
+};
+
+std::string type_text(const Declaration& variable) {
+    const char* type = variable.type == Type::real ? "LREAL" : variable.type == Type::boolean ? "BOOL" : "INT";
+    if (variable.length == 0) return type;
+    return "ARRAY[0.." + std::to_string(variable.length - 1) + "] OF " + type;
+}
+
+std::string initial_text(const Declaration& variable) {
+    if (variable.role == Role::local || variable.role == Role::output || variable.length > 0) return {};
+    if (variable.type == Type::real) return " := " + real_literal(variable.initial, 'E');
+    if (variable.type == Type::boolean) return variable.initial != 0 ? " := TRUE" : " := FALSE";
+    return " := 0";
+}
+
+void add_section(const char* section, const std::vector<Declaration>& variables, std::string& out) {
+    out += std::string(section) + "\n";
+    for (const Declaration& variable : variables)
+        out += indentation(1) + variable.name + " : " + type_text(variable) + initial_text(variable) + "; (* " +
+               variable.comment + " *)\n";
+    out += "END_VAR\n";
+}
+
+}  // namespace
+
+std::string print_structured_text(const Program& program, const Provenance& provenance) {
+    const std::vector<std::string> call{
+        "Call, once a cycle in a task whose period is Ts, with an instance heater : TunewrightPid;",
+        "    heater(setpoint := SP, measurement := PV, manual := FALSE, manual_output := 0.0);", "    OUT := heater.u;",
+        "Settings are inputs with initial values; they are given in the same way: heater(Kp := 2.0, ...)."};
+    std::string out = "(*\n";
+    for (const std::string& line : head_lines(program, provenance, call))
+        out += line.empty() ? "\n" : "  " + line + "\n";
+    out += "*)\nFUNCTION_BLOCK TunewrightPid\n";
+    std::vector<Declaration> inputs = of_role(program, Role::input);
+    const std::vector<Declaration> settings = of_role(program, Role::parameter);
+    inputs.insert(inputs.end(), settings.begin(), settings.end());
+    add_section("VAR_INPUT", inputs, out);
+    add_section("VAR_OUTPUT", of_role(program, Role::output), out);
+    add_section("VAR", of_role(program, Role::state), out);
+    add_section("VAR_TEMP", of_role(program, Role::local), out);
+    return out + "\n" + text_of(program.body, StructuredText(), 0) + "END_FUNCTION_BLOCK\n";
+}
+
+}  // namespace tunewright::code

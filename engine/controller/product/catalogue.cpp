@@ -1,0 +1,37 @@
+#include "engine/controller/product/catalogue.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tunewright::product {
+namespace {
+
+std::vector<Product> collected() {
+    using Group = std::vector<Product> (*)();
+    constexpr Group kGroups[] = {
+        siemens_products,           rockwell_products,         schneider_products,        abb_products,
+        emerson_honeywell_products, yokogawa_foxboro_products, omron_mitsubishi_products, soft_plc_products,
+        open_plc_products,          laboratory_products,       mathworks_products,        library_products,
+        arduino_products,           printer_products,          thermostat_products,       flight_products};
+    std::vector<Product> all;
+    for (const Group group : kGroups) {
+        std::vector<Product> products = group();
+        std::move(products.begin(), products.end(), std::back_inserter(all));
+    }
+    return all;
+}
+
+}  // namespace
+
+const std::vector<Product>& catalogue() {
+    static const std::vector<Product> all = collected();
+    return all;
+}
+
+const Product* find(std::string_view id) {
+    const auto& all = catalogue();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Product& product) { return product.id == id; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace tunewright::product

@@ -1,0 +1,35 @@
+// The products whose settings can be converted: one table in catalogue/, a source for each maker or group.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "engine/controller/product/product.h"
+
+namespace tunewright::product {
+
+/// All of them, by maker; ids are unique.
+const std::vector<Product>& catalogue();
+
+/// Null if there is none of that id.
+const Product* find(std::string_view id);
+
+/// The groups, each in the source of its name.
+std::vector<Product> siemens_products();
+std::vector<Product> rockwell_products();
+std::vector<Product> schneider_products();
+std::vector<Product> abb_products();
+std::vector<Product> emerson_honeywell_products();
+std::vector<Product> yokogawa_foxboro_products();
+std::vector<Product> omron_mitsubishi_products();
+std::vector<Product> soft_plc_products();
+std::vector<Product> open_plc_products();
+std::vector<Product> mathworks_products();
+std::vector<Product> library_products();
+std::vector<Product> arduino_products();
+std::vector<Product> laboratory_products();
+std::vector<Product> printer_products();
+std::vector<Product> thermostat_products();
+std::vector<Product> flight_products();
+
+}  // namespace tunewright::product

@@ -1,0 +1,237 @@
+// ABB: function code 19 of Bailey and Symphony, drives, a KNX logic module, AC 800M.
+#include "engine/controller/product/catalogue/terms.h"
+
+namespace tunewright::product {
+namespace {
+
+constexpr Term over_K(Term term) {
+    term.K -= 1;
+    return term;
+}
+
+Product fc19() {
+    return {
+        .id = "abb_fc19",
+        .maker = "ABB",
+        .name = "Bailey / Infi 90 / Symphony function code 19 (PID)",
+        .form = Form::parallel,
+        .law = "out = K [ KP e + (KI/(60 s)) e + 60 KD s e ], e = SP - PV",
+        .gain_basis = "engineering units times K",
+        .parameters =
+            {
+                {.name = "K",
+                 .label = "S5 K",
+                 .role = Role::multiplier,
+                 .shape = Shape::constant,
+                 .standard = 1.0,
+                 .remark = "multiplies all three parts"},
+                {.name = "KP", .label = "S6 KP", .role = Role::gain, .term = over_K(kKp), .range = {0, kUnbounded}},
+                {.name = "KI",
+                 .label = "S7 KI",
+                 .unit = "1/min",
+                 .role = Role::integral,
+                 .term = times(kPerMinute, over_K(kKi)),
+                 .range = {0, kUnbounded}},
+                {.name = "KD",
+                 .label = "S8 KD",
+                 .unit = "min",
+                 .role = Role::derivative,
+                 .term = times(kMinutes, over_K(kKd)),
+                 .range = {0, kUnbounded}},
+                {.name = "S11",
+                 .label = "S11 set-point option",
+                 .role = Role::choice,
+                 .shape = Shape::option,
+                 .options = {{.value = std::string("normal"), .b = 1, .c = 1},
+                             {.value = std::string("integral only"), .b = 0, .c = 0}},
+                 .always = false},
+            },
+        .filter = {FilterKind::none, 0,
+                   "None is listed. Function code 156 has KA, a lag of the derivative: KA = 60 KD/Tf (assumed)."},
+        .weights = {1, 1, "S11 shows a change of the set point to all parts or to the integral alone."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "S12",
+                   .direct = std::string("direct"),
+                   .reverse = std::string("reverse"),
+                   .text = "S12 sets the direction."},
+        .algorithm = {.derivative = DerivativeRule::difference,
+                      .published = false,
+                      .text = "which algorithm could not be read",
+                      .anti_windup = "limits S9 and S10",
+                      .sample_time_text = "the module's cycle"},
+        .traps = {"What KI = 0 does, and what S11 changes."},
+        .evidence = {.level = EvidenceLevel::partly,
+                     .read = {"lists of specifications with units",
+                              "two equations of forum members, which differ in form alone"},
+                     .unverified = {"the maker's equation", "discrete algorithm"},
+                     .sources = {"dbdoc.ca, function code 19", "gmcl.com, function code 156",
+                                 "control.com thread 1287 (forum)"}},
+        .example = of_design_a({{"K", 1.0}, {"KP", 1.5}, {"KI", 0.75}, {"KD", 0.5}}),
+    };
+}
+
+Product drive() {
+    return {
+        .id = "abb_drive_pid",
+        .maker = "ABB",
+        .name = "Process PID of drives (ACS880, ACS380, ACQ)",
+        .form = Form::ideal,
+        .law = "out = gain [ 1 + 1/(Ti s) + Td s/(Tf s + 1) ] (SP - PV)",
+        .gain_basis = "percent of span (assumed)",
+        .parameters =
+            {
+                {.name = "gain", .label = "gain", .role = Role::gain, .term = kKn, .range = {0, kUnbounded}},
+                {.name = "integration_time",
+                 .label = "integration time",
+                 .unit = "s",
+                 .role = Role::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded},
+                 .off = 0.0,
+                 .remark = "0: no integral action"},
+                {.name = "derivation_time",
+                 .label = "derivation time",
+                 .unit = "s",
+                 .role = Role::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded}},
+                {.name = "derivation_filter",
+                 .label = "derivation filter time",
+                 .unit = "s",
+                 .role = Role::filter,
+                 .term = kTf,
+                 .range = {0, kUnbounded},
+                 .standard = 0.0},
+            },
+        .filter = {FilterKind::parameter, 0, "One pole with a time of its own, 0 s by default."},
+        .weights = {1, 1, "All three parts see the error."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "deviation_inversion",
+                   .direct = true,
+                   .reverse = false,
+                   .text = "The parameter of the deviation's inversion sets the direction."},
+        .algorithm = {.published = false,
+                      .text = "position algorithm; the derivative is a backward difference",
+                      .anti_windup = "limits of the output",
+                      .sample_time_s = 0.002,
+                      .sample_time_text = "2 ms; 12 ms on ACQ810"},
+        .traps = {"With the default filter of 0 s and 2 ms the derivative multiplies noise by thousands."},
+        .evidence = {.level = EvidenceLevel::partly,
+                     .read = {"units", "derivative of the error, its filter", "sample time",
+                              "the integral's answer to a step: gain times the step after Ti"},
+                     .unverified = {"whether the gain multiplies the derivative", "percent of span",
+                                    "rule of the integral"},
+                     .sources = {"ACS880-x04 manual p. 318", "ACS380 manual p. 266", "ACQ810 manual p. 188"}},
+        .example = of_design_a(
+            {{"gain", 3.0}, {"integration_time", 120.0}, {"derivation_time", 20.0}, {"derivation_filter", 2.0}}),
+    };
+}
+
+Product knx() {
+    return {
+        .id = "abb_knx_aba",
+        .maker = "ABB",
+        .name = "KNX ABA/S 1.2.1 logic PID",
+        .form = Form::parallel,
+        .law = "out = P e + (1/(IntegralTime s)) e + DerivativeTime s e",
+        .gain_basis = "engineering units",
+        .parameters =
+            {
+                {.name = "ProportionalCoefficient",
+                 .label = "Proportional coefficient",
+                 .role = Role::gain,
+                 .term = kKp,
+                 .range = {0, kUnbounded}},
+                {.name = "IntegralTime",
+                 .label = "Integral time",
+                 .unit = "s",
+                 .role = Role::integral,
+                 .term = {.Kp = -1, .Ti = 1},
+                 .range = {0, kUnbounded}},
+                {.name = "DerivativeTime",
+                 .label = "Derivative time",
+                 .unit = "s",
+                 .role = Role::derivative,
+                 .term = kKd,
+                 .range = {0, kUnbounded}},
+            },
+        .filter = {FilterKind::none},
+        .weights = {1, 1, "All three parts see the error."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "deviation",
+                   .direct = std::string("inverted"),
+                   .reverse = std::string("direct"),
+                   .text = "The direction is the sign of the deviation that is wired "
+                           "to the input."},
+        .algorithm = {.derivative = DerivativeRule::difference,
+                      .text = "position algorithm",
+                      .anti_windup = "the integral is reduced while the output is limited",
+                      .sample_time_s = 0.2,
+                      .sample_time_text = "200 ms"},
+        .traps = {"Its times look like Ti and Td and are those of a parallel form: the gain does not scale them."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"the full algorithm"},
+                     .sources = {"ABB i-bus KNX ABA/S 1.2.1 manual p. 93"}},
+        .example = of_design_a({{"ProportionalCoefficient", 1.5}, {"IntegralTime", 80.0}, {"DerivativeTime", 30.0}}),
+    };
+}
+
+Product ac800m() {
+    return {
+        .id = "abb_ac800m_pidcc",
+        .maker = "ABB",
+        .name = "AC 800M PidCC / PidLoop",
+        .form = Form::ideal,
+        .law = "out = Gain [ (b SP - PV) + (1/(Ti s)) (SP - PV) - (Td s/(Tf s + 1)) PV ] (believed)",
+        .gain_basis = "not read",
+        .parameters =
+            {
+                {.name = "Gain", .label = "Gain", .role = Role::gain, .term = kKp, .range = {0, kUnbounded}},
+                {.name = "Ti",
+                 .label = "Ti",
+                 .unit = "s",
+                 .role = Role::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded}},
+                {.name = "Td",
+                 .label = "Td",
+                 .unit = "s",
+                 .role = Role::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded}},
+                {.name = "Tf",
+                 .label = "filter",
+                 .unit = "s",
+                 .role = Role::filter,
+                 .term = kTf,
+                 .range = {0, kUnbounded}},
+                {.name = "Beta",
+                 .label = "Beta",
+                 .role = Role::weight_b,
+                 .shape = Shape::weight,
+                 .range = kShare,
+                 .standard = 1.0,
+                 .elsewhere = true,
+                 .remark = "believed to weigh the set point in P"},
+            },
+        .filter = {FilterKind::parameter, 0, "First order with a time of its own (believed)."},
+        .weights = {1, 0, "Beta is believed to weigh the set point in P; it is left as it is."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "Direction",
+                   .direct = std::string("direct"),
+                   .reverse = std::string("reverse"),
+                   .text = "Direction sets the sign."},
+        .algorithm = {.published = false,
+                      .text = "not read",
+                      .anti_windup = "tracking",
+                      .sample_time_text = "the task"},
+        .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no text was reached"}},
+        .example = of_design_a({{"Gain", 1.5}, {"Ti", 120.0}, {"Td", 20.0}, {"Tf", 2.0}}),
+    };
+}
+
+}  // namespace
+
+std::vector<Product> abb_products() { return {fc19(), drive(), knx(), ac800m()}; }
+
+}  // namespace tunewright::product

@@ -1,0 +1,176 @@
+// Flight controllers: ArduPilot AC_PID, PX4 rate control, Betaflight.
+#include <numbers>
+
+#include "engine/controller/product/catalogue/terms.h"
+
+namespace tunewright::product {
+namespace {
+
+/// Cut-off of a first-order filter in Hz.
+constexpr Term kCutoff{.factor = 1 / (2 * std::numbers::pi), .Tf = -1};
+
+Parameter switched_off(std::string_view name) {
+    return {.name = name,
+            .label = name,
+            .unit = "Hz",
+            .role = Role::fixed,
+            .shape = Shape::constant,
+            .standard = 0.0,
+            .remark = "0: no filter"};
+}
+
+Parameter gain_of(std::string_view name, std::string_view label, std::string_view unit, Role role, Term term) {
+    return {.name = name, .label = label, .unit = unit, .role = role, .term = term};
+}
+
+Product ardupilot() {
+    IdealPid design = kRateDesign;
+    design.c = 1;
+    return {
+        .id = "ardupilot_ac_pid",
+        .maker = "ArduPilot",
+        .name = "AC_PID",
+        .form = Form::parallel,
+        .law = "out = P e + (I/s) e + (D s/(Tf s + 1)) e, Tf = 1/(2 pi FLTD)",
+        .gain_basis = "normalised output per rad/s",
+        .parameters = {gain_of("P", "P", "", Role::gain, kKp),
+                       gain_of("I", "I", "1/s", Role::integral, kKi),
+                       gain_of("D", "D", "s", Role::derivative, kKd),
+                       {.name = "FLTD",
+                        .label = "FLTD",
+                        .unit = "Hz",
+                        .role = Role::filter,
+                        .term = kCutoff,
+                        .range = {0, kUnbounded},
+                        .standard = 20.0,
+                        .off = 0.0},
+                       switched_off("FLTE"),
+                       switched_off("FLTT"),
+                       {.name = "IMAX",
+                        .label = "IMAX",
+                        .unit = "output",
+                        .role = Role::limit,
+                        .shape = Shape::constant,
+                        .elsewhere = true}},
+        .filter = {FilterKind::parameter, 0, "First order at FLTD; FLTE would filter the whole error."},
+        .weights = {1, 1, "All parts see the error; FF adds to b."},
+        .action = kSigned,
+        .algorithm = {.text = "position algorithm",
+                      .anti_windup = "at a limit the integral may only shrink; IMAX",
+                      .sample_time_text = "the loop's rate, 400 Hz and more"},
+        .traps = {"SMAX, a limit of the slew, scales P and D while it runs."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"update_all, update_i", "defaults"},
+                     .unverified = {"body of the filter's helper", "notch and D_FF of newer versions"},
+                     .sources = {"ArduPilot/ardupilot libraries/AC_PID/AC_PID.cpp, AC_PID.h"}},
+        .example =
+            {.design = design,
+             .y_span = 1,
+             .u_span = 1,
+             .sample_time_s = 0.0025,
+             .settings = {{"P", 0.135}, {"I", 0.135}, {"D", 0.0036045}, {"FLTD", 20.0}, {"FLTE", 0.0}, {"FLTT", 0.0}}},
+    };
+}
+
+Product px4() {
+    return {
+        .id = "px4_rate",
+        .maker = "PX4",
+        .name = "Rate control (MC_*RATE_*)",
+        .form = Form::parallel,
+        .law = "out = K [ P e + (I/s) e - D s y ] + FF r, e = r - y",
+        .gain_basis = "normalised torque per rad/s",
+        .parameters = {gain_of("K", "MC_*RATE_K", "", Role::multiplier, kKp),
+                       gain_of("P", "MC_*RATE_P", "", Role::gain, {.Kp = 1, .K = -1}),
+                       gain_of("I", "MC_*RATE_I", "1/s", Role::integral, {.Kp = 1, .Ti = -1, .K = -1}),
+                       gain_of("D", "MC_*RATE_D", "s", Role::derivative, {.Kp = 1, .Td = 1, .K = -1}),
+                       {.name = "FF",
+                        .label = "MC_*RATE_FF",
+                        .role = Role::weight_b,
+                        .shape = Shape::feedforward,
+                        .range = {0, kUnbounded},
+                        .standard = 0.0,
+                        .remark = "never negative, so b is at least 1"}},
+        .filter = {FilterKind::unknown, 0,
+                   "IMU_DGYRO_CUTOFF filters the angular acceleration before the controller; its order was not read."},
+        .weights = {1, 0, "FF makes b = 1 + FF/(K P); D acts on the measured angular acceleration."},
+        .action = kSigned,
+        .algorithm = {.integral = IntegralRule::forward,
+                      .derivative = DerivativeRule::difference,
+                      .text = "position algorithm; the output takes the integral from before its update",
+                      .anti_windup = "flags of saturation, limits, and an integral that shrinks with the error: "
+                                     "1 - (e/400 deg/s)^2",
+                      .sample_time_text = "the gyro's rate"},
+        .traps = {"K scales all three."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"update, updateIntegral", "option K", "D in the feedback"},
+                     .unverified = {"order and default of the angular acceleration's filter"},
+                     .sources = {"PX4/PX4-Autopilot src/lib/rate_control/rate_control.cpp", "PX4 pull request 12472",
+                                 "docs.px4.io, multicopter PID tuning guide"}},
+        .example = {.design = kRateDesign,
+                    .y_span = 1,
+                    .u_span = 1,
+                    .sample_time_s = 0.0025,
+                    .settings = {{"K", 0.135}, {"P", 1.0}, {"I", 1.0}, {"D", 0.0267}, {"FF", 0.0}}},
+    };
+}
+
+Product betaflight() {
+    constexpr double kP = 0.032029, kI = 0.244381, kD = 0.000529;
+    const auto slider = [](std::string_view name, Role role, double low, Term term) {
+        return Parameter{.name = name,
+                         .label = name,
+                         .role = role,
+                         .term = term,
+                         .range = {low, kUnbounded},
+                         .resolution = kWholeNumber};
+    };
+    return {
+        .id = "betaflight",
+        .maker = "Betaflight",
+        .name = "Rate PID",
+        .form = Form::parallel,
+        .law = "sum = 0.032029 P e + (0.244381 I/s) e - (0.000529 D s/(Tf s + 1)) y, Tf = 1/(2 pi dterm_lpf1)",
+        .gain_basis = "sum of the PID (limit 500, mixed by 1/1000) per deg/s",
+        .parameters = {slider("P", Role::gain, 1, times(1 / kP, kKp)),
+                       slider("I", Role::integral, 0, times(1 / kI, kKi)),
+                       slider("D", Role::derivative, 0, times(1 / kD, kKd)),
+                       {.name = "dterm_lpf1_hz",
+                        .label = "dterm_lpf1",
+                        .unit = "Hz",
+                        .role = Role::filter,
+                        .term = kCutoff,
+                        .range = {1, kUnbounded},
+                        .resolution = kWholeNumber}},
+        .filter = {FilterKind::parameter, 0,
+                   "One or two filters of the derivative (PT1, PT2, PT3, biquad); this is one "
+                   "PT1."},
+        .weights = {1, 0, "P sees the error, D the gyro; feedforward is apart, F 0.013754/100."},
+        .action = {.kind = Action::Kind::reverse_only, .text = "Its sliders are never negative."},
+        .algorithm = {.text = "position algorithm",
+                      .anti_windup = "limit and relaxation of the integral, anti-gravity",
+                      .sample_time_text = "the loop of gyro and PID"},
+        .traps = {"On yaw I counts 2.5 times, unless integrated yaw is used.",
+                  "Throttle attenuation, D max and I relaxation are not linear."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"constants of the scales", "D on the gyro", "I of yaw times 2.5"},
+                     .unverified = {"filters of newer versions"},
+                     .sources = {"betaflight pid_init.c and pid.h (public copies of several revisions)"}},
+        .example = {.design = {.Kp = 1.6,
+                               .Ti = 0.08,
+                               .Td = 0.014,
+                               .b = 1,
+                               .c = 0,
+                               .filter = {FilterType::derivative, 0.00176839}},
+                    .y_span = 1,
+                    .u_span = 1,
+                    .sample_time_s = 0.00025,
+                    .settings = {{"P", 50.0}, {"I", 82.0}, {"D", 42.0}, {"dterm_lpf1_hz", 90.0}}},
+    };
+}
+
+}  // namespace
+
+std::vector<Product> flight_products() { return {ardupilot(), px4(), betaflight()}; }
+
+}  // namespace tunewright::product

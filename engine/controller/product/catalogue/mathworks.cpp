@@ -1,0 +1,201 @@
+// MathWorks: pidstd and pid of MATLAB, the blocks of Simulink.
+#include "engine/controller/product/catalogue/terms.h"
+
+namespace tunewright::product {
+namespace {
+
+constexpr double kDefaultPole = 100;  // rad/s
+
+Parameter plain(std::string_view name, std::string_view unit, Role role, Term term) {
+    return {.name = name, .label = name, .unit = unit, .role = role, .term = term};
+}
+Parameter time_of(std::string_view name, Role role, Term term) {
+    return {.name = name, .label = name, .unit = "s", .role = role, .term = term, .range = {0, kUnbounded}};
+}
+Parameter weight_elsewhere(std::string_view name, Role role, std::string_view remark) {
+    return {.name = name,
+            .label = name,
+            .role = role,
+            .shape = Shape::weight,
+            .standard = 1.0,
+            .elsewhere = true,
+            .remark = remark};
+}
+
+Algorithm forward_euler(std::string_view text, std::string_view anti_windup) {
+    return {.integral = IntegralRule::forward,
+            .derivative = DerivativeRule::filtered_forward,
+            .text = text,
+            .anti_windup = anti_windup,
+            .sample_time_text = "Ts"};
+}
+
+Product pidstd() {
+    return {
+        .id = "matlab_pidstd",
+        .maker = "MathWorks",
+        .name = "MATLAB pidstd",
+        .form = Form::ideal,
+        .law = "C = Kp [ 1 + 1/(Ti s) + Td s/((Td/N) s + 1) ]",
+        .gain_basis = "engineering units",
+        .parameters = {plain("Kp", "", Role::gain, kKp),
+                       time_of("Ti", Role::integral, kTi),
+                       time_of("Td", Role::derivative, kTd),
+                       {.name = "N",
+                        .label = "N",
+                        .role = Role::filter,
+                        .term = kFilterGain,
+                        .range = {0, kUnbounded},
+                        .remark = "a ratio, Td/Tf"},
+                       weight_elsewhere("b", Role::weight_b, "in pidstd2 alone"),
+                       weight_elsewhere("c", Role::weight_c, "in pidstd2 alone")},
+        .filter = {FilterKind::parameter, 0, "First order, Td/N."},
+        .weights = {1, 1, "pidstd has one input, the error; pidstd2 has b and c."},
+        .action = kSigned,
+        .algorithm = forward_euler("a transfer function; forward Euler in I and D by default", ""),
+        .traps = {"N is a ratio here."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"formula", "default integrator formulas"},
+                     .sources = {"mathworks.com control/ref/pidstd, pidstddata"}},
+        .example = of_design_a({{"Kp", 1.5}, {"Ti", 120.0}, {"Td", 20.0}, {"N", 10.0}}),
+    };
+}
+
+Product pid() {
+    return {
+        .id = "matlab_pid",
+        .maker = "MathWorks",
+        .name = "MATLAB pid",
+        .form = Form::parallel,
+        .law = "C = Kp + Ki/s + Kd s/(Tf s + 1)",
+        .gain_basis = "engineering units",
+        .parameters = {plain("Kp", "", Role::gain, kKp), plain("Ki", "1/s", Role::integral, kKi),
+                       plain("Kd", "s", Role::derivative, kKd), time_of("Tf", Role::filter, kTf),
+                       weight_elsewhere("b", Role::weight_b, "in pid2 alone"),
+                       weight_elsewhere("c", Role::weight_c, "in pid2 alone")},
+        .filter = {FilterKind::parameter, 0, "First order, Tf; forward Euler needs Tf > Ts/2."},
+        .weights = {1, 1, "pid has one input, the error; pid2 has b and c."},
+        .action = kSigned,
+        .algorithm = forward_euler("a transfer function; forward Euler in I and D by default", ""),
+        .traps = {"Unless told otherwise it is made discrete by forward Euler."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"formula, defaults", "Tf > Ts/2"},
+                     .sources = {"mathworks.com control/ref/pid"}},
+        .example = of_design_a({{"Kp", 1.5}, {"Ki", 0.0125}, {"Kd", 30.0}, {"Tf", 2.0}}),
+    };
+}
+
+Parameter pole() {
+    return {.name = "N",
+            .label = "N",
+            .unit = "rad/s",
+            .role = Role::filter,
+            .term = {.Tf = -1},
+            .range = {0, kUnbounded},
+            .standard = kDefaultPole,
+            .remark = "the filter's pole, 1/Tf"};
+}
+
+Evidence block_evidence() {
+    return {.level = EvidenceLevel::partly,
+            .read = {"structure, forms, order of the filter"},
+            .unverified = {"formula with N and its default 100 (a picture)"},
+            .sources = {"mathworks.com simulink/slref/pidcontroller R2021a"}};
+}
+
+Algorithm block_algorithm() {
+    return forward_euler("position algorithm; forward Euler by default, others can be chosen",
+                         "none, back-calculation or clamping");
+}
+
+constexpr std::string_view kPoleFilter = "First order with its pole at N rad/s; forward Euler needs N Ts < 2.";
+
+Product block_parallel() {
+    return {
+        .id = "simulink_pid_parallel",
+        .maker = "MathWorks",
+        .name = "Simulink PID Controller block, form Parallel",
+        .form = Form::parallel,
+        .law = "u = P (b r - y) + (I/s) (r - y) + (D N/(1 + N/s)) (c r - y)",
+        .gain_basis = "engineering units",
+        .parameters =
+            {plain("P", "", Role::gain, kKp),
+             plain("I", "1/s", Role::integral, kKi),
+             plain("D", "s", Role::derivative, kKd),
+             pole(),
+             {.name = "b", .label = "b (2DOF block)", .role = Role::weight_b, .shape = Shape::weight, .standard = 1.0},
+             {.name = "c", .label = "c (2DOF block)", .role = Role::weight_c, .shape = Shape::weight, .standard = 1.0}},
+        .filter = {FilterKind::parameter, 0, kPoleFilter},
+        .weights = {1, 1, "b and c are those of the block with two degrees of freedom."},
+        .action = kSigned,
+        .algorithm = block_algorithm(),
+        .traps = {"N is a pole in rad/s here, a ratio in pidstd, and a time in the autotuner block's parallel form."},
+        .evidence = block_evidence(),
+        .example = of_design_a({{"P", 1.5}, {"I", 0.0125}, {"D", 30.0}, {"N", 0.5}, {"b", 0.6}, {"c", 0.0}}),
+    };
+}
+
+Product block_ideal() {
+    return {
+        .id = "simulink_pid_ideal",
+        .maker = "MathWorks",
+        .name = "Simulink PID Controller block, form Ideal",
+        .form = Form::ideal,
+        .law = "u = P [ 1 + I/s + D N/(1 + N/s) ] (r - y)",
+        .gain_basis = "engineering units",
+        .parameters = {plain("P", "", Role::gain, kKp),
+                       {.name = "I",
+                        .label = "I",
+                        .unit = "1/s",
+                        .role = Role::integral,
+                        .term = {.Ti = -1},
+                        .range = {0, kUnbounded},
+                        .remark = "1/Ti, not Ti"},
+                       time_of("D", Role::derivative, kTd),
+                       pole(),
+                       weight_elsewhere("b", Role::weight_b, "in the 2DOF block alone"),
+                       weight_elsewhere("c", Role::weight_c, "in the 2DOF block alone")},
+        .filter = {FilterKind::parameter, 0, kPoleFilter},
+        .weights = {1, 1, "The block of one degree of freedom sees the error; the 2DOF block has b and c."},
+        .action = kSigned,
+        .algorithm = block_algorithm(),
+        .traps = {"I is 1/Ti, not Ti."},
+        .evidence = block_evidence(),
+        .example = of_design_a({{"P", 1.5}, {"I", 0.00833333}, {"D", 20.0}, {"N", 0.5}}),
+    };
+}
+
+Product autotuner() {
+    return {
+        .id = "simulink_pid_autotuner_block",
+        .maker = "MathWorks",
+        .name = "Simulink Closed-Loop PID Autotuner block, form Ideal",
+        .form = Form::ideal,
+        .law = "C = P [ 1 + 1/(I s) + D s/((D/N) s + 1) ]",
+        .gain_basis = "engineering units",
+        .parameters = {plain("P", "", Role::gain, kKp),
+                       time_of("I", Role::integral, kTi),
+                       time_of("D", Role::derivative, kTd),
+                       {.name = "N",
+                        .label = "N",
+                        .role = Role::filter,
+                        .term = kFilterGain,
+                        .range = {0, kUnbounded},
+                        .remark = "a ratio; in its parallel form the filter's time"}},
+        .filter = {FilterKind::parameter, 0, "First order, D/N."},
+        .weights = {1, 1, "It sees the error."},
+        .action = kSigned,
+        .algorithm = {.text = "the rules of I and D are chosen", .sample_time_text = "of the block"},
+        .traps = {"The letters of the PID Controller block mean something else here."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"both formulas"},
+                     .sources = {"Simulink Control Design reference pp. 2560, 2718"}},
+        .example = of_design_a({{"P", 1.5}, {"I", 120.0}, {"D", 20.0}, {"N", 10.0}}),
+    };
+}
+
+}  // namespace
+
+std::vector<Product> mathworks_products() { return {pidstd(), pid(), block_parallel(), block_ideal(), autotuner()}; }
+
+}  // namespace tunewright::product

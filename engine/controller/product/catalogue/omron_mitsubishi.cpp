@@ -1,0 +1,157 @@
+// Omron PID(190) and PIDAT(191), Mitsubishi FX PID: words of whole numbers.
+#include "engine/controller/product/catalogue/terms.h"
+
+namespace tunewright::product {
+namespace {
+
+Product omron() {
+    constexpr Range kWord{1, 8191};
+    return {
+        .id = "omron_pid190",
+        .maker = "Omron",
+        .name = "PID(190) / PIDAT(191) of CS/CJ/NSJ, C200H PID",
+        .form = Form::ideal,
+        .law = "MV = (1000/P) [ ((1 - alpha) SV - PV) + (1/(Ti s)) (SV - PV) - (Td s/(lambda Td s + 1)) PV ]",
+        .gain_basis = "proportional band, in steps of 0.1 % of the range",
+        .parameters =
+            {
+                {.name = "P",
+                 .label = "C+1 P",
+                 .unit = "0.1 %",
+                 .role = Role::gain,
+                 .term = {.factor = 1000, .Kp = -1, .Sy = -1, .Su = 1},
+                 .range = {1, 9999},
+                 .resolution = kWholeNumber},
+                {.name = "Tik_0_1s",
+                 .label = "C+2 Tik, unit 9",
+                 .unit = "0.1 s",
+                 .role = Role::integral,
+                 .term = times(10, kTi),
+                 .range = kWord,
+                 .resolution = kWholeNumber,
+                 .off = 9999.0,
+                 .remark = "9999: no integral action. With unit 1 it counts sampling periods."},
+                {.name = "Tdk_0_1s",
+                 .label = "C+3 Tdk, unit 9",
+                 .unit = "0.1 s",
+                 .role = Role::derivative,
+                 .term = times(10, kTd),
+                 .range = {0, 8191},
+                 .resolution = kWholeNumber},
+                {.name = "alpha_code",
+                 .label = "alpha",
+                 .role = Role::weight_b,
+                 .shape = Shape::alpha_code,
+                 .standard = std::string("000"),
+                 .remark = "000 stands for 0.65, which is b = 0.35; 100 to 199 for 0.00 to 0.99"},
+            },
+        .filter = {FilterKind::unknown, 0,
+                   "The derivative is incomplete, Td s/(lambda Td s + 1); lambda was not read."},
+        .weights = {0.35, 0,
+                    "The block filters the set point by (1 + (1 - alpha) Ti s)/(1 + Ti s), which is b = 1 - alpha "
+                    "in steps of 0.01."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "forward_reverse",
+                   .direct = std::string("forward"),
+                   .reverse = std::string("reverse"),
+                   .text = "A bit chooses forward or reverse."},
+        .algorithm = {.published = false,
+                      .text = "position algorithm of two degrees of freedom",
+                      .anti_windup = "limits of MV",
+                      .sample_time_text = "tau, 0.01 to 99.99 s, carried out on multiples of the cycle"},
+        .traps = {"alpha code 000 is 0.65, not 0.",
+                  "The printed diagram takes lambda for alpha in places and shows Td/s.",
+                  "With unit 1 Tik is Ti over the sampling period: a new tau is a new Ti."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"block diagram", "ranges, codes, defaults"},
+                     .unverified = {"value of lambda", "discrete algorithm"},
+                     .sources = {"Omron W474 pp. 680-681", "CJ1G manual pp. 703, 711, 712",
+                                 "C200HG manual p. 280, C200HS manual p. 255"}},
+        .example =
+            of_design_a({{"P", 333.0}, {"Tik_0_1s", 1200.0}, {"Tdk_0_1s", 200.0}, {"alpha_code", std::string("140")}}),
+    };
+}
+
+Product mitsubishi() {
+    constexpr Range kPeriod{1, 32767};
+    return {
+        .id = "mitsubishi_fx_pid",
+        .maker = "Mitsubishi",
+        .name = "FX/FX3/FX5 PID (FNC 88)",
+        .form = Form::ideal,
+        .law = "MV = (KP/100) [ (SV - PV) + (1/(Ti s)) (SV - PV) - (Td s/((KD/100) Td s + 1)) PV ]",
+        .gain_basis = "counts per count, in percent; both ranges are assumed to have as many counts",
+        .parameters =
+            {
+                {.name = "KP",
+                 .label = "S3+3 KP",
+                 .unit = "%",
+                 .role = Role::gain,
+                 .term = times(100, kKn),
+                 .range = {1, kUnbounded},
+                 .resolution = kWholeNumber},
+                {.name = "TI",
+                 .label = "S3+4 TI",
+                 .unit = "100 ms",
+                 .role = Role::integral,
+                 .term = times(10, kTi),
+                 .range = {1, kUnbounded},
+                 .resolution = kWholeNumber,
+                 .off = 0.0,
+                 .remark = "0: no integral action"},
+                {.name = "TD",
+                 .label = "S3+6 TD",
+                 .unit = "10 ms",
+                 .role = Role::derivative,
+                 .term = times(100, kTd),
+                 .range = {0, kUnbounded},
+                 .resolution = kWholeNumber},
+                {.name = "KD",
+                 .label = "S3+5 KD",
+                 .unit = "%",
+                 .role = Role::filter,
+                 .term = times(100, kFilterRatio),
+                 .range = {0, kUnbounded},
+                 .resolution = kWholeNumber,
+                 .remark = "called a gain, it is the filter's ratio: larger filters more"},
+                {.name = "alpha",
+                 .label = "S3+2 alpha",
+                 .unit = "%",
+                 .role = Role::fixed,
+                 .shape = Shape::constant,
+                 .standard = 0.0,
+                 .remark = "a filter of the measurement: 100 Tin/(Tin + TS)"},
+                {.name = "TS",
+                 .label = "S3 TS",
+                 .unit = "ms",
+                 .role = Role::sample_time,
+                 .term = {.factor = 1000, .Ts = 1},
+                 .range = kPeriod,
+                 .resolution = kWholeNumber},
+            },
+        .filter = {FilterKind::parameter, 0, "First order, Tf = KD/100 TD, exactly a backward Euler step."},
+        .weights = {1, 0, "P sees the error, D the measurement."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "ACT_bit0",
+                   .direct = 0.0,
+                   .reverse = 1.0,
+                   .text = "ACT bit 0: 0 takes PV - SV (forward), 1 takes SV - PV (backward, a heater)."},
+        .algorithm = {.velocity = true,
+                      .text = "velocity algorithm",
+                      .anti_windup = "limits of the output by bit 5",
+                      .sample_time_text = "TS, 1 to 32767 ms, not below the scan"},
+        .traps = {"KD is called a gain and is a filter's ratio.", "TI counts 100 ms and TD counts 10 ms."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"difference equations of both directions", "units", "filter"},
+                     .sources = {"FX1S manual pp. 247, 249", "FX3U manual pp. 212, 223", "MELSEC-F 169242 p. 477",
+                                 "manualslib 1663488 p. 173"}},
+        .example =
+            of_design_a({{"KP", 300.0}, {"TI", 1200.0}, {"TD", 2000.0}, {"KD", 10.0}, {"alpha", 0.0}, {"TS", 250.0}}),
+    };
+}
+
+}  // namespace
+
+std::vector<Product> omron_mitsubishi_products() { return {omron(), mitsubishi()}; }
+
+}  // namespace tunewright::product

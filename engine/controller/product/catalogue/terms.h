@@ -1,0 +1,50 @@
+// What the tables of the catalogue have in common: terms that many parameters are, and the design of most examples.
+#pragma once
+
+#include "engine/controller/product/catalogue.h"
+
+namespace tunewright::product {
+
+inline constexpr Term times(double factor, Term term) {
+    term.factor *= factor;
+    return term;
+}
+/// In percent of the output's span per percent of the measurement's.
+inline constexpr Term of_spans(Term term) {
+    term.Sy += 1;
+    term.Su -= 1;
+    return term;
+}
+/// In parts of the output's span.
+inline constexpr Term of_output(Term term) {
+    term.Su -= 1;
+    return term;
+}
+
+inline constexpr Term kKp{.Kp = 1};
+inline constexpr Term kTi{.Ti = 1};
+inline constexpr Term kTd{.Td = 1};
+inline constexpr Term kTf{.Tf = 1};
+inline constexpr Term kKi{.Kp = 1, .Ti = -1};
+inline constexpr Term kKd{.Kp = 1, .Td = 1};
+inline constexpr Term kKn = of_spans(kKp);
+inline constexpr Term kFilterRatio{.Td = -1, .Tf = 1};
+inline constexpr Term kFilterGain{.Td = 1, .Tf = -1};  ///< N
+inline constexpr double kMinutes = 1.0 / 60;           ///< of a time in seconds
+inline constexpr double kPerMinute = 60;
+inline constexpr double kWholeNumber = 1;  ///< resolution
+
+inline constexpr Range kShare{0, 1};
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// 1.5 %/degC, 120 s, 20 s, Tf 2 s on 0..200 degC and 0..100 %.
+inline constexpr IdealPid kDesignA{
+    .Kp = 1.5, .Ti = 120, .Td = 20, .b = 0.6, .c = 0, .filter = {FilterType::derivative, 2}};
+inline Example of_design_a(Settings settings) { return {.design = kDesignA, .settings = std::move(settings)}; }
+/// Of flight controllers: per rad/s and normalised output.
+inline constexpr IdealPid kRateDesign{
+    .Kp = 0.135, .Ti = 1, .Td = 0.0267, .b = 1, .c = 0, .filter = {FilterType::derivative, 0.00795775}};
+
+inline const Action kSigned{.kind = Action::Kind::signed_gain, .text = "A negative gain acts directly."};
+
+}  // namespace tunewright::product

@@ -1,0 +1,175 @@
+#include "engine/controller/product/notes.h"
+
+#include <cmath>
+
+#include "engine/controller/product/needs.h"
+#include "engine/controller/product/typed.h"
+#include "engine/number_text.h"
+
+namespace tunewright::product {
+namespace {
+
+constexpr double kSame = 1e-9;
+
+bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
+
+std::string with_text(std::string sentence, std::string_view text) {
+    return text.empty() ? sentence : sentence + " " + std::string(text);
+}
+
+// "1 + 72 s + 5 s^2/(1 + 2 s)": b Ti s and c Ti Td s^2/(1 + Tf s).
+std::string weighted(const IdealPid& pid, double b, double c) {
+    std::string text = "1";
+    if (b != 0) text += " + " + tunewright::text(b * pid.Ti) + " s";
+    if (c == 0 || pid.Td == 0) return text;
+    text += " + " + tunewright::text(c * pid.Ti * pid.Td) + " s^2";
+    if (pid.filter.type == FilterType::derivative) text += "/(1 + " + tunewright::text(pid.filter.Tf) + " s)";
+    return text;
+}
+
+void note_weights(const Comparison& it, std::vector<Note>& notes) {
+    const bool derivative = it.asked.Td != 0;
+    const bool b_differs = !same(it.asked.b, it.realised.b);
+    const bool c_differs = derivative && !same(it.asked.c, it.realised.c);
+    if (!b_differs && !c_differs) return;
+    std::string sentence = "The block weighs the set point with b = " + text(it.realised.b);
+    if (derivative) sentence += ", c = " + text(it.realised.c);
+    sentence += " where the design has b = " + text(it.asked.b);
+    if (derivative) sentence += ", c = " + text(it.asked.c);
+    sentence += "; the answer to loads is the same.";
+    notes.push_back({"setpoint-weights", with_text(std::move(sentence), it.product.weights.text)});
+    const std::string prefilter = setpoint_prefilter(it.asked, it.realised);
+    if (prefilter.empty()) return;
+    notes.push_back({"prefilter", "A filter of the set point before the block restores the design's answer to it: " +
+                                      prefilter + "."});
+}
+
+std::string filter_words(const Filter& filter) {
+    switch (filter.type) {
+        case FilterType::none: return "no filter";
+        case FilterType::derivative: return "a first-order filter of the derivative, Tf = " + text(filter.Tf);
+        case FilterType::measurement_first_order:
+            return "a first-order filter of the measurement, Tf = " + text(filter.Tf);
+        case FilterType::measurement_second_order:
+            return "a second-order filter of the measurement, Tf = " + text(filter.Tf);
+    }
+    return "no filter";
+}
+
+// A series block whose filter's ratio can be set has the design's own filter with another ratio than the settings'.
+void note_other_ratio(const Comparison& it, std::vector<Note>& notes) {
+    const Parameter* ratio = parameter_of(it.product, Role::filter);
+    if (it.product.form != Form::series || it.product.filter.kind != FilterKind::parameter || !ratio) return;
+    if (it.asked.filter.type != FilterType::derivative || it.asked.Td == 0) return;
+    const auto series = to_series(it.asked);
+    if (!series || series->Td == 0) return;
+    const double unit = it.context.seconds_per_time;
+    Quantities own = quantities_of(it.product, it.context);
+    own.Kp = std::abs(series->Kp);
+    own.Ti = series->Ti * unit;
+    own.Td = series->Td * unit;
+    own.Tf = it.asked.filter.Tf * unit;
+    const double alpha = value_of(ratio->term, own);
+    if (alpha < ratio->range.low || alpha > ratio->range.high) return;
+    std::string settings;
+    for (const Parameter& parameter : it.product.parameters) {
+        if (parameter.shape == Shape::power)
+            settings += (settings.empty() ? "" : ", ") + std::string(parameter.name) + " = " +
+                        text(value_of(parameter.term, own), 6);
+    }
+    notes.push_back({"filter-ratio", "With " + settings + " the block has the design's own filter, exactly."});
+}
+
+void note_filter(const Comparison& it, std::vector<Note>& notes) {
+    const FilterKind kind = it.product.filter.kind;
+    const Filter& asked = it.asked.filter;
+    const Filter& realised = it.realised.filter;
+    const bool derivative = it.realised.Td != 0;
+    const bool idle = !derivative && asked.type != FilterType::measurement_first_order &&
+                      asked.type != FilterType::measurement_second_order && realised.type == FilterType::none;
+    const bool slope = derivative && (kind == FilterKind::slope || kind == FilterKind::four_points);
+    if (idle || (asked.type == realised.type && same(asked.Tf, realised.Tf) && !slope &&
+                 !(derivative && kind == FilterKind::unknown)))
+        return;
+    std::string sentence = "The design has " + filter_words(asked) + "; the block has " + filter_words(realised) + ".";
+    if (slope) sentence += " It stands for a slope over several samples of the same delay, which it is not exactly.";
+    if (asked.type == FilterType::measurement_first_order || asked.type == FilterType::measurement_second_order) {
+        if (realised.type != asked.type) sentence += " Filter the measurement before the block for the design's own.";
+    } else if (realised.type == FilterType::none && kind != FilterKind::unknown) {
+        sentence += " Filter the measurement before the block, and tune with that filter.";
+    }
+    notes.push_back({"filter", with_text(std::move(sentence), it.product.filter.text)});
+}
+
+void note_rounding(const Comparison& it, std::vector<Note>& notes) {
+    std::string which;
+    for (std::size_t i = 0; i < it.settings.size(); ++i) {
+        const double* exact = std::get_if<double>(&it.settings[i].value);
+        const double* typed = std::get_if<double>(&it.typed[i].value);
+        if (!exact || !typed || same(*exact, *typed)) continue;
+        which += (which.empty() ? "" : ", ") + it.settings[i].name + " " + typed_text(it.product, it.settings[i]) +
+                 " for " + text(*exact, 6);
+    }
+    if (which.empty()) return;
+    notes.push_back({"rounding", "The block takes steps only: " + which +
+                                     ". What it then does is what is realised; judge the loop by that."});
+}
+
+const char* rule_name(IntegralRule rule) {
+    switch (rule) {
+        case IntegralRule::backward: return "backward";
+        case IntegralRule::forward: return "forward";
+        case IntegralRule::trapezoidal: return "trapezoidal";
+    }
+    return "backward";
+}
+
+void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
+    const Algorithm& algorithm = it.product.algorithm;
+    if (!algorithm.published) {
+        notes.push_back({"discretisation",
+                         "How the block forms its integral and derivative could not be read; where "
+                         "that counts, backward differences are assumed."});
+    } else if (algorithm.integral != IntegralRule::backward && it.realised.has_integral()) {
+        notes.push_back({"discretisation", std::string("The block integrates by the ") + rule_name(algorithm.integral) +
+                                               " rule; that changes the loop where the sample time is not small "
+                                               "against Ti."});
+    }
+    if (uses_firmware_clock(it.product) && !it.context.loop_clock_s) {
+        notes.push_back({"clock", "Computed with the clock of the firmware, " + text(*algorithm.sample_time_s) +
+                                      " s. " + std::string(algorithm.sample_time_text)});
+    }
+}
+
+void note_evidence(const Comparison& it, std::vector<Note>& notes) {
+    const Evidence& evidence = it.product.evidence;
+    if (evidence.unverified.empty() && evidence.level == EvidenceLevel::read) return;
+    std::string list;
+    for (const std::string_view one : evidence.unverified) list += (list.empty() ? "" : "; ") + std::string(one);
+    notes.push_back({"unverified", "Not read in the maker's own text or code: " + list + "."});
+}
+
+}  // namespace
+
+std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) {
+    if (!asked.has_integral() || !same(asked.Ti, realised.Ti) || !same(asked.Kp, realised.Kp)) return "";
+    // Degrees: a part of the block's set point has to be at least as steep as the design's.
+    const bool filtered = realised.filter.type == FilterType::derivative;
+    const auto degree = [&](double b, double c) {
+        if (c != 0 && realised.Td != 0) return filtered ? 1 : 2;
+        return b != 0 ? 1 : 0;
+    };
+    if (degree(realised.b, realised.c) < degree(asked.b, asked.c)) return "";
+    return "(" + weighted(realised, asked.b, asked.c) + ")/(" + weighted(realised, realised.b, realised.c) + ")";
+}
+
+void add_notes(const Comparison& comparison, std::vector<Note>& notes) {
+    note_weights(comparison, notes);
+    note_filter(comparison, notes);
+    if (!same(comparison.asked.filter.Tf, comparison.realised.filter.Tf)) note_other_ratio(comparison, notes);
+    note_rounding(comparison, notes);
+    note_algorithm(comparison, notes);
+    note_evidence(comparison, notes);
+}
+
+}  // namespace tunewright::product

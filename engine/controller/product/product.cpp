@@ -1,0 +1,63 @@
+#include "engine/controller/product/product.h"
+
+#include <algorithm>
+
+#include "engine/number_text.h"
+
+namespace tunewright::product {
+
+const Parameter* parameter_named(const Product& product, std::string_view name) {
+    const auto& all = product.parameters;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+const Parameter* parameter_of(const Product& product, Role role) {
+    const auto& all = product.parameters;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.role == role; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::string_view to_string(Form form) {
+    switch (form) {
+        case Form::ideal: return "ideal";
+        case Form::parallel: return "parallel";
+        case Form::series: return "series";
+        case Form::p_only: return "p_only";
+    }
+    return "ideal";
+}
+
+std::string_view to_string(Role role) {
+    switch (role) {
+        case Role::gain: return "gain";
+        case Role::multiplier: return "multiplier";
+        case Role::integral: return "integral";
+        case Role::derivative: return "derivative";
+        case Role::filter: return "filter";
+        case Role::weight_b: return "weight_b";
+        case Role::weight_c: return "weight_c";
+        case Role::choice: return "choice";
+        case Role::sample_time: return "sample_time";
+        case Role::fixed: return "fixed";
+        case Role::limit: return "limit";
+    }
+    return "fixed";
+}
+
+std::string_view to_string(EvidenceLevel level) {
+    switch (level) {
+        case EvidenceLevel::read: return "read";
+        case EvidenceLevel::partly: return "partly";
+        case EvidenceLevel::unverified: return "unverified";
+    }
+    return "unverified";
+}
+
+std::string text_of(const Value& value) {
+    if (const double* number = std::get_if<double>(&value)) return exact_text(*number);
+    if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+    return std::get<std::string>(value);
+}
+
+}  // namespace tunewright::product

@@ -1,0 +1,30 @@
+// The series form whose lead is filtered by a given fraction of its own derivative time, as blocks have it:
+//   Kc (1 + 1/(ti s)) (1 + td s)/(1 + alpha td s)
+// (pid.h's to_series takes the filter's time instead). Back to the ideal form: to_ideal(SeriesPid).
+#pragma once
+
+#include <optional>
+
+#include "engine/controller/pid.h"
+
+namespace tunewright::product {
+
+struct RatioSeries {
+    double Kc = 0, ti = 0, td = 0;
+    /// Of complex zeros, where these are the nearest: gain of P and D of its ideal twin relative to what was asked for.
+    struct Deviation {
+        double least_Ti = 0;  ///< 4 Td/(1 - alpha): what Ti would have to reach
+        double proportional = 1, derivative = 1;
+    };
+    std::optional<Deviation> deviation = {};
+};
+
+/// td = [Ti - sqrt(Ti^2 - 4 Ti Td/(1 - alpha))]/2, ti = Ti - (1 - alpha) td, Kc = Kp ti/Ti: exact, with the
+/// derivative's filter Tf = alpha td. 0 <= alpha < 1; Ti may be infinite.
+///
+/// Below Ti = 4 Td/(1 - alpha) the zeros are complex. Then ti = td = sqrt(Ti Td), Kc = Kp sqrt(Td/Ti), which keeps the
+/// integral gain, and for alpha = 0 the derivative gain too; the other way that keeps it, Td cut to what the zeros
+/// allow, gives derivative action away.
+RatioSeries ratio_series(double Kp, double Ti, double Td, double alpha);
+
+}  // namespace tunewright::product

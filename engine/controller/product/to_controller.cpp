@@ -1,0 +1,270 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/controller/product/needs.h"
+#include "engine/controller/product/typed.h"
+#include "engine/number_text.h"
+
+namespace tunewright::product {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kMostSamples = 1e6;  // of a slope
+
+// What the settings say, in seconds and units of u per y, in the block's own form.
+struct Law {
+    Quantities own;
+    double b = 1, c = 0;
+    Filter filter = {};
+};
+
+Error no_twin(const Product& product, std::string_view name, const std::string& reason) {
+    return {ErrorKind::not_representable, "settings/" + std::string(name), std::string(product.name) + ": " + reason};
+}
+
+/// A parameter of the law, the product that it stands in, and its value.
+class Reading {
+public:
+    Reading(const Product& product, const Settings& settings, const Context& context)
+        : product_(product), settings_(settings), context_(context) {}
+
+    /// Empty: neither given nor known by default.
+    std::optional<double> number(const Parameter& parameter) {
+        const auto value = number_of(parameter, settings_);
+        if (value && !setting_named(settings_, parameter.name)) defaults_.push_back({&parameter, *value});
+        if (value && !missing_) missing_ = missing_for(product_, parameter, context_);
+        return value;
+    }
+    const std::optional<Error>& missing() const { return missing_; }
+
+    void note_defaults(std::vector<Note>& notes) const {
+        if (defaults_.empty()) return;
+        std::string names;
+        for (const auto& [parameter, value] : defaults_)
+            names += (names.empty() ? "" : ", ") + std::string(parameter->name) + " = " + text(value, 6);
+        notes.push_back({"default", "Not given, so the maker's default: " + names + "."});
+    }
+
+private:
+    struct Default {
+        const Parameter* parameter;
+        double value;
+    };
+    const Product& product_;
+    const Settings& settings_;
+    const Context& context_;
+    std::vector<Default> defaults_ = {};
+    std::optional<Error> missing_ = {};
+};
+
+// Sets one quantity from the parameter of its role; `absent` where nothing is known.
+std::optional<double> solve(const Product& product, Role role, double Quantities::*unknown, double Term::*exponent,
+                            const Quantities& own, double absent, Reading& reading) {
+    const Parameter* parameter = parameter_of(product, role);
+    if (!parameter) return absent;
+    const auto value = reading.number(*parameter);
+    if (!value) return absent;
+    if (parameter->off && *value == *parameter->off) return absent;
+    return solved(parameter->term, own, unknown, parameter->term.*exponent, *value);
+}
+
+// -1 where the switch of the action stands on direct.
+double sign_of(const Product& product, const Settings& settings) {
+    if (product.action.kind != Action::Kind::switched) return 1;
+    const Value* given = setting_named(settings, product.action.name);
+    return given && *given == product.action.direct ? -1 : 1;
+}
+
+std::optional<Error> read_gain(const Product& product, const Settings& settings, Reading& reading, Quantities& own) {
+    if (const Parameter* multiplier = parameter_of(product, Role::multiplier))
+        own.K = reading.number(*multiplier).value_or(1);
+    const Parameter& gain = *parameter_of(product, Role::gain);
+    if (!setting_named(settings, gain.name))
+        return Error{ErrorKind::invalid_argument, "settings/" + std::string(gain.name),
+                     std::string(gain.name) + " is missing; it is the gain of " + std::string(product.name) + "."};
+    own.Kp = solve(product, Role::gain, &Quantities::Kp, &Term::Kp, own, 0, reading).value_or(0);
+    if (own.Kp == 0 || !std::isfinite(own.Kp))
+        return no_twin(product, gain.name,
+                       std::string(gain.name) +
+                           " leaves no proportional part, and the ideal form's times are ratios "
+                           "to it. Give a gain that is not 0.");
+    if (product.action.kind != Action::Kind::signed_gain && own.Kp < 0)
+        return Error{ErrorKind::invalid_argument, "settings/" + std::string(gain.name),
+                     std::string(gain.name) + " is negative, which " + std::string(product.name) + " does not take. " +
+                         std::string(product.action.text)};
+    return std::nullopt;
+}
+
+std::optional<Error> read_times(const Product& product, Reading& reading, Quantities& own) {
+    const auto Ti = solve(product, Role::integral, &Quantities::Ti, &Term::Ti, own, kNever, reading);
+    own.Ti = std::abs(*Ti) == kNever ? kNever : *Ti;
+    own.Td = *solve(product, Role::derivative, &Quantities::Td, &Term::Td, own, 0, reading);
+    if (own.Ti > 0 && own.Td >= 0) return std::nullopt;
+    const Role role = own.Ti > 0 ? Role::derivative : Role::integral;
+    const Parameter& parameter = *parameter_of(product, role);
+    return no_twin(product, parameter.name,
+                   std::string(parameter.name) + " gives a " + (role == Role::integral ? "Ti" : "Td") + " of " +
+                       text(role == Role::integral ? own.Ti : own.Td) +
+                       " s; it must have the gain's sign, and an integral time must be above 0.");
+}
+
+IdealPid ideal_without_filter(const Product& product, const Law& law) {
+    if (product.form != Form::series)
+        return {.Kp = law.own.Kp, .Ti = law.own.Ti, .Td = law.own.Td, .b = law.b, .c = law.c};
+    const SeriesPid series{.Kp = law.own.Kp, .Ti = law.own.Ti, .Td = law.own.Td, .b = law.b, .c = law.c};
+    return *to_ideal(series);
+}
+
+double filter_by_parameter(const Product& product, const Clocks& clocks, Reading& reading, const Quantities& own) {
+    const Parameter* parameter = parameter_of(product, Role::filter);
+    const auto value = parameter ? reading.number(*parameter) : std::nullopt;
+    if (!value || (parameter->off && *value == *parameter->off)) return 0;
+    const double clock = product.algorithm.firmware_clock ? clocks.firmware : own.Ts;
+    return filter_time(*parameter, own, clock, *value);
+}
+
+Filter read_filter(const Product& product, const Settings& settings, const Clocks& clocks, Reading& reading,
+                   const Quantities& own) {
+    Filter filter{FilterType::derivative, 0};
+    switch (product.filter.kind) {
+        case FilterKind::none:
+        case FilterKind::unknown: break;
+        case FilterKind::ratio: filter.Tf = product.filter.value * own.Td; break;
+        case FilterKind::parameter: filter.Tf = filter_by_parameter(product, clocks, reading, own); break;
+        case FilterKind::measurement:
+            filter = {FilterType::measurement_second_order, filter_by_parameter(product, clocks, reading, own)};
+            break;
+        case FilterKind::chosen:
+            for (const Parameter& parameter : product.parameters) {
+                if (parameter.role != Role::choice) continue;
+                if (const auto chosen = option_of(parameter, settings).filter) filter.type = *chosen;
+            }
+            filter.Tf = filter_by_parameter(product, clocks, reading, own);
+            break;
+        case FilterKind::slope:
+            filter.Tf = parameter_of(product, Role::filter) ? filter_by_parameter(product, clocks, reading, own)
+                                                            : slope_filter_time(product.filter.value, own.Ts);
+            break;
+        case FilterKind::four_points: filter.Tf = own.Ts; break;
+    }
+    const bool idle = filter.type == FilterType::derivative && own.Td == 0;
+    return idle || !(filter.Tf > 0) ? Filter{} : filter;
+}
+
+// What no term says: weights by options, by parameters, by what the block fixes.
+void read_weights(const Product& product, const Settings& settings, Law& law) {
+    law.b = product.weights.b;
+    law.c = product.weights.c;
+    for (const Parameter& parameter : product.parameters) {
+        if (parameter.shape == Shape::option) {
+            const Option& option = option_of(parameter, settings);
+            law.b = option.b.value_or(law.b);
+            law.c = option.c.value_or(law.c);
+        } else if (parameter.shape == Shape::alpha_code) {
+            if (const Value* code = setting_named(settings, parameter.name))
+                law.b = 1 - decoded_alpha(*code).value_or(0);
+        } else if (const auto value = number_of(parameter, settings)) {
+            if (parameter.shape == Shape::weight) (parameter.role == Role::weight_b ? law.b : law.c) = *value;
+            if (parameter.shape == Shape::one_minus_b) law.b = 1 - *value;
+            if (parameter.shape == Shape::feedforward) law.b = 1 + *value / law.own.Kp;
+        }
+    }
+}
+
+void note_outsiders(const Product& product, const Settings& settings, std::vector<Note>& notes) {
+    for (const Parameter& parameter : product.parameters) {
+        const Value* given = setting_named(settings, parameter.name);
+        if (parameter.role != Role::fixed || !given || !parameter.standard || *given == *parameter.standard) continue;
+        notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
+                                                 "; the twin is that of " + text_of(*parameter.standard) +
+                                                 " and does not contain what it does."});
+    }
+}
+
+// The series form's filter stands over its whole lead: its twin's weights, times and filter come from one conversion.
+IdealPid twin(const Product& product, const Law& law) {
+    if (product.form == Form::series && law.filter.type == FilterType::derivative) {
+        const SeriesPid series{
+            .Kp = law.own.Kp, .Ti = law.own.Ti, .Td = law.own.Td, .b = law.b, .c = law.c, .filter = law.filter};
+        return *to_ideal(series);
+    }
+    IdealPid pid = ideal_without_filter(product, law);
+    pid.filter = law.filter;
+    return pid;
+}
+
+// What no controller of the contract is: a filter that lets nothing pass, a series lead that its own filter outlasts.
+std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
+    const auto at = [&](Role role, const std::string& reason) {
+        const Parameter* parameter = parameter_of(product, role);
+        return no_twin(product, parameter ? parameter->name : product.parameters.front().name, reason);
+    };
+    if (!std::isfinite(pid.filter.Tf))
+        return at(Role::filter,
+                  "the filter's time becomes infinite, so no derivative is left. Give another value, or "
+                  "no derivative.");
+    if (pid.Td < 0)
+        return at(Role::derivative, "the filter outlasts the integral time, which makes the ideal form's Td " +
+                                        text(pid.Td) + ". Take a shorter derivative or a smaller ratio of the filter.");
+    if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Td) || std::isnan(pid.Ti) || !std::isfinite(pid.b))
+        return at(Role::gain, "the values together are beyond any number.");
+    return std::nullopt;
+}
+
+}  // namespace
+
+Expected<IdealPid> to_controller(const Product& product, const Settings& settings, const Context& context,
+                                 std::vector<Note>& notes) {
+    if (auto wrong = wrong_setting(product, settings)) return *wrong;
+    Reading reading(product, settings, context);
+    Law law;
+    law.own = quantities_of(product, context);
+    bool period_known = clocks_of(product, context).sample_time.has_value();
+    if (const Parameter* period = parameter_of(product, Role::sample_time)) {
+        if (const auto value = number_of(*period, settings)) {
+            law.own.Ts = solved(period->term, law.own, &Quantities::Ts, period->term.Ts, *value);
+            period_known = true;
+        }
+    }
+    if (auto wrong = read_gain(product, settings, reading, law.own)) return *wrong;
+    if (auto wrong = read_times(product, reading, law.own)) return *wrong;
+    read_weights(product, settings, law);
+    law.own.ideal_Td = ideal_without_filter(product, law).Td;
+    if (!period_known) {
+        if (auto missing = missing_for_filter(product, context)) return *missing;
+    }
+    law.filter = read_filter(product, settings, clocks_of(product, context), reading, law.own);
+    if (reading.missing()) return *reading.missing();
+
+    IdealPid pid = twin(product, law);
+    if (auto wrong = beyond(product, pid)) return *wrong;
+    const double unit = context.seconds_per_time;
+    pid.Kp *= sign_of(product, settings);
+    pid.Ti /= unit;
+    pid.Td /= unit;
+    pid.filter.Tf /= unit;
+    reading.note_defaults(notes);
+    note_outsiders(product, settings, notes);
+    return pid;
+}
+
+SampledPid sampled_law(const Product& product, const Settings& settings, const Context& context, double Ts) {
+    Context running = context;
+    running.sample_time_s = running.loop_clock_s = Ts * context.seconds_per_time;
+    std::vector<Note> ignored;
+    const auto pid = to_controller(product, settings, running, ignored);
+    SampledPid law;
+    if (pid) law.gains = gains(*pid);
+    law.Ts = Ts;
+    law.integral = product.algorithm.integral;
+    law.derivative = product.algorithm.derivative;
+    law.velocity = product.algorithm.velocity;
+    if (product.filter.kind == FilterKind::slope) {
+        const Parameter* samples = parameter_of(product, Role::filter);
+        const double M = samples ? number_of(*samples, settings).value_or(1) : product.filter.value;
+        law.slope_samples = static_cast<int>(std::lround(std::clamp(M, 1.0, kMostSamples)));
+    }
+    return law;
+}
+
+}  // namespace tunewright::product

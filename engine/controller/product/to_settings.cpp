@@ -1,0 +1,258 @@
+#include <cmath>
+
+#include "engine/controller/product/needs.h"
+#include "engine/controller/product/notes.h"
+#include "engine/controller/product/series.h"
+#include "engine/controller/product/typed.h"
+#include "engine/number_text.h"
+
+namespace tunewright::product {
+namespace {
+
+/// A conversion on its way: always to the nearest, with a sentence for each thing that the block cannot be.
+struct Work {
+    const Product& product;
+    const IdealPid& pid;  ///< in the caller's unit of time
+    const Context& context;
+    Quantities own = {};
+    Settings settings = {};
+    std::vector<Note> notes = {};
+    std::vector<std::string> refusals = {};
+    std::string_view beyond = "";  ///< a parameter whose value is no number any more
+};
+
+double alpha_of(const Product& product) {
+    return product.filter.kind == FilterKind::ratio ? product.filter.value : product.series_alpha;
+}
+
+void refuse_complex_zeros(const RatioSeries& series, Work& work) {
+    const double unit = work.context.seconds_per_time;
+    work.refusals.push_back(
+        "Its form is a series, whose zeros are real: Ti = " + text(work.pid.Ti) + " is below " +
+        text(series.deviation->least_Ti / unit) + ", 4 Td/(1 - alpha) with alpha = " + text(alpha_of(work.product)) +
+        ". The nearest: both times sqrt(Ti Td) = " + text(series.ti / unit) + " and a gain of " +
+        text(series.Kc / work.own.Kp) + " Kp. It keeps the integral gain; the proportional gain becomes " +
+        text(series.deviation->proportional) + " times and the derivative gain " + text(series.deviation->derivative) +
+        " times the design's. Better: tune for this block, under that limit.");
+}
+
+void set_sign(Work& work) {
+    const Action& action = work.product.action;
+    if (work.pid.Kp > 0 || action.kind == Action::Kind::signed_gain) return;
+    work.own.Kp = -work.own.Kp;
+    if (action.kind == Action::Kind::reverse_only) {
+        work.refusals.push_back(
+            "Its gain is never negative and it has no switch for the direction, while Kp = " + text(work.pid.Kp) +
+            ". The nearest is the same gain with the opposite sign, for an "
+            "actuator that is turned round. " +
+            std::string(action.text));
+    }
+}
+
+void set_own_form(Work& work) {
+    const double unit = work.context.seconds_per_time;
+    const IdealPid& pid = work.pid;
+    Quantities& own = work.own;
+    own.Kp = pid.Kp;
+    set_sign(work);
+    own.Ti = pid.Ti * unit;
+    own.Td = own.ideal_Td = pid.Td * unit;
+    own.Tf = pid.filter.type == FilterType::none ? 0 : pid.filter.Tf * unit;
+    if (work.product.form == Form::p_only && (pid.has_integral() || pid.Td != 0)) {
+        work.notes.push_back({"proportional-only",
+                              "The block has no integral and no derivative action: it gets the "
+                              "proportional part of the design alone, which is another loop."});
+    }
+    if (work.product.form != Form::series) return;
+    const double alpha = alpha_of(work.product);
+    const RatioSeries series = ratio_series(own.Kp, own.Ti, own.Td, alpha);
+    if (series.deviation) refuse_complex_zeros(series, work);
+    own.Kp = series.Kc;
+    own.Ti = series.ti;
+    own.Td = series.td;
+    if (series.deviation) own.ideal_Td = to_ideal(SeriesPid{.Kp = own.Kp, .Ti = own.Ti, .Td = own.Td})->Td;
+    if (alpha > 0) own.Tf = alpha * series.td;
+}
+
+// Where one option sets both weights, c decides among those of the same b only.
+constexpr double kLessThanB = 1e-6;
+
+bool law_role(Role role) {
+    return role == Role::gain || role == Role::multiplier || role == Role::integral || role == Role::derivative ||
+           role == Role::sample_time;
+}
+
+// The law has no integral action: what stands for that, or what comes nearest to it.
+std::optional<double> without_integral(const Parameter& parameter, Work& work) {
+    if (parameter.off) return *parameter.off;
+    const bool bounded = std::isfinite(parameter.range.high);
+    const double longest = bounded ? parameter.range.high : 1e6;
+    work.refusals.push_back(std::string(parameter.name) +
+                            " has no value that is known to switch integral action off, "
+                            "and the design has none. The nearest: " +
+                            std::string(parameter.name) + " = " + text(longest, 6) + ", hardly any integral action.");
+    return longest;
+}
+
+// A value that the law determines, into the parameter's range.
+double within_range(const Parameter& parameter, double value, Work& work) {
+    const double typed = rounded(parameter, value);
+    const bool inside = value >= parameter.range.low - parameter.resolution / 2 &&
+                        value <= parameter.range.high + parameter.resolution / 2;
+    if (inside || (parameter.off && value == *parameter.off)) return value;
+    if (law_role(parameter.role)) {
+        work.refusals.push_back(std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+                                range_text(parameter) + ". The nearest: " + std::string(parameter.name) + " = " +
+                                text(typed, 6) + ".");
+    } else if (parameter.role == Role::filter) {
+        work.notes.push_back({"range", std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+                                           range_text(parameter) + ": it is " + text(typed, 6) + "."});
+    }
+    return typed;
+}
+
+std::optional<double> number_for(const Parameter& parameter, Work& work) {
+    if (parameter.role == Role::integral && !work.pid.has_integral() && work.own.Ti > 0) {
+        const double value = value_of(parameter.term, work.own);
+        if (std::isinf(value)) return without_integral(parameter, work);
+        if (!parameter.zero_remark.empty()) work.notes.push_back({"integral-off", std::string(parameter.zero_remark)});
+    }
+    const Clocks clocks = clocks_of(work.product, work.context);
+    const double clock = work.product.algorithm.firmware_clock ? clocks.firmware : work.own.Ts;
+    const double value =
+        parameter.role == Role::filter ? filter_value(parameter, work.own, clock) : value_of(parameter.term, work.own);
+    if (std::isfinite(value) && !(parameter.role == Role::filter && work.own.Td == 0 &&
+                                  work.product.filter.kind == FilterKind::parameter && parameter.standard))
+        return within_range(parameter, value, work);
+    if (law_role(parameter.role)) work.beyond = parameter.name;
+    // The law leaves it open: there is no derivative, or no filter.
+    if (parameter.off && work.own.Tf == 0) return parameter.off;
+    return number_of(parameter, {});
+}
+
+const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
+    const auto distance = [&](const Option& option) {
+        double sum = 0;
+        if (option.b) sum += std::abs(*option.b - pid.b);
+        if (option.c && pid.Td != 0) sum += kLessThanB * std::abs(*option.c - pid.c);
+        const bool measured = pid.filter.type == FilterType::measurement_first_order ||
+                              pid.filter.type == FilterType::measurement_second_order;
+        if (option.filter) sum += (*option.filter == FilterType::measurement_second_order) != measured;
+        return sum;
+    };
+    // Of two equally near the gentler one: the smaller weight of the set point.
+    const Option* best = &parameter.options.front();
+    for (const Option& option : parameter.options) {
+        const double difference = distance(option) - distance(*best);
+        if (difference < 0 || (difference == 0 && option.b.value_or(0) < best->b.value_or(0))) best = &option;
+    }
+    return *best;
+}
+
+void add(const Parameter& parameter, Value value, Work& work) {
+    if (!parameter.always && parameter.standard && value == *parameter.standard) return;
+    work.settings.push_back({std::string(parameter.name), std::move(value)});
+}
+
+void add_setting(const Parameter& parameter, Work& work) {
+    const IdealPid& pid = work.pid;
+    switch (parameter.shape) {
+        case Shape::option: {
+            const Option& option = nearest_option(parameter, pid);
+            if (parameter.always || &option != &parameter.options.front()) add(parameter, option.value, work);
+            return;
+        }
+        case Shape::constant: return add(parameter, parameter.standard.value_or(0.0), work);
+        case Shape::alpha_code: return add(parameter, encoded_alpha(1 - pid.b), work);
+        case Shape::one_minus_b: return add(parameter, within_range(parameter, 1 - pid.b, work), work);
+        case Shape::weight:
+            return add(parameter, within_range(parameter, parameter.role == Role::weight_b ? pid.b : pid.c, work),
+                       work);
+        case Shape::feedforward: return add(parameter, within_range(parameter, (pid.b - 1) * work.own.Kp, work), work);
+        default: break;
+    }
+    const auto value = number_for(parameter, work);
+    if (parameter.role == Role::multiplier && value) work.own.K = *value;
+    if (value) add(parameter, *value, work);
+}
+
+std::optional<Error> add_settings(Work& work) {
+    for (const Parameter& parameter : work.product.parameters) {
+        if (parameter.elsewhere) continue;
+        if (auto missing = missing_for(work.product, parameter, work.context)) {
+            if (parameter.role != Role::limit) return missing;
+            work.notes.push_back({"limit", std::string(parameter.name) + " is left out: it is " +
+                                               formula_text(work.product, parameter) + ", which needs u_span. " +
+                                               std::string(parameter.remark)});
+            continue;
+        }
+        add_setting(parameter, work);
+    }
+    const Action& action = work.product.action;
+    if (action.kind == Action::Kind::switched && work.pid.Kp < 0) {
+        work.settings.push_back({std::string(action.name), action.direct});
+        work.notes.push_back({"action",
+                              "Kp is negative: the gain is typed without its sign, and the direction is set "
+                              "by " +
+                                  std::string(action.name) + ". " + std::string(action.text)});
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> unusable(const Product& product, const IdealPid& pid) {
+    if (pid.Kp == 0 || !std::isfinite(pid.Kp))
+        return Error{ErrorKind::not_representable, "controller/Kp",
+                     std::string(product.name) + ": Kp is " + text(pid.Kp) +
+                         "; without a proportional part there is no ideal form to convert. The nearest has a small Kp "
+                         "with Ti = Kp/Ki."};
+    if (!(pid.Ti > 0) || !(pid.Td >= 0) || !std::isfinite(pid.Td) || !std::isfinite(pid.b) || !std::isfinite(pid.c))
+        return Error{ErrorKind::invalid_argument, "controller",
+                     "Ti must be above 0, Td at least 0, and b and c numbers."};
+    return std::nullopt;
+}
+
+Error refusal(const Work& work) {
+    std::string message = std::string(work.product.name) + " cannot be this controller.";
+    for (const std::string& sentence : work.refusals) message += " " + sentence;
+    return {ErrorKind::not_representable, "controller", std::move(message)};
+}
+
+}  // namespace
+
+Expected<Converted> to_settings(const Product& product, const IdealPid& pid, const Context& context, bool nearest) {
+    if (auto error = unusable(product, pid)) return *error;
+    if (auto missing = missing_for_filter(product, context)) return *missing;
+    Work work{.product = product, .pid = pid, .context = context};
+    work.own = quantities_of(product, context);
+    set_own_form(work);
+    if (auto missing = add_settings(work)) return *missing;
+    if (!work.beyond.empty())
+        return Error{ErrorKind::invalid_argument, "controller",
+                     std::string(work.beyond) + " would be beyond any number. Check the controller and the spans."};
+    if (!work.refusals.empty() && !nearest) return refusal(work);
+
+    const Settings typed = as_typed(product, work.settings);
+    std::vector<Note> ignored;
+    auto realised = to_controller(product, typed, context, ignored);
+    if (!realised) return realised.error();
+    Converted converted{.settings = std::move(work.settings), .realised = *realised};
+    for (std::string& sentence : work.refusals) converted.notes.push_back({"nearest", std::move(sentence)});
+    for (Note& note : work.notes) converted.notes.push_back(std::move(note));
+    add_notes({product, pid, converted.realised, context, converted.settings, typed}, converted.notes);
+    return converted;
+}
+
+std::optional<double> default_sample_time_s(const Product& product) { return product.algorithm.sample_time_s; }
+
+std::vector<Tunable> tunable_parameters(const Product& product) {
+    std::vector<Tunable> tunable;
+    for (const Parameter& parameter : product.parameters) {
+        const Role role = parameter.role;
+        const bool law = role == Role::gain || role == Role::integral || role == Role::derivative;
+        if (!law && role != Role::filter) continue;
+        tunable.push_back({std::string(parameter.name), role, parameter.range, parameter.resolution});
+    }
+    return tunable;
+}
+
+}  // namespace tunewright::product

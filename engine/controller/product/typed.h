@@ -1,0 +1,32 @@
+// Settings as they stand in a block: which values it takes, what it rounds them to, what is meant by what is missing.
+#pragma once
+
+#include <optional>
+
+#include "engine/controller/product/settings.h"
+
+namespace tunewright::product {
+
+/// The first setting whose name or value the product does not take.
+std::optional<Error> wrong_setting(const Product& product, const Settings& settings);
+
+/// The value of that name; null if it is not among them.
+const Value* setting_named(const Settings& settings, std::string_view name);
+
+/// A numeric parameter's value, the maker's default where none is given; empty if neither is known.
+std::optional<double> number_of(const Parameter& parameter, const Settings& settings);
+
+/// What is chosen, the first option where nothing is given. The parameter has options.
+const Option& option_of(const Parameter& parameter, const Settings& settings);
+
+/// 1 - b of Omron's code: "100".."199" in hundredths, "000" the block's default 0.65; empty for anything else.
+std::optional<double> decoded_alpha(const Value& code);
+std::string encoded_alpha(double alpha);
+
+/// Rounded to the resolution and brought into the range; `off` stays.
+double rounded(const Parameter& parameter, double value);
+
+/// "0 to 1000 %", "at least 1".
+std::string range_text(const Parameter& parameter);
+
+}  // namespace tunewright::product

@@ -1,0 +1,42 @@
+// What an entry's controller becomes on the user's own: the settings to type, and the loop as it then computes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/evaluation/evaluate_sampled.h"
+#include "engine/evaluation/evaluation.h"
+#include "engine/expected.h"
+#include "engine/plant/subject.h"
+#include "engine/progress.h"
+#include "engine/tuning/built/build.h"
+
+namespace tunewright {
+
+/// `Ms_percent`, `load_IAE_percent`: by how much the loop as built lies above the entry's ideal one.
+struct AsBuilt {
+    built::Fitted fitted;
+    BuiltLoop loop;
+    Figure Ms_percent, load_IAE_percent;
+};
+
+/// Of settings that are known. `ideal`: the evaluation of the entry's controller. Errors: those of evaluating.
+Expected<AsBuilt> judge_as_built(const Subject& subject, const built::Build& build, built::Fitted fitted,
+                                 const EvaluateOptions& options, const Evaluation& ideal);
+
+/// Converts the entry's controller and judges it. What the product cannot be is met by the settings with the least load
+/// IAE that are at least as robust as the ideal loop (a note says so). Errors: not_representable where there are none,
+/// unsupported for a nonlinear integral; those of evaluating.
+Expected<AsBuilt> built_from(const Subject& subject, const built::Build& build, const EvaluateOptions& options,
+                             const Evaluation& ideal, const RunControl& control);
+
+/// Puts it beside the evaluation, with a warning where the loop as built is another one: unstable, or Ms or the load
+/// IAE moved by more than 2 %. What keeps a controller from being built is a warning too: the ideal loop is answered
+/// all the same.
+void take_as_built(Expected<AsBuilt> built, Evaluation& evaluation, std::optional<AsBuilt>& beside);
+
+/// The longest sample time that keeps Ms within 5 % (evaluate_sampled.h). Empty where the question makes no sense: an
+/// unstable loop, a nonlinear integral, a plant known by points alone.
+std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation);
+
+}  // namespace tunewright

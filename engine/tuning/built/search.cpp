@@ -1,0 +1,175 @@
+#include "engine/tuning/built/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/number_text.h"
+#include "engine/numerics/extremum.h"
+#include "engine/tuning/built/largest_gain.h"
+
+namespace tunewright::built {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoCost = 1e6;      // of a logarithm: where no gain serves under any limits
+constexpr double kOutside = 1e3;     // the same where one does under wider limits; more the wider they are
+constexpr double kWidest = 30;       // times M - 1 of the limits
+constexpr double kWider = 0.02;      // of ln: how well the width is known
+constexpr double kFirstStep = 0.25;  // of ln Ti and ln Td
+constexpr double kLaterStep = 0.08;  // of the searches that start again from the best
+constexpr double kNoGain = 1e-5;     // relative: a search that gains less is the last
+constexpr int kMaxRestarts = 4;
+constexpr int kMostEvaluations = 150;  // of one simplex
+constexpr double kTolerance = 1e-6;    // of ln IAE
+constexpr int kMaxCorrections = 6;
+constexpr double kMargin = 1e-5;  // of M - 1: where limits bound the gain from both sides, the last grid may differ
+constexpr double kHolds = 1e-6;   // relative excess over a limit that counts as none
+constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
+
+}  // namespace
+
+Limits within(const Limits& limits, double margin) {
+    Limits inner{1 + (limits.Ms - 1) * (1 - margin), 1 + (limits.Mt - 1) * (1 - margin), limits.Mks};
+    if (inner.Mks) *inner.Mks *= 1 - margin;
+    return inner;
+}
+
+namespace {
+
+class Search {
+public:
+    Search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits, const Law& first)
+        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargin)) {
+        for (const LinearPlant* plant : plants) limiters_.emplace_back(*plant, first);
+    }
+
+    /// The cost is infinite where no gain serves.
+    Settings at(double Ti, double Td);
+    /// How far the limits would have to be widened for some gain to serve, as a factor of M - 1; infinite: no width
+    /// helps. It leads a search from times without a gain to times with one.
+    double widening(double Ti, double Td) const;
+    /// With a gain that the whole loop, on a grid of its own, confirms.
+    Settings confirmed(double Ti, double Td);
+
+private:
+    Law law(double gain, double Ti, double Td) const { return shape_.law(gain, Ti, Td); }
+    Settings with_limits(double Ti, double Td, const Limits& limits) const;
+    double cost(double gain, double Ti, double Td) const { return load_iae_of(*plants_.front(), law(gain, Ti, Td)); }
+
+    const std::vector<const LinearPlant*>& plants_;
+    const Shape& shape_;
+    const Limits limits_, inner_;
+    std::vector<GainLimiter> limiters_;
+};
+
+Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
+    Settings best{0, Ti, Td, kInfinity};
+    const auto k = largest_gain(
+        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits);
+    if (!k || *k < shape_.gain.low) return best;
+    const double most = std::min(*k, shape_.gain.high);
+    best = {shape_.sign * most, Ti, Td, cost(most, Ti, Td)};
+    for (const double share : kLowerGains) {
+        const double gain = std::max(share * most, shape_.gain.low), lower = cost(gain, Ti, Td);
+        if (!(lower < best.load_IAE)) break;
+        best = {shape_.sign * gain, Ti, Td, lower};
+    }
+    return best;
+}
+
+Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), inner_); }
+
+double Search::widening(double Ti, double Td) const {
+    const auto serves = [&](double factor) {
+        const Limits wider{1 + factor * (inner_.Ms - 1), 1 + factor * (inner_.Mt - 1), {}};
+        return largest_gain(
+                   limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider)
+            .has_value();
+    };
+    double low = 0, high = std::log(kWidest);
+    if (!serves(kWidest)) return kInfinity;
+    while (high - low > kWider) (serves(std::exp(0.5 * (low + high))) ? high : low) = 0.5 * (low + high);
+    return std::exp(high);
+}
+
+Settings Search::confirmed(double Ti, double Td) {
+    Limits limits = inner_;
+    Settings found;
+    for (int i = 0; i < kMaxCorrections; ++i) {
+        found = with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), limits);
+        if (!std::isfinite(found.load_IAE)) return found;
+        double excess = -kInfinity;
+        const Law built = law(std::abs(found.gain), found.Ti, found.Td);
+        for (const LinearPlant* plant : plants_) {
+            if (!is_stable(*plant, built)) return {0, Ti, Td, kInfinity};
+            excess = std::max(excess, peaks_of(*plant, built).excess(limits_));
+        }
+        if (excess <= kHolds) return found;
+        limits = within(limits, 2 * excess);
+    }
+    found.load_IAE = kInfinity;
+    return found;
+}
+
+Error none(const Limits& limits) {
+    return {ErrorKind::no_feasible_controller, "",
+            "No settings of this controller keep Ms <= " + text(limits.Ms) + " and Mt <= " + text(limits.Mt) +
+                " on the loop as it is built. Allow more, sample faster, or choose a controller that can do more."};
+}
+
+}  // namespace
+
+Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
+                          const std::vector<Settings>& starts, const RunControl& control) {
+    std::optional<Settings> best;
+    for (const Settings& start : starts) {
+        if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
+        // The first loop's frequencies serve all later ones.
+        const auto times = std::pair(shape.Ti.within(start.Ti), shape.Td.within(start.Td));
+        Search local(plants, shape, limits, shape.law(std::abs(start.gain), times.first, times.second));
+        const bool two = shape.has_integral && shape.has_derivative;
+        std::vector<double> x;
+        if (shape.has_integral) x.push_back(std::log(times.first));
+        if (shape.has_derivative) x.push_back(std::log(times.second));
+        const auto times_of = [&](const std::vector<double>& point) {
+            const double first = point.empty() ? 0 : std::exp(point[0]);
+            return std::pair(shape.has_integral ? first : times.first,
+                             shape.has_derivative ? (two ? std::exp(point[1]) : first) : times.second);
+        };
+        const auto cost = [&](const std::vector<double>& point, bool& stop) {
+            stop = control.stop.stop_requested();
+            const auto [i, d] = times_of(point);
+            const double IAE = local.at(i, d).load_IAE;
+            if (std::isfinite(IAE) && IAE > 0) return std::log(IAE);
+            const double factor = local.widening(shape.Ti.within(i), shape.Td.within(d));
+            return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
+        };
+        bool stop = false;
+        double reached = cost(x, stop), step = kFirstStep;
+        for (int i = 0; i < kMaxRestarts && !x.empty(); ++i, step = kLaterStep) {
+            const auto found = find_local_minimum(LocalSearch::nelder_mead, cost, x,
+                                                  {std::vector<double>(x.size(), step), kTolerance, kMostEvaluations});
+            const double gained = reached - found.value;
+            if (gained > 0) {
+                reached = found.value;
+                x = found.x;
+            }
+            if (i > 0 && gained < kNoGain) break;
+        }
+        const auto [i, d] = times_of(x);
+        const Settings found = local.confirmed(i, d);
+        if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
+    }
+    if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
+    return best ? Expected<Settings>(*best) : Expected<Settings>(none(limits));
+}
+
+std::optional<Settings> at_times(const std::vector<const LinearPlant*>& plants, const Shape& shape,
+                                 const Limits& limits, const Settings& start) {
+    Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
+    const Settings found = local.confirmed(start.Ti, start.Td);
+    return std::isfinite(found.load_IAE) ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace tunewright::built

@@ -1,0 +1,45 @@
+// The design of a controller as it is built: the least load IAE that its own law reaches within the limits, from the
+// start instead of by rounding an ideal design.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/progress.h"
+#include "engine/tuning/built/built_loop.h"
+
+namespace tunewright::built {
+
+/// What can be set: the law of a gain and two times, in the controller's own form, whatever that makes of them.
+struct Shape {
+    std::function<Law(double gain, double Ti, double Td)> law;  ///< of the gain's size; times in the plant's unit
+    bool has_integral = true, has_derivative = true;
+    double sign = 1;  ///< of the gain
+    struct Range {
+        double low = 0, high = std::numeric_limits<double>::infinity();
+        double within(double x) const { return std::clamp(x, low, high); }
+    };
+    Range gain, Ti, Td;  ///< that can be set, sizes
+};
+
+struct Settings {
+    double gain = 0, Ti = 0, Td = 0;  ///< `gain` with its sign
+    double load_IAE = 0;              ///< the search's own, to about 1e-4
+};
+
+/// Tighter limits: each M - 1 less by the share `margin`, Mks too.
+Limits within(const Limits& limits, double margin);
+
+/// By simplices over (Ti, Td), the gain at its largest within the limits, from each of `starts`, whose gains are only
+/// where the loop's frequencies are chosen at. `plants`: the nominal one first, whose load IAE counts; limits hold on
+/// all, to 1e-6. Errors: no_feasible_controller; cancelled.
+Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
+                          const std::vector<Settings>& starts, const RunControl& control);
+
+/// At the times of `start` the largest gain within the limits and its cost; empty where there is none.
+std::optional<Settings> at_times(const std::vector<const LinearPlant*>& plants, const Shape& shape,
+                                 const Limits& limits, const Settings& start);
+
+}  // namespace tunewright::built

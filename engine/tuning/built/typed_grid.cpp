@@ -1,0 +1,164 @@
+#include "engine/tuning/built/typed_grid.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace tunewright::built {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kHolds = 1e-6;    // relative excess over a limit that counts as none
+constexpr double kCoarse = 0.004;  // of a value: larger steps are worth a look at the neighbours too
+constexpr int kFarSteps = 2;       // so many steps beyond floor and ceiling, where they are coarse
+constexpr int kMostGains = 6;      // steps of the gain that are tried below the first
+constexpr double kALittle = 1.01;  // times a number, to see which way it acts
+constexpr int kTypedDigits = 4;    // of a number without a resolution of its own
+
+/// One number that can be typed.
+struct Number {
+    std::size_t at = 0;  // in the settings
+    product::Role role = product::Role::gain;
+    std::vector<double> values;  // of the gain: from where the loop is strongest to where it is weakest
+};
+
+/// The step in which a value of that size can be typed.
+double step_of(const product::Tunable& tunable, double value) {
+    if (tunable.resolution > 0) return tunable.resolution;
+    if (value == 0) return 0;
+    return std::pow(10.0, std::floor(std::log10(std::abs(value))) - (kTypedDigits - 1));
+}
+
+std::vector<double> neighbours(const product::Tunable& tunable, double value) {
+    const double step = step_of(tunable, value);
+    if (step == 0) return {value};
+    const bool coarse = step > kCoarse * std::abs(value);
+    const double below = std::floor(value / step);
+    const int more = coarse ? kFarSteps : 0;
+    std::vector<double> values;
+    for (int i = -more; i <= 1 + more; ++i) {
+        const double candidate = (below + i) * step;
+        if (candidate >= tunable.range.low && candidate <= tunable.range.high && (candidate > 0) == (value > 0))
+            values.push_back(candidate);
+    }
+    if (values.empty()) values.push_back(std::clamp(value, tunable.range.low, tunable.range.high));
+    return values;
+}
+
+/// Whether a larger number is a weaker controller: a proportional band.
+bool weakens(const Build& build, product::Settings settings, std::size_t at) {
+    double& value = std::get<double>(settings[at].value);
+    std::vector<product::Note> notes;
+    const auto before = product::to_controller(*build.product, settings, build.context, notes);
+    value *= kALittle;
+    const auto after = product::to_controller(*build.product, settings, build.context, notes);
+    return before && after && std::abs(after->Kp) < std::abs(before->Kp);
+}
+
+class Grid {
+public:
+    Grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits, Fitted near)
+        : build_(build), plants_(plants), limits_(limits), near_(std::move(near)) {
+        for (const product::Tunable& tunable : product::tunable_parameters(*build.product)) {
+            for (std::size_t i = 0; i < near_.settings.size(); ++i) {
+                const auto* value = std::get_if<double>(&near_.settings[i].value);
+                if (near_.settings[i].name != tunable.name || value == nullptr || *value == 0) continue;
+                numbers_.push_back({i, tunable.role, neighbours(tunable, *value)});
+                if (tunable.role == product::Role::gain) gain_step_ = step_of(tunable, *value);
+            }
+        }
+    }
+
+    std::optional<Fitted> best(const RunControl& control);
+
+private:
+    void look(product::Settings settings, std::size_t number);
+    void look_at_gains(product::Settings settings, const Number& gain);
+    bool consider(const product::Settings& settings);
+
+    const Build& build_;
+    const std::vector<const LinearPlant*>& plants_;
+    const Limits& limits_;
+    Fitted near_;
+    std::vector<Number> numbers_;
+    double gain_step_ = 0;
+    std::optional<Fitted> best_;
+    double least_ = kInfinity;
+};
+
+// True where the limits hold.
+bool Grid::consider(const product::Settings& settings) {
+    auto fitted = fit(build_, settings);
+    if (!fitted) return false;
+    for (const LinearPlant* plant : plants_)
+        if (!is_stable(*plant, fitted->law) || peaks_of(*plant, fitted->law).excess(limits_) > kHolds) return false;
+    const double IAE = load_iae_of(*plants_.front(), fitted->law);
+    if (IAE < least_) {
+        least_ = IAE;
+        best_ = std::move(*fitted);
+    }
+    return true;
+}
+
+// From the strongest gain down to the first that holds.
+void Grid::look_at_gains(product::Settings settings, const Number& gain) {
+    const double first = std::get<double>(settings[gain.at].value);
+    std::vector<double> values = gain.values;
+    // A proportional band runs against the gain.
+    const bool band = weakens(build_, settings, gain.at);
+    std::sort(values.begin(), values.end(),
+              [&](double a, double b) { return band ? std::abs(a) < std::abs(b) : std::abs(a) > std::abs(b); });
+    for (int i = 0; i < kMostGains; ++i) {
+        const double next = values.back() + (band ? gain_step_ : -gain_step_) * (first < 0 ? -1 : 1);
+        if ((next > 0) == (first > 0)) values.push_back(next);
+    }
+    for (const double value : values) {
+        settings[gain.at].value = value;
+        if (consider(settings)) return;
+    }
+}
+
+void Grid::look(product::Settings settings, std::size_t number) {
+    while (number < numbers_.size() && numbers_[number].role == product::Role::gain) ++number;
+    if (number == numbers_.size()) {
+        const auto gain = std::find_if(numbers_.begin(), numbers_.end(),
+                                       [](const Number& n) { return n.role == product::Role::gain; });
+        if (gain == numbers_.end())
+            consider(settings);
+        else
+            look_at_gains(std::move(settings), *gain);
+        return;
+    }
+    for (const double value : numbers_[number].values) {
+        settings[numbers_[number].at].value = value;
+        look(settings, number + 1);
+    }
+}
+
+std::optional<Fitted> Grid::best(const RunControl& control) {
+    if (!control.stop.stop_requested()) look(near_.settings, 0);
+    if (!best_) return std::nullopt;
+    best_->settings = near_.settings;
+    best_->notes = near_.notes;
+    return std::move(best_);
+}
+
+}  // namespace
+
+double number_of(const std::string& text, double otherwise) {
+    double value = otherwise;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? value : otherwise;
+}
+
+Expected<Fitted> on_grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits,
+                         Fitted near, const RunControl& control) {
+    if (auto best = Grid(build, plants, limits, std::move(near)).best(control)) return std::move(*best);
+    if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
+    return Error{ErrorKind::no_feasible_controller, "",
+                 "No settings that can be typed near the optimum keep the limits: the steps of this controller are too "
+                 "coarse for this loop. Allow a little more Ms, or use a controller with finer settings."};
+}
+
+}  // namespace tunewright::built

@@ -1,0 +1,47 @@
+#include "api/code/code.h"
+#include "server/http/negotiation.h"
+#include "server/http/problems.h"
+#include "server/routes/job_access.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::Call;
+using http::problem_response;
+using http::Response;
+
+Response code_of(const JobRecord& job, const Call& call) {
+    if (!has_ended(job.status))
+        return problem_response(409, "The job has not ended; its controllers' code is there when it has succeeded.");
+    if (job.result.empty())
+        return problem_response(
+            404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");
+    const auto written = api::controller_code({job.result, job.request}, call.path.at("index"),
+                                              {call.request.query.begin(), call.request.query.end()});
+    if (const auto* problem = std::get_if<api::Problem>(&written)) return problem_response(*problem);
+    const auto& code = std::get<api::ControllerCode>(written);
+    if (!http::accepts(call.request, code.media_type))
+        return problem_response(406, "The answer is " + code.media_type + ", which the Accept field does not allow.");
+    Response response;
+    response.body = code.text;
+    response.set("Content-Type", code.media_type + "; charset=utf-8");
+    return response.set("Content-Disposition", "attachment; filename=\"" + code.file_name + "\"");
+}
+
+Response get_code(JobService& jobs, const Call& call) {
+    const std::string& id = call.path.at("id");
+    return guarded([&] {
+        const std::optional<JobView> view = jobs.find(id);
+        if (!view || !may_see(call.request, view->job)) return no_such_job(id);
+        return code_of(view->job, call);
+    });
+}
+
+}  // namespace
+
+void add_code_routes(http::Router& router, JobService& jobs) {
+    router.add("GET", "/v1/jobs/{id}/controllers/{index}/code", [&](const Call& call) { return get_code(jobs, call); });
+}
+
+}  // namespace tunewright::server

@@ -27,20 +27,6 @@ constexpr double kEdgeTolerance = 1e-13;  // relative, of the frequency at which
 constexpr double kWorthRefining = 0.9;    // of the largest value so far: a grid point below it is no peak's top
 constexpr double kTooSmall = 0.45;        // of the largest value so far: 2 |T| cannot come near it
 
-/// L (real and negative) at some frequency: the factor 1/|L| brings it to -1.
-void note_real_crossing(Margins& margins, double real, double omega) {
-    if (!(real < 0)) return;
-    const double factor = -1 / real;
-    if (factor > 1 && factor < margins.gain_margin) {
-        margins.gain_margin = factor;
-        margins.phase_crossover = omega;
-    }
-    if (factor < 1 && factor > margins.gain_margin_low) {
-        if (margins.gain_margin == kInfinity) margins.phase_crossover = omega;
-        margins.gain_margin_low = factor;
-    }
-}
-
 void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
     double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
     if (lag >= 2 * kPi) lag -= 2 * kPi;
@@ -67,6 +53,19 @@ void note_limits(Margins& margins, const Loop& loop) {
 }
 
 }  // namespace
+
+void note_real_crossing(Margins& margins, double real, double omega) {
+    if (!(real < 0)) return;
+    const double factor = -1 / real;
+    if (factor > 1 && factor < margins.gain_margin) {
+        margins.gain_margin = factor;
+        margins.phase_crossover = omega;
+    }
+    if (factor < 1 && factor > margins.gain_margin_low) {
+        if (margins.gain_margin == kInfinity) margins.phase_crossover = omega;
+        margins.gain_margin_low = factor;
+    }
+}
 
 Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid) {
     Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};

@@ -27,6 +27,9 @@ Margins find_margins(const Loop& loop, const LoopGrid& grid);
 /// Of any loop, from its gain as a function of omega: crossings within the grid, without the limits at its ends.
 Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid);
 
+/// L is `real` at some frequency, perhaps at an end of the axis: the factor -1/L brings it to -1.
+void note_real_crossing(Margins& margins, double real, double omega);
+
 /// A gain and the period at which the loop oscillates with it.
 struct UltimatePoint {
     double Ku = 0;  ///< of the sign of the feedback that oscillates

@@ -73,14 +73,14 @@ double PidProgram::step(double r, double y) {
     const auto within = [&](double u) {
         return limits_.output ? std::clamp(u, limits_.output->min, limits_.output->max) : u;
     };
-    double u = law_.velocity ? u_ + (P - P_) + increment + (D - D_before) : P + I_ + increment + D;
+    const double u = law_.velocity ? u_ + (P - P_) + increment + (D - D_before) : P + I_ + increment + D;
     const bool drives_further = u != within(u) && (u > within(u)) == (increment > 0);
     if (!drives_further) I_ += increment;
-    if (!law_.velocity) u = P + I_ + D;
     u_ = within(u);
     P_ = P;
     e_ = e;
-    return rounded(u_, limits_.u_resolution);
+    const double given = rounded(u_, limits_.u_resolution), beyond = given - within(given);
+    return beyond == 0 ? given : given - std::copysign(limits_.u_resolution, beyond);  // the last multiple within
 }
 
 }  // namespace tunewright

@@ -10,11 +10,12 @@ namespace tunewright {
 
 /// What a program has beside the linear law.
 struct ProgramLimits {
-    std::optional<ActuatorLimits> output;  ///< of u, deviations. Its integral waits while u is at a limit and it would
-                                           ///< drive u further; a velocity algorithm has nothing that winds up
-    double u_resolution = 0;               ///< >= 0: u is rounded to a multiple of it; 0: it is not
-    double y_resolution = 0;               ///< >= 0: y is read as a multiple of it
-    double dead_band = 0;                  ///< >= 0: a smaller |r - y| counts as none
+    std::optional<ActuatorLimits>
+        output;               ///< of u, deviations. Its integral waits while it would drive u beyond a
+                              ///< limit, which u is at meanwhile; a velocity algorithm has nothing that winds up
+    double u_resolution = 0;  ///< >= 0: u is rounded to a multiple of it, within the limits
+    double y_resolution = 0;  ///< >= 0: y is read as a multiple of it
+    double dead_band = 0;     ///< >= 0: a smaller |r - y| counts as none
 
     bool linear() const { return !output && u_resolution == 0 && y_resolution == 0 && dead_band == 0; }
 };

@@ -133,6 +133,12 @@ LoopGrid SampledLoop::grid() const {
     return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep)) : grid;
 }
 
+// The steps between neighbours of the grid: one, unless z and the dead time turn far between them.
+int SampledLoop::looks_between(double left, double right) const {
+    const double turn = (right - left) * (law_.Ts * (plant_.whole_samples() + 1) + plant_.rest());
+    return turn < kLongTurn ? 1 : static_cast<int>(std::ceil(turn / kTurnStep));
+}
+
 // Where S moves little from point to point, the dead time may still turn L between them, and C S with it: |1 + L| is at
 // least |1 - |L||. Looks there where that lets a peak be higher.
 void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
@@ -140,10 +146,9 @@ void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
         double left, right, S, T, CS;  // what its peaks can be at most
     };
     std::vector<Stretch> stretches;
-    const double turns = law_.Ts * (plant_.whole_samples() + 1) + plant_.rest();
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        if ((right - left) * turns < kLongTurn) continue;
+        if (looks_between(left, right) == 1) continue;
         const LoopPoint &a = grid.point[i - 1], &b = grid.point[i];
         const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
         if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
@@ -159,7 +164,7 @@ void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
         for (const Stretch& s : stretches) {
             if (s.*bound <= best.value * (1 + kNoGain)) return;
             const auto f = [&](double omega) { return value(at(omega)); };
-            const int looks = static_cast<int>(std::ceil((s.right - s.left) * turns / kTurnStep));
+            const int looks = looks_between(s.left, s.right);
             const double step = (s.right - s.left) / looks;
             double before = f(s.left), here = f(s.left + step);
             for (int k = 1; k < looks; ++k) {
@@ -197,8 +202,29 @@ Peaks SampledLoop::peaks(const LoopGrid& grid) const {
     return peaks;
 }
 
+// L crosses the real axis once every turn, also where the grid follows S alone: looks there wherever such a crossing
+// could bound the gain more closely.
 Margins SampledLoop::margins(const LoopGrid& grid) const {
-    return find_interior_margins([&](double omega) { return open_loop(omega); }, grid);
+    const auto L = [&](double omega) { return open_loop(omega); };
+    const Margins on_grid = find_interior_margins(L, grid);
+    LoopGrid fine{{grid.omega.front()}, {grid.point.front()}, grid.resolved_to};
+    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
+        const double left = grid.omega[i - 1], right = grid.omega[i];
+        const double a = magnitude(grid.point[i - 1].L), b = magnitude(grid.point[i].L);
+        const bool bounds = std::max(a, b) * on_grid.gain_margin > 1 && std::min(a, b) * on_grid.gain_margin_low < 1;
+        const int looks = bounds ? looks_between(left, right) : 1;
+        for (int k = 1; k < looks; ++k) {
+            fine.omega.push_back(left + k * (right - left) / looks);
+            fine.point.push_back(at(fine.omega.back()));
+        }
+        fine.omega.push_back(right);
+        fine.point.push_back(grid.point[i]);
+    }
+    Margins margins = find_interior_margins(L, fine);
+    // At both ends L is real.
+    note_real_crossing(margins, grid.point.back().L.real(), grid.omega.back());
+    if (finite_at_zero()) note_real_crossing(margins, L(0).real(), 0);
+    return margins;
 }
 
 namespace {

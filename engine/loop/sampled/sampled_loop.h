@@ -46,6 +46,7 @@ private:
     bool finite_at_zero() const;
     LoopGrid grid_from(double step) const;
     LoopPoint at_zero() const;  // the limit, S = 0 with an integrator
+    int looks_between(double left, double right) const;
     void raise_by_turns(const LoopGrid& grid, Peaks& peaks) const;
 
     HeldPlant plant_;

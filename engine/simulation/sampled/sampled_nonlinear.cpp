@@ -26,6 +26,7 @@ public:
         : law_(law),
           in_(inputs),
           options_(options),
+          output_(limits.output),
           program_(law, limits),
           plant_(system, kTolerance),
           recorder_(response_, recording_, inputs.r),
@@ -37,20 +38,23 @@ private:
     bool run_to(double t);
     bool advance(double t);
     bool slope_jumped(const StepPolynomial& y) const;
-    void note(double t, double u_before);
+    bool at_limit() const { return output_ && (u_ <= output_->min || u_ >= output_->max); }
+    void note(double t);
 
     const SampledPid law_;
     const StepInputs in_;
     const SampledOptions options_;
+    const std::optional<ActuatorLimits> output_;
     PidProgram program_;
     PlantRun plant_;
     NonlinearResponse response_;
     NonlinearOptions recording_;
     ResponseRecorder recorder_;
     StoppingRule rule_;
-    std::deque<Given> outputs_;  // computed, not given out yet
-    double u_ = 0;               // given out
-    double y_before_ = 0, size_y_ = 0, size_u_ = 0, first_size_ = 0;
+    std::deque<Given> outputs_;         // computed, not given out yet
+    double u_ = 0;                      // given out
+    double y_quiet_ = 0, u_quiet_ = 0;  // near which y and u have stayed since they last moved
+    double size_y_ = 0, size_u_ = 0, first_size_ = 0;
 };
 
 // What arrives behind the dead time bends y at once where the plant's relative degree is one.
@@ -82,13 +86,18 @@ bool NonlinearRun::run_to(double t) {
     return advance(t);
 }
 
-// With integral action y comes to rest at r; without it where it stays.
-void NonlinearRun::note(double t, double u_before) {
-    const double y = plant_.y(), distance = law_.gains.Ki != 0 ? y - in_.r : y - y_before_;
+// With integral action y comes to rest at r; without it, and at a limit, where it stays.
+void NonlinearRun::note(double t) {
+    const double y = plant_.y();
     size_y_ = std::max({size_y_, std::abs(y), std::abs(in_.r)});
     size_u_ = std::max({size_u_, std::abs(u_), std::abs(in_.d)});
-    rule_.note(t, std::abs(distance), size_y_, std::abs(u_ - u_before), size_u_);
-    y_before_ = y;
+    const double moved = std::abs(y - y_quiet_), moved_u = std::abs(u_ - u_quiet_);
+    const bool to_r = law_.gains.Ki != 0 && !at_limit();
+    rule_.note(t, to_r ? std::abs(y - in_.r) : moved, size_y_, moved_u, size_u_);
+    if (moved > options_.settled * size_y_ || moved_u > options_.settled * size_u_) {
+        y_quiet_ = y;
+        u_quiet_ = u_;
+    }
 }
 
 StepResponse NonlinearRun::result() {
@@ -96,19 +105,20 @@ StepResponse NonlinearRun::result() {
     loop.settles = false;
     if (in_.d != 0) plant_.give(in_.d);
     for (int k = 0; k < options_.most_samples; ++k) {
-        const double t = (k + 1) * law_.Ts, u_before = u_;
+        const double t = (k + 1) * law_.Ts;
         outputs_.push_back({k * law_.Ts + law_.computation_delay, program_.step(in_.r, plant_.y())});
         if (!run_to(t)) break;
-        note(t, u_before);
+        note(t);
         if (k < kFewSamples) first_size_ = std::max(size_y_, size_u_);
         if (!(size_u_ <= kEscaped * first_size_)) break;
         loop.settles = options_.horizon ? t >= *options_.horizon : rule_.has_settled(t);
         if (loop.settles) break;
     }
-    loop.y_final = law_.gains.Ki != 0 && loop.settles ? in_.r : plant_.y();
+    const bool at_r = law_.gains.Ki != 0 && loop.settles && !at_limit();
+    loop.y_final = at_r ? in_.r : plant_.y();
     loop.u_final = u_;
     if (loop.nodes.empty()) loop.nodes.push_back({});
-    if (loop.settles && law_.gains.Ki != 0) loop.error_integral_final = loop.nodes.back().error_integral;
+    if (at_r) loop.error_integral_final = loop.nodes.back().error_integral;
     return std::move(loop);
 }
 

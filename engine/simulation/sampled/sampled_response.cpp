@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "engine/loop/sampled/held_plant.h"
@@ -13,13 +14,16 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMostHalvings = 12;  // of a piece, before a node is set whatever the cubic says
-constexpr int kRestSamples = 10;   // beyond the dead time: the least that a response must have rested for
+constexpr int kMostHalvings = 12;      // of a piece, before a node is set whatever the cubic says
+constexpr double kLook = 0.309;        // of a piece: where swings that the middle meets at the same place are not
+constexpr double kRestOnLimit = 1e-9;  // of u at rest: nearer to a limit it is within
+constexpr int kRestSamples = 10;       // beyond the dead time: the least that a response must have rested for
 
 /// Where the linear loop rests.
 struct Rest {
     bool exists = false;
     double y = 0, u = 0;
+    bool at_limit = false;
 };
 
 Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
@@ -33,12 +37,21 @@ Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInput
     return {std::isfinite(y), y, u0 - gains.Kp * y};
 }
 
+/// The same with the program's limits: beyond one of them the plant rests where the limit leaves it.
+Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::optional<ActuatorLimits>& limits, double d) {
+    if (!limits || !linear.exists) return linear;
+    const double u = std::clamp(linear.u, limits->min, limits->max);
+    if (std::abs(u - linear.u) <= kRestOnLimit * std::abs(linear.u)) return linear;
+    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return {};
+    return {true, plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (u + d), u, true};
+}
+
 /// A piece of a sample period within which the plant's input and the output's value are constant.
 struct Piece {
-    double from = 0;  // time into the period
-    HeldMotion motion;
-    bool arrived;  // u_{k-d} drives the plant here; before it u_{k-d-1}
-    bool given;    // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
+    double from = 0;          // time into the period
+    HeldMotion motion, look;  // the latter to kLook of it
+    bool arrived;             // u_{k-d} drives the plant here; before it u_{k-d-1}
+    bool given;  // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
 };
 
 class SampledRun {
@@ -54,8 +67,9 @@ private:
     double past(int k) const { return k < 0 ? 0 : u_[static_cast<Index>(k)]; }
     void sample(int k);
     void run_period(int k);
-    void run_piece(Piece& piece, int level, double t, double v, double u);
+    void run_piece(Piece& piece, int level, double t, double t_end, double v, double u);
     void add_node(double t, double v, double u);
+    bool swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end, double v);
     void note(double t);
 
     const SampledPid law_;
@@ -70,6 +84,7 @@ private:
     std::vector<double> u_;
     double largest_y_ = 0, largest_u_ = 0, scale_ = 0;
     double last_v_ = 0;
+    double fastest_swing_ = 0;  // rad/time, of the plant's poles
     StoppingRule rule_;
     StepResponse response_;
 };
@@ -83,11 +98,12 @@ SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const Pr
       to_plant_(in_samples(plant.dead_time() + law.computation_delay, law.Ts)),
       computed_(in_samples(law.computation_delay, law.Ts)),
       load_(in_samples(plant.dead_time(), law.Ts)),
-      rest_(rest_of(plant, law.gains, inputs)),
+      rest_(rest_within(plant, rest_of(plant, law.gains, inputs), limits.output, inputs.d)),
       reader_(plant),
       pieces_(pieces(plant)),
       rule_(options.settled, (to_plant_.whole + kRestSamples) * law.Ts) {
     state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
+    for (const auto pole : plant.poles()) fastest_swing_ = std::max(fastest_swing_, pole.imag());
 }
 
 std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
@@ -95,9 +111,11 @@ std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
     std::sort(borders.begin(), borders.end());
     borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     std::vector<Piece> made;
-    for (Index i = 0; i + 1 < borders.size(); ++i)
-        made.push_back({borders[i], HeldMotion(plant, borders[i + 1] - borders[i]), borders[i] >= to_plant_.rest,
+    for (Index i = 0; i + 1 < borders.size(); ++i) {
+        const double h = borders[i + 1] - borders[i];
+        made.push_back({borders[i], HeldMotion(plant, h), HeldMotion(plant, kLook * h), borders[i] >= to_plant_.rest,
                         borders[i] >= computed_.rest});
+    }
     return made;
 }
 
@@ -108,37 +126,52 @@ void SampledRun::add_node(double t, double v, double u) {
     largest_u_ = std::max(largest_u_, std::abs(u));
 }
 
+// Whole swings between a piece's ends and its middle are seen in neither.
+bool SampledRun::swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end,
+                        double v) {
+    const double h = std::ldexp(piece.motion.length(), -level), s = kLook, r = 1 - s;
+    piece.look.advance(start, v, level);
+    const double y = reader_.at(start.x, v).y;
+    const double cubic =
+        r * r * (1 + 2 * s) * left.y + s * s * (1 + 2 * r) * end.y + h * s * r * (r * left.y_slope - s * end.slope);
+    return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
+}
+
 // From the last node over 2^-level of the piece: a node at its end, and more within where a cubic would not do.
-void SampledRun::run_piece(Piece& piece, int level, double t, double v, double u) {
+void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, double v, double u) {
     const ResponseNode left = response_.nodes.back();
     const HeldState start = state_;
     const double h = std::ldexp(piece.motion.length(), -level);
     piece.motion.advance(state_, v, level + 1);
     const double y_middle = reader_.at(state_.x, v).y;
-    const HeldState middle = state_;
     piece.motion.advance(state_, v, level + 1);
     const HeldOutput end = reader_.at(state_.x, v);
     const double cubic = 0.5 * (left.y + end.y) + 0.125 * h * (left.y_slope - end.slope);
     const double scale = std::max(largest_y_, std::abs(y_middle));
-    if (std::abs(cubic - y_middle) > options_.tolerance * scale && level < kMostHalvings) {
+    const bool bent = std::abs(cubic - y_middle) > options_.tolerance * scale ||
+                      (h * fastest_swing_ > std::numbers::pi && swings(piece, level, start, left, end, v));
+    if (bent && level < kMostHalvings) {
         state_ = start;
-        run_piece(piece, level + 1, t, v, u);
-        run_piece(piece, level + 1, t + 0.5 * h, v, u);
+        const double t_middle = 0.5 * (t + t_end);
+        run_piece(piece, level + 1, t, t_middle, v, u);
+        run_piece(piece, level + 1, t_middle, t_end, v, u);
         return;
     }
-    add_node(t + h, v, u);
+    add_node(t_end, v, u);
 }
 
 void SampledRun::run_period(int k) {
-    const double t_k = k * law_.Ts;
-    for (Piece& piece : pieces_) {
-        const double t = t_k + piece.from;
+    for (Index i = 0; i < pieces_.size(); ++i) {
+        Piece& piece = pieces_[i];
+        // The very numbers from which the next piece, and the next period, begin.
+        const double t = k * law_.Ts + piece.from;
+        const double t_end = i + 1 < pieces_.size() ? k * law_.Ts + pieces_[i + 1].from : (k + 1) * law_.Ts;
         const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
         const double v = input(k, piece.arrived) + (loaded ? in_.d : 0), u = output(k, piece.given);
         const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
         if (jumps) add_node(t, v, u);
         last_v_ = v;
-        run_piece(piece, 0, t, v, u);
+        run_piece(piece, 0, t, t_end, v, u);
     }
 }
 
@@ -168,7 +201,8 @@ StepResponse SampledRun::result() {
     }
     response_.y_final = rest_.y;
     response_.u_final = rest_.u;
-    if (response_.settles && law_.gains.Ki != 0) response_.error_integral_final = response_.nodes.back().error_integral;
+    if (response_.settles && law_.gains.Ki != 0 && !rest_.at_limit)
+        response_.error_integral_final = response_.nodes.back().error_integral;
     return std::move(response_);
 }
 

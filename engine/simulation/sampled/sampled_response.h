@@ -25,7 +25,8 @@ struct SampledOptions {
 
 /// `u` of the nodes is what the program gives out, held, from the end of its computation delay on. `settles` is false
 /// where `most_samples` came first, or where y is beyond any use. `error_integral_final` is what has been integrated
-/// when y is at rest; with integral action only. No errors: an unstable loop grows until it ends.
+/// when y is at rest; with integral action only, and not where u rests at a limit. No errors: an unstable loop grows
+/// until it ends.
 StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
                               const StepInputs& inputs, const SampledOptions& options);
 

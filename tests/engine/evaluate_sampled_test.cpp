@@ -1,0 +1,76 @@
+#include "engine/evaluation/evaluate_sampled.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/loop/loop.h"
+#include "engine/loop/sampled/sampled_loop.h"
+#include "engine/loop/stability.h"
+#include "tests/engine/loop/sampled_cases.h"
+#include "tests/engine/plant/subject_of.h"
+
+namespace tunewright {
+namespace {
+
+using namespace test;
+
+struct ContinuousLoop {
+    std::string name;
+    LinearPlant plant;
+    OwnPlant own;
+    ParallelPid gains;
+    Peak S;
+};
+
+/// Loops of the searches' random plants with random gains, stable, with Ms below 3.
+std::vector<ContinuousLoop> continuous_loops(int count) {
+    std::vector<ContinuousLoop> found;
+    Random random(11);
+    for (std::uint64_t seed = 1; static_cast<int>(found.size()) < count; ++seed) {
+        const RandomPlant drawn = random_plant(seed, seed % 4 == 0);
+        LinearPlant plant = *LinearPlant::make(drawn.plant);
+        for (int i = 0; i < 200; ++i) {
+            ParallelPid g;
+            g.Kp = random.log_uniform(0.05, 10) / plant.low_frequency_gain();
+            g.Ki = random.one_in(8) ? 0 : g.Kp / (plant.time_scale() * random.log_uniform(0.2, 3));
+            const bool derivative = random.one_in(2);
+            g.Kd = derivative ? g.Kp * plant.time_scale() * random.log_uniform(0.03, 0.3) : 0;
+            if (derivative) g.filter = {static_cast<FilterType>(random.whole(1, 3)), g.Kd / g.Kp / random.uniform(2, 10)};
+            const auto loop = Loop::make(plant, g);
+            if (!loop || !count_unstable_poles(*loop).stable()) continue;
+            const Peak S = find_peaks(*loop, make_peak_grid(*loop)).S;
+            if (S.value > 3 || S.value < 1.05 || !std::isfinite(S.omega)) continue;
+            found.push_back({drawn.description, plant,
+                             OwnPlant(with_roots(drawn.plant.zeros, drawn.plant.K), with_roots(drawn.plant.poles, 1)), g, S});
+            break;
+        }
+    }
+    return found;
+}
+
+double sampled_Ms(const ContinuousLoop& loop, double Ts) {
+    const SampledLoop sampled(loop.plant, {.gains = loop.gains, .Ts = Ts});
+    return sampled.count_unstable_poles().stable() ? sampled.peaks(sampled.grid()).S.value : INFINITY;
+}
+
+TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
+    int looked_at = 0, by_pulse = 0;
+    for (const ContinuousLoop& loop : continuous_loops(100)) {
+        SCOPED_TRACE(loop.name);
+        const auto Ts = longest_sample_time(loop.plant, loop.gains, loop.S.value, loop.S.omega, 1.05);
+        if (!Ts) { printf("none: %s Ms %g at %g; at 1e-3: %g\n", loop.name.c_str(), loop.S.value, loop.S.omega, sampled_Ms(loop, 1e-3/loop.S.omega)/loop.S.value); continue; }
+        ++looked_at;
+        EXPECT_NEAR(sampled_Ms(loop, *Ts) / loop.S.value, 1.05, 1.1e-3) << *Ts * loop.S.omega;
+        for (double share = 0.97; share * *Ts > 2e-3 / loop.S.omega; share *= 0.8)
+            EXPECT_LT(sampled_Ms(loop, *Ts * share) / loop.S.value, 1.0511) << share;
+        const auto pulse = pulse_response_of(OwnLoop(loop.own, loop.plant.dead_time(), {.gains = loop.gains, .Ts = *Ts}),
+                                             20000, int(loop.plant.dead_time() / *Ts));
+        if (!pulse || pulse->S.size() > 3000) continue;
+        ++by_pulse;
+        EXPECT_NEAR(peaks_of(*pulse).S / loop.S.value, 1.05, 1.1e-3);
+    }
+    EXPECT_GT(looked_at, 90);
+    EXPECT_GT(by_pulse, 50);
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -14,13 +14,14 @@
 namespace tunewright {
 namespace {
 
-constexpr double kPeakMoves = 4;      // a sampled loop's peak lies within this factor of the continuous one's
-constexpr double kFirstSample = 0.1;  // of 1/omega_Ms: where the search for the longest sample time starts
-constexpr double kShortest = 1e-3;    // of 1/omega_Ms
-constexpr double kLongest = 1e3;      // of 1/omega_Ms: where it ends
-constexpr double kShorter = 0.9;      // of a sample time that the whole loop does not bear
-constexpr double kSampleTolerance = 3e-4;
-constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may lie above that near the peak
+constexpr double kFirstSample = 0.1;   // of 1/omega_Ms: where the search for the longest sample time starts
+constexpr double kShortest = 1e-3;     // of 1/omega_Ms
+constexpr double kLongest = 1e3;       // of 1/omega_Ms: where it ends
+constexpr double kShorter = 0.6;       // of a sample time: a shorter one that the whole loop must bear too
+constexpr double kLightDamping = 0.5;  // of a pole
+constexpr double kNext = 1.1;          // from one sample time to the next, where they are looked at one by one
+constexpr double kSampleTolerance = 5e-5;
+constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may be from that of the guess
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
 
@@ -116,6 +117,13 @@ private:
     double omega_;
 };
 
+/// A lightly damped mode is sampled well and badly in turns as the sample time grows.
+bool resonates(const LinearPlant& plant) {
+    return std::ranges::any_of(plant.poles(), [](std::complex<double> pole) {
+        return std::abs(pole.real()) < kLightDamping * std::abs(pole);
+    });
+}
+
 double whole_peak(const LinearPlant& plant, const ParallelPid& gains, double Ts) {
     const SampledLoop loop(plant, {.gains = gains, .Ts = Ts});
     const LoopGrid grid = loop.grid();
@@ -127,22 +135,27 @@ double whole_peak(const LinearPlant& plant, const ParallelPid& gains, double Ts)
 
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor) {
+    const double f_0 = -std::log(factor), longest = kLongest / omega_Ms;
+    const auto whole = [&](double Ts) { return std::log(whole_peak(plant, gains, Ts) / (factor * Ms)); };
+    // Where nothing resonates the continuous loop's own peak decides: a guess from it alone, which the whole loop
+    // confirms.
     TrackedPeak peak(plant, gains, omega_Ms);
-    const auto excess = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
-    const double longest = kLongest / omega_Ms;
-    double low = 0, f_low = -std::log(factor), high = kFirstSample / omega_Ms, f_high = excess(high);
-    while (f_high <= 0 && high < longest) {
+    const auto near_peak = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
+    double high = kFirstSample / omega_Ms, f_high = near_peak(high);
+    while (f_high <= 0 && high < longest) f_high = near_peak(high *= 2);
+    if (f_high > 0 && !resonates(plant)) {
+        const double guess = root_between(near_peak, 0, high, f_0, f_high, kSampleTolerance * high);
+        if (std::abs(whole(guess)) <= kWholeLoop && whole(kShorter * guess) <= 0) return guess;
+    }
+    // Otherwise the first sample time, from short ones on, that the whole loop does not bear.
+    double low = kShortest / omega_Ms, f_low = whole(low);
+    if (f_low > 0) return std::nullopt;
+    for (high = low * kNext; (f_high = whole(high)) <= 0; high *= kNext) {
+        if (high > longest) return std::nullopt;
         low = high;
         f_low = f_high;
-        high *= 2;
-        f_high = excess(high);
     }
-    if (f_high <= 0) return std::nullopt;
-    double found = root_between(excess, low, high, f_low, f_high, kSampleTolerance * high);
-    // Another peak, or a loop that is unstable: shorter until the whole loop says the same.
-    const double shortest = kShortest / omega_Ms;
-    while (found > shortest && !(whole_peak(plant, gains, found) <= factor * Ms * (1 + kWholeLoop))) found *= kShorter;
-    return found > shortest ? std::optional(found) : std::nullopt;
+    return root_between(whole, low, high, f_low, std::min(f_high, 1.0), kSampleTolerance * high);
 }
 
 }  // namespace tunewright

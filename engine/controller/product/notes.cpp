@@ -13,7 +13,7 @@ constexpr double kSame = 1e-9;
 
 bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
 
-std::string with_text(std::string sentence, std::string_view text) {
+std::string with_text(const std::string& sentence, std::string_view text) {
     return text.empty() ? sentence : sentence + " " + std::string(text);
 }
 
@@ -37,7 +37,7 @@ void note_weights(const Comparison& it, std::vector<Note>& notes) {
     sentence += " where the design has b = " + text(it.asked.b);
     if (derivative) sentence += ", c = " + text(it.asked.c);
     sentence += "; the answer to loads does not depend on them.";
-    notes.push_back({"setpoint-weights", with_text(std::move(sentence), it.product.weights.text)});
+    notes.push_back({"setpoint-weights", with_text(sentence, it.product.weights.text)});
     const std::string prefilter = setpoint_prefilter(it.asked, it.realised);
     if (prefilter.empty()) return;
     notes.push_back({"prefilter", "A filter of the set point before the block restores the design's answer to it: " +
@@ -98,7 +98,7 @@ void note_filter(const Comparison& it, std::vector<Note>& notes) {
     } else if (realised.type == FilterType::none && kind != FilterKind::unknown) {
         sentence += " Filter the measurement before the block, and tune with that filter.";
     }
-    notes.push_back({"filter", with_text(std::move(sentence), it.product.filter.text)});
+    notes.push_back({"filter", with_text(sentence, it.product.filter.text)});
 }
 
 void note_rounding(const Comparison& it, std::vector<Note>& notes) {

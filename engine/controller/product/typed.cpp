@@ -54,7 +54,7 @@ std::optional<Error> wrong_value(const Product& product, const Parameter& parame
     if (parameter.shape == Shape::alpha_code) {
         if (decoded_alpha(value)) return std::nullopt;
         return fault(product, parameter.name,
-                     "is " + text_of(value) + "; it must be \"000\", or \"100\" to \"199\" for alpha 0 to 0.99.");
+                     "is " + text_of(value) + R"(; it must be "000", or "100" to "199" for alpha 0 to 0.99.)");
     }
     if (parameter.shape == Shape::constant) {
         return parameter.standard ? wrong_choice(product, parameter.name, value, {*parameter.standard}) : std::nullopt;

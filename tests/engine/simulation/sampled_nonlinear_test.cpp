@@ -1,4 +1,4 @@
-#include "engine/simulation/sampled/sampled_nonlinear.h"
+#include "engine/simulation/sampled/sampled_response.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // The user's own controller: which product, with which spans and sample time. The browser keeps it for later designs.
-import type { Implement, Need, Span } from "./api/products.ts";
+import type { Implement, Need, ProductSummary, SettingValue, Span } from "./api/products.ts";
+import type { TypedBaseline } from "./api/types.ts";
+import { productTitle } from "./words/products.ts";
 
 export interface MyController {
   product: string;
@@ -35,6 +37,44 @@ export function sameImplement(a: Implement | null | undefined, b: Implement | nu
       implement ? [implement.product, implement.y_span, implement.u_span, implement.sample_time].map((x) => x ?? null) : null,
     );
   return told(a) === told(b);
+}
+
+/** What a request was made for; the one at hand where it names none. A request knows neither name nor needs. */
+export function mineOfRequest(implement: Implement | undefined, mine: MyController | null): MyController | null {
+  const { product, y_span, u_span, sample_time } = implement ?? {};
+  if (product === undefined) return mine;
+  const same = product === mine?.product;
+  return {
+    product,
+    name: same ? mine.name : product,
+    needs: same ? mine.needs : [],
+    ...(y_span ? { y_span } : {}),
+    ...(u_span ? { u_span } : {}),
+    ...(sample_time !== undefined ? { sample_time } : {}),
+  };
+}
+
+/** With name and needs as they are listed. */
+export function named(mine: MyController | null, products: readonly ProductSummary[]): MyController | null {
+  const product = products.find((item) => item.id === mine?.product);
+  if (!mine || !product) return mine;
+  const name = productTitle(product);
+  const same = mine.name === name && JSON.stringify(mine.needs) === JSON.stringify(product.needs);
+  return same ? mine : { ...mine, name, needs: product.needs };
+}
+
+/** Today's settings in it: a baseline names spans and sample time as `implement` does. */
+export function typedBaseline(
+  { product, y_span, u_span, sample_time }: Pick<MyController, "product" | "y_span" | "u_span" | "sample_time">,
+  settings: Record<string, SettingValue>,
+): TypedBaseline {
+  return {
+    product,
+    settings,
+    ...(y_span ? { y_span } : {}),
+    ...(u_span ? { u_span } : {}),
+    ...(sample_time !== undefined ? { sample_time } : {}),
+  };
 }
 
 export function rememberMine(mine: MyController | null): void {

@@ -6,7 +6,7 @@ import { lawFormulas } from "../../../web/src/form/law.ts";
 /** A formula as text again: fractions with a colon, so that they show what stands above and below. */
 function told(tree: TreeNode | string): string {
   if (typeof tree === "string") return tree;
-  const parts = (tree.children ?? []).map(told);
+  const parts = (tree.children ?? []).map(told).filter((part) => part !== "" && part !== "\u2062");
   if (tree.tag === "mfrac") return `{${parts[0]} : ${parts[1]}}`;
   return parts.join(tree.tag === "mrow" || tree.tag === "math" ? " " : "");
 }
@@ -27,6 +27,12 @@ test("a lead of leads keeps its brackets", () => {
   assert.deepEqual(formulas("OUT = GAIN (1 + 1/(RESET s)) (SP - ((RATE s + 1)/(ALPHA RATE s + 1)) PV)"), [
     "OUT = GAIN ( 1 + {1 : RESET s} ) ( SP − {RATE s + 1 : ALPHA RATE s + 1} PV )",
   ]);
+});
+
+test("factors are multiplied, not run together, and powers stand above", () => {
+  const [formula] = lawFormulas("y = ALPHA RATE s") ?? [];
+  assert.equal(JSON.stringify(formula).split("\u2062").length - 1, 2);
+  assert.deepEqual(formulas("y = PV/(1 + Tf s + (Tf s)^2/2)"), ["y = {PV : 1 + Tf s + {( Tf s )2 : 2}}"]);
 });
 
 test("several equations, and words among them", () => {

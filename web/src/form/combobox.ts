@@ -35,9 +35,9 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   let active = -1;
   const field = textField(options, errors);
   const { input } = field;
-  const list = h("ul", { class: "options", role: "listbox", id: uniqueId("options"), "aria-label": options.label });
+  const list = h("ul", { class: "finds", role: "listbox", id: uniqueId("options"), "aria-label": options.label });
   const count = h("p", { class: "visually-hidden", role: "status" });
-  const none = h("p", { class: "options none", hidden: true });
+  const none = h("p", { class: "finds none", hidden: true });
   const element = h("div", { class: "combobox" }, field.element, count);
   list.hidden = true;
   // The list hangs below the field, above its hint.
@@ -126,8 +126,9 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
     } else if (event.key === "Enter") {
       if (!isOpen()) return;
       event.preventDefault();
-      if (input.value.trim() === "" && active < 0) take(null);
-      else if (found[active]) take(found[active]);
+      const choice = found[active];
+      if (choice) take(choice);
+      else if (input.value.trim() === "") take(null);
     } else if (event.key === "Escape" && isOpen()) {
       event.preventDefault();
       input.value = chosen?.text ?? "";

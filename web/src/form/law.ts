@@ -8,7 +8,7 @@ type Token = { kind: "number" | "symbol" | "sign"; text: string };
 /** null: a character that no law has. */
 function tokens(text: string): Token[] | null {
   const found: Token[] = [];
-  const pattern = /\s*(?:(\d+(?:\.\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+/()[\]=]))/y;
+  const pattern = /\s*(?:(\d+(?:\.\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+/^()[\]=]))/y;
   const tidy = text.trim();
   while (pattern.lastIndex < tidy.length) {
     const match = pattern.exec(tidy);
@@ -23,6 +23,8 @@ function tokens(text: string): Token[] | null {
 
 const CLOSING: Record<string, string> = { "(": ")", "[": "]" };
 const mo = (sign: string): TreeNode => node("mo", {}, sign);
+/** Between two factors: names of several letters need the space. */
+const times = (): TreeNode => node("mo", { lspace: "0", rspace: "0.22em" }, "\u2062");
 const row = (children: TreeNode[]): TreeNode => (children.length === 1 ? children[0]! : node("mrow", {}, ...children));
 
 /** What stands between two brackets, and they themselves where they must stay. */
@@ -67,12 +69,12 @@ class Parser {
   private quotient(): TreeNode[] | null {
     const top = this.factors();
     if (!top) return null;
-    if (!this.take("/")) return top.flatMap(shown);
+    if (!this.take("/")) return product(top);
     const bottom = this.factors(1);
     if (!bottom) return null;
     const fraction = node("mfrac", {}, row(bare(top)), row(bare(bottom)));
     const rest = this.factors();
-    return rest ? [fraction, ...rest.flatMap(shown)] : [fraction];
+    return rest ? [fraction, times(), ...product(rest)] : [fraction];
   }
 
   private factors(most = Infinity): Factor[] | null {
@@ -80,7 +82,8 @@ class Parser {
     while (parts.length < most) {
       const part = this.factor();
       if (!part) break;
-      parts.push(part);
+      const power = this.take("^") ? this.factor() : null;
+      parts.push(power ? raised(part, power) : part);
     }
     return parts.length > 0 ? parts : null;
   }
@@ -109,9 +112,18 @@ class Parser {
 const shown = ({ inside, brackets, holds }: Factor): TreeNode[] =>
   brackets && !holds ? [mo(brackets[0]), inside, mo(brackets[1])] : [inside];
 
+const product = (factors: Factor[]): TreeNode[] =>
+  factors.flatMap((factor, index) => (index === 0 ? shown(factor) : [times(), ...shown(factor)]));
+
+const raised = (base: Factor, power: Factor): Factor => ({
+  inside: node("msup", {}, row(shown(base)), row(shown(power))),
+  brackets: null,
+  holds: false,
+});
+
 /** Above or below a fraction's line, where the line replaces the brackets of a lone factor. */
 const bare = (factors: Factor[]): TreeNode[] =>
-  factors.length === 1 ? [factors[0]!.inside] : factors.flatMap(shown);
+  factors.length === 1 ? [factors[0]!.inside] : product(factors);
 
 /** Commas outside brackets separate equations; a last remark in brackets is words. */
 function parts(law: string): string[] {

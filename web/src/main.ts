@@ -1,11 +1,13 @@
 // Starts the page: header, routes, the job that is followed, and what happens when something unforeseen goes wrong.
 import { getExamples, getJob, getMethods, getRecentJobs, postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { askForKeyWith } from "./api/key.ts";
+import { getProducts } from "./api/products.ts";
 import { isFinal } from "./api/types.ts";
 import type { FieldError, IdentifyRequest, Job, TuningRequest } from "./api/types.ts";
 import { h } from "./dom.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
+import { rememberedMine } from "./my_controller.ts";
 import { formatRoute, parseRoute } from "./routes.ts";
 import type { Route } from "./routes.ts";
 import { createStore } from "./store.ts";
@@ -29,6 +31,8 @@ const store = createStore({
   sort: "",
   test: null,
   methods: [],
+  products: [],
+  mine: rememberedMine(),
   examples: [],
   recent: [],
   serviceTrouble: "",
@@ -319,11 +323,13 @@ store.subscribe((workspace, previous) => {
 });
 
 async function loadLists(): Promise<void> {
-  const [methods, examples] = await Promise.allSettled([getMethods(), getExamples()]);
+  const [methods, examples, products] = await Promise.allSettled([getMethods(), getExamples(), getProducts()]);
   store.set((workspace) => ({
     ...workspace,
     methods: methods.status === "fulfilled" ? methods.value : workspace.methods,
     examples: examples.status === "fulfilled" ? examples.value : workspace.examples,
+    // Without the list a controller cannot be chosen; everything else works as before.
+    products: products.status === "fulfilled" ? products.value : workspace.products,
     serviceTrouble:
       methods.status === "rejected"
         ? "The service's list of methods could not be read; the default method is used."

@@ -1,5 +1,7 @@
 // The page's state: one immutable workspace. Every change is a function from one workspace to the next; subscribers run once per frame.
+import type { ProductSummary } from "./api/products.ts";
 import type { Example, IdentifyRequest, Job, Method } from "./api/types.ts";
+import type { MyController } from "./my_controller.ts";
 import type { Route } from "./routes.ts";
 
 export interface Workspace {
@@ -16,6 +18,10 @@ export interface Workspace {
   /** The recorded test that is being looked at. */
   test: IdentifyRequest | null;
   methods: Method[];
+  /** Controllers as they are built. */
+  products: ProductSummary[];
+  /** The one that the user has; the browser remembers it. */
+  mine: MyController | null;
   examples: Example[];
   recent: Job[];
   /** Why methods or examples could not be had, or "". */

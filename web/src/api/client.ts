@@ -18,26 +18,55 @@ export interface Reply {
   etag: string | null;
 }
 
-/** Asks for the service's key where it wants one, and calls again. */
 export async function call(
   method: string,
   path: string,
   body?: unknown,
   headers: Record<string, string> = {},
 ): Promise<Reply> {
-  let key = currentKey();
-  let { response, text } = await send(method, path, body, headers, key);
-  while (response.status === 401) {
-    key = await otherKey(key);
-    if (key === null) break;
-    ({ response, text } = await send(method, path, body, headers, key));
-  }
+  const { response, text } = await answerOf(method, path, body, headers);
   const etag = response.headers.get("ETag");
   if (response.status === 304) return { status: 304, data: null, etag };
   const data = parse(text);
   if (response.ok && data !== undefined) return { status: response.status, data, etag };
   if (response.ok && text === "") return { status: response.status, data: null, etag };
   throw new ApiError(problemOf(data, response.status), response.status, retryAfter(response));
+}
+
+export interface TextFile {
+  text: string;
+  /** As the service names it; "" where it does not. */
+  name: string;
+}
+
+/** A file of text; a refusal is a problem as everywhere. */
+export async function getText(path: string): Promise<TextFile> {
+  const { response, text } = await answerOf("GET", path, undefined, { Accept: "text/*, application/problem+json" });
+  if (!response.ok) throw new ApiError(problemOf(parse(text), response.status), response.status, retryAfter(response));
+  const name = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1];
+  return { text, name: name ?? "" };
+}
+
+interface Answer {
+  response: Response;
+  text: string;
+}
+
+/** Asks for the service's key where it wants one, and calls again. */
+async function answerOf(
+  method: string,
+  path: string,
+  body: unknown,
+  headers: Record<string, string>,
+): Promise<Answer> {
+  let key = currentKey();
+  let answer = await send(method, path, body, headers, key);
+  while (answer.response.status === 401) {
+    key = await otherKey(key);
+    if (key === null) break;
+    answer = await send(method, path, body, headers, key);
+  }
+  return answer;
 }
 
 /** Addresses are relative to the page, so that a prefix before it does not matter. */
@@ -47,7 +76,7 @@ async function send(
   body: unknown,
   headers: Record<string, string>,
   key: string | null,
-): Promise<{ response: Response; text: string }> {
+): Promise<Answer> {
   try {
     const response = await fetch(path.replace(/^\//, ""), {
       method,

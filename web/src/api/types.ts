@@ -1,4 +1,5 @@
 // The part of the HTTP contract that the page uses. Quantities that are infinite or undefined are null; their object says why.
+import type { AsEntered, Implement, Implemented, SettingValue, Span } from "./products.ts";
 import type { Reports } from "./reports.ts";
 
 export type WhyNull = Record<string, string>;
@@ -41,9 +42,15 @@ export interface IdentifyRequest {
   identify?: Record<string, unknown>;
 }
 
-export interface Baseline {
-  form: string;
-  [parameter: string]: unknown;
+/** Today's settings: a controller in some form, or as they stand in a product. */
+export type Baseline = ({ form: string; product?: undefined } & Record<string, unknown>) | TypedBaseline;
+
+export interface TypedBaseline {
+  product: string;
+  settings: Record<string, SettingValue>;
+  y_span?: Span;
+  u_span?: Span;
+  sample_time?: number;
 }
 
 export type TuneEntry = { method: string } & Record<string, unknown>;
@@ -56,6 +63,8 @@ export interface TuningRequest {
   identify?: Record<string, unknown>;
   tune?: TuneEntry[] | string;
   baseline?: Baseline;
+  /** The user's own controller. */
+  implement?: Implement;
   evaluate?: {
     setpoint_step?: number;
     load_step?: number;
@@ -188,6 +197,11 @@ export interface Entry extends Reports {
   linear?: Pick<Entry, "performance" | "responses">;
   /** Of the nonlinear form: what can be said of errors of every size. */
   nonlinear?: { statement?: string };
+  /** What to type into the product that the request names, and the loop as that computes it. */
+  as_entered?: AsEntered;
+  implemented?: Implemented;
+  /** Keeps Ms within 5 %. */
+  longest_sample_time?: number | null;
   compute_ms?: number;
   partial?: boolean;
 }

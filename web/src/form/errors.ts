@@ -55,17 +55,18 @@ export class FormErrors {
     for (const control of this.controls) this.clearControl(control);
   }
 
+  /** The faults below a pointer as they are now, each at its field, without taking the focus; answers those that have none. */
+  mark(scope: string, errors: FieldError[]): FieldError[] {
+    for (const control of this.controls) if (control.pointer()?.startsWith(`${scope}/`)) this.clearControl(control);
+    return errors.filter((error) => !this.place(error));
+  }
+
   /** Shows every fault at its field and all of them in the summary, which takes the focus. */
   show(errors: FieldError[], general = ""): void {
     this.clear();
-    const controls = [...this.controls];
-    const pointers = controls.map((control) => control.pointer());
     const items = errors.map((error) => {
-      const control = controls[matchPointer(error.pointer, pointers)];
+      const control = this.place(error);
       if (!control) return h("li", {}, error.detail, error.pointer ? h("code", {}, ` ${error.pointer}`) : null);
-      control.error.textContent = [control.error.textContent, error.detail].filter(Boolean).join(" ");
-      control.error.hidden = false;
-      control.input.setAttribute("aria-invalid", "true");
       openAround(control.input);
       const link = h("a", { href: `#${control.input.id}` }, error.detail);
       link.addEventListener("click", (event) => {
@@ -80,6 +81,17 @@ export class FormErrors {
     this.summary.hidden = false;
     this.summary.focus();
     this.summary.scrollIntoView({ block: "nearest" });
+  }
+
+  /** The control that now shows the fault. */
+  private place(error: FieldError): Control | undefined {
+    const controls = [...this.controls];
+    const control = controls[matchPointer(error.pointer, controls.map((item) => item.pointer()))];
+    if (!control) return undefined;
+    control.error.textContent = [control.error.textContent, error.detail].filter(Boolean).join(" ");
+    control.error.hidden = false;
+    control.input.setAttribute("aria-invalid", "true");
+    return control;
   }
 
   private clearControl(control: Control): void {

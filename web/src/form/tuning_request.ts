@@ -1,6 +1,16 @@
 // Tuning requests that the page makes from answers: a candidate of Identify as what is to be tuned, the same request with
 // another lambda for one of its entries, and the same subject by every method.
-import type { Candidate, IdentifyRequest, Model, Plant, Result, TuneEntry, TuningRequest } from "../api/types.ts";
+import type { Implement } from "../api/products.ts";
+import type {
+  Candidate,
+  IdentifyRequest,
+  Model,
+  Plant,
+  Result,
+  TuneEntry,
+  TuningRequest,
+  TypedBaseline,
+} from "../api/types.ts";
 
 /** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
 export type TuneSubject =
@@ -27,6 +37,21 @@ export function tuneSubject(request: IdentifyRequest, model: Model, chosen: Cand
   const alone = (model.candidates ?? []).filter((item) => structureOf(item.plant) === structure).length === 1;
   return alone ? { record, identify: { ...identify, model: structure } } : { plant: chosen.plant };
 }
+
+/** The same request for the user's own controller; null: for an ideal one. */
+export function withImplement(request: TuningRequest, implement: Implement | null): TuningRequest {
+  const { implement: before, ...rest } = request;
+  if (!implement) return rest;
+  // What the page has no field for, such as a computation delay, belongs to that product.
+  const { y_span: _y, u_span: _u, sample_time: _time, ...others } = before ?? {};
+  return { ...rest, implement: before?.product === implement.product ? { ...others, ...implement } : implement };
+}
+
+/** The same request beside today's settings. */
+export const withBaseline = (request: TuningRequest, baseline: TypedBaseline): TuningRequest => ({
+  ...request,
+  baseline,
+});
 
 /** Options that say the same as lambda in another way. */
 const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];

@@ -26,6 +26,7 @@ import { jobActions } from "./job_actions.ts";
 import type { JobEvents } from "./job_actions.ts";
 import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
+import { ownController } from "./own_controller.ts";
 import type { View } from "./start.ts";
 
 /** From so many entries on the column of the figures is broader, and from so many they stand across the page. */
@@ -57,12 +58,13 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
-  const reports = reportCards(announce, retune);
+  const own = ownController(store, announce, retuneWhole);
+  const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
-  const side = h("div", { class: "side" }, settings.element, figures, model, notes, computed);
+  const side = h("div", { class: "side" }, own.side, settings.element, figures, model, notes, computed);
   const main = h(
     "div",
     { class: "main-column" },
@@ -71,6 +73,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     linearNote,
     plots.element,
     ...reportsAt("below"),
+    ...own.below,
   );
   const body = h("div", { class: "design-body" });
   const headRight = h("div", { class: "head-right" }, trouble, verdict, progress.element);
@@ -93,6 +96,12 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     if (!request || !result) return;
     const index = selectedEntry(result, workspace);
     await events.onRetune(withLambda(request, result, index, lambda), index);
+  }
+
+  async function retuneWhole(request: TuningRequest): Promise<void> {
+    const workspace = store.get();
+    const result = workspace.job?.result;
+    if (result) await events.onRetune(request, selectedEntry(result, workspace));
   }
 
   function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames): void {
@@ -140,6 +149,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     const reported = { name: names[selected]!, entry: entries[selected]!, model: linear, request: job.request, units };
     for (const card of reports) card.show(reported);
+    own.show({ job, result, index: selected, name: names[selected]!, units });
     if (model.childElementCount === 0) {
       const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
       model.replaceChildren(...(about ? [about] : []));
@@ -187,6 +197,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     dispose() {
       leave();
       for (const card of reports) card.dispose();
+      own.dispose();
       plots.dispose();
     },
   };

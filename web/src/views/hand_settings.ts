@@ -32,8 +32,14 @@ interface Asked {
   horizon: number;
 }
 
-/** `onRun`: null where nothing is tried any more. */
-export function handSettings(onRun: (run: OwnRun | null) => void): HandSettings {
+/** Null where nothing is tried any more. */
+export interface HandEvents {
+  onRun(run: OwnRun | null): void;
+  /** What the sliders make of the controller, as soon as they move. */
+  onTry(controller: Controller | null): void;
+}
+
+export function handSettings({ onRun, onTry }: HandEvents): HandSettings {
   let shown: { entry: Entry; plant: Plant; units: UnitNames } | null = null;
   let scenario: EmulationScenario | undefined;
   const errors = new FormErrors();
@@ -98,6 +104,7 @@ export function handSettings(onRun: (run: OwnRun | null) => void): HandSettings 
     const moved = { ...controller };
     for (const name of soughtBy(controller)) moved[name] = sliders[name].value();
     back.disabled = false;
+    onTry(moved);
     calls.send({ plant: shown.plant, controller: moved, scenario, horizon });
   }
 
@@ -109,6 +116,7 @@ export function handSettings(onRun: (run: OwnRun | null) => void): HandSettings 
     said.textContent = "";
     const controller = shown?.entry.controller;
     if (controller) for (const name of soughtBy(controller)) sliders[name].set(controller[name]!);
+    onTry(null);
     onRun(null);
   }
 

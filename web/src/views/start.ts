@@ -5,14 +5,17 @@ import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningReq
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import type { PlantReading } from "../form/plant.ts";
-import { byAllMethods, EVERY_METHOD } from "../form/tuning_request.ts";
+import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
+import { implementOf, mineOfRequest, named, rememberMine } from "../my_controller.ts";
+import type { MyController } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
 import { equationsCard } from "./cards/equations_card.ts";
 import { methodsCard } from "./cards/methods_card.ts";
 import { modelCard } from "./cards/model_card.ts";
+import { myControllerCard } from "./cards/my_controller_card.ts";
 import { recordCard } from "./cards/record_card.ts";
 import { todayCard } from "./cards/today_card.ts";
 
@@ -80,6 +83,14 @@ export function startView(store: Store, events: StartEvents): StartView {
     model.setUnits(units);
     equations.setUnits(units);
     methods.setUnits(units);
+    mineCard.setUnits(units);
+  });
+  let mine = store.get().mine;
+  const mineCard = myControllerCard(errors, (next) => {
+    mine = next;
+    rememberMine(next);
+    today.setMine(next);
+    store.set((workspace) => ({ ...workspace, mine: next }));
   });
   const examples = h("div", { class: "examples" });
   const recent = h("p", { class: "recent", hidden: true });
@@ -109,7 +120,12 @@ export function startView(store: Store, events: StartEvents): StartView {
       ),
     ),
     equations.element,
-    h("div", { class: "cards two" }, methods.element, today.element),
+    h(
+      "div",
+      { class: "cards two" },
+      methods.element,
+      h("div", { class: "stack" }, mineCard.element, today.element),
+    ),
   );
 
   async function send(request: TuningRequest, faults: FieldError[], all: boolean): Promise<void> {
@@ -135,7 +151,9 @@ export function startView(store: Store, events: StartEvents): StartView {
     const baseline = today.read();
     const chosen = all ? { tune: EVERY_METHOD, errors: [] } : methods.read();
     const { plant: _plant, record: _record, identify: _identify, ...kept } = base;
-    const request: TuningRequest = { ...kept };
+    const own = mineCard.read();
+    // A program that a loaded request names stays; it has no field here.
+    const request: TuningRequest = own.mine || kept.implement?.product ? withImplement(kept, implementOf(own.mine)) : kept;
     delete request.name;
     delete request.units;
     delete request.baseline;
@@ -143,7 +161,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     if (Object.keys(units).length > 0) request.units = units;
     request.tune = chosen.tune;
     if (baseline.baseline) request.baseline = baseline.baseline;
-    return { request, faults: [...chosen.errors, ...baseline.errors] };
+    return { request, faults: [...chosen.errors, ...baseline.errors, ...own.errors] };
   }
 
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
@@ -184,6 +202,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   function load(request: TuningRequest): void {
     errors.clear();
     base = request;
+    showMine(mineOfRequest(request.implement, mine));
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);
@@ -191,6 +210,13 @@ export function startView(store: Store, events: StartEvents): StartView {
       status.textContent = `A plant of type ${request.plant.type} in this shape has no form here; send it to the service's API, or choose another kind.`;
       status.hidden = false;
     }
+  }
+
+  /** Without reporting: what a request was made for is not remembered. */
+  function showMine(next: MyController | null): void {
+    mine = named(next, store.get().products);
+    mineCard.set(mine);
+    today.setMine(mine);
   }
 
   function showLists(workspace: Workspace): void {
@@ -224,9 +250,18 @@ export function startView(store: Store, events: StartEvents): StartView {
   }
 
   methods.setMethods(store.get().methods);
+  mineCard.setProducts(store.get().products);
+  mineCard.setUnits(unitNames(today.readUnits()));
+  showMine(mine);
   showLists(store.get());
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.methods !== previous.methods) methods.setMethods(workspace.methods);
+    if (workspace.products !== previous.products) {
+      mineCard.setProducts(workspace.products);
+      showMine(mine);
+    }
+    // Chosen on Design.
+    if (workspace.mine !== previous.mine && workspace.mine !== mine) showMine(workspace.mine);
     const changed =
       workspace.examples !== previous.examples ||
       workspace.recent !== previous.recent ||

@@ -1,6 +1,6 @@
 // Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and how well it does.
 import type { EmulationScenario, Tuned } from "../../api/reports.ts";
-import type { Entry, Plant } from "../../api/types.ts";
+import type { Controller, Entry, Plant } from "../../api/types.ts";
 import { costOf, emulationFrame, LEVEL_ONE_LOOKS } from "../../charts/emulation.ts";
 import type { OwnRun } from "../../charts/emulation.ts";
 import { h, uniqueId } from "../../dom.ts";
@@ -30,7 +30,11 @@ export interface EmulationCard {
   dispose(): void;
 }
 
-export function emulationCard(announce: (sentence: string) => void): EmulationCard {
+/** `onTry`: of settings that are tried by hand; null when they are no longer. */
+export function emulationCard(
+  announce: (sentence: string) => void,
+  onTry: (controller: Controller | null) => void,
+): EmulationCard {
   let shown: { entry: Entry; plant: Plant | undefined; units: UnitNames } | null = null;
   /** Indices of the classical settings that are drawn, in the order in which they were chosen. */
   let chosen: number[] = [];
@@ -42,10 +46,13 @@ export function emulationCard(announce: (sentence: string) => void): EmulationCa
   const note = h("p", { class: "hint", hidden: true });
   const charts = plotGrid(announce);
   const scenario = choiceField({ label: "Scenario", choices: [], pointer: () => null }, new FormErrors());
-  const hand = handSettings((run) => {
-    own = run;
-    sayCost();
-    draw();
+  const hand = handSettings({
+    onRun(run) {
+      own = run;
+      sayCost();
+      draw();
+    },
+    onTry,
   });
   scenario.input.addEventListener("change", () => hand.setScenario(scenarioShown()));
   const element = h(

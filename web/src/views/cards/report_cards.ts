@@ -1,6 +1,6 @@
 // The cards of what methods tell beside their controllers: one line for each. A card hides itself where the entry has no
 // such report.
-import type { Entry, Plant, TuningRequest } from "../../api/types.ts";
+import type { Controller, Entry, Plant, TuningRequest } from "../../api/types.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { emulationCard } from "./emulation_card.ts";
 import { rimcCard } from "./rimc_card.ts";
@@ -25,15 +25,20 @@ export interface ReportCard {
 }
 
 type Announce = (sentence: string) => void;
-type Retune = (lambda: number) => Promise<void>;
 
-const CARDS: ((announce: Announce, retune: Retune) => ReportCard)[] = [
-  (announce, retune) => {
-    const card = rimcCard(announce, retune);
+export interface ReportEvents {
+  onRetune(lambda: number): Promise<void>;
+  /** Settings are tried by hand; null: no longer. */
+  onTry(controller: Controller | null): void;
+}
+
+const CARDS: ((announce: Announce, events: ReportEvents) => ReportCard)[] = [
+  (announce, events) => {
+    const card = rimcCard(announce, events.onRetune);
     return { ...card, place: "above", show: ({ entry, model, units }) => card.show(entry, model, units) };
   },
-  (announce) => {
-    const card = emulationCard(announce);
+  (announce, events) => {
+    const card = emulationCard(announce, events.onTry);
     return { ...card, place: "above", show: ({ entry, request, units }) => card.show(entry, request?.plant, units) };
   },
   (announce) => {
@@ -42,5 +47,5 @@ const CARDS: ((announce: Announce, retune: Retune) => ReportCard)[] = [
   },
 ];
 
-export const reportCards = (announce: Announce, retune: Retune): ReportCard[] =>
-  CARDS.map((create) => create(announce, retune));
+export const reportCards = (announce: Announce, events: ReportEvents): ReportCard[] =>
+  CARDS.map((create) => create(announce, events));

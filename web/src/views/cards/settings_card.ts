@@ -4,6 +4,7 @@ import { h, uniqueId } from "../../dom.ts";
 import { filterWords } from "../../words/figures.ts";
 import { formatSetting, plainSetting, quotient, withUnit } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
+import { copyButton } from "../copy.ts";
 
 export type SettingsForm = "ideal" | "parallel" | "series" | "npid";
 
@@ -89,7 +90,7 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
   const group = uniqueId("form");
   const title = h("h2", { id: titleId }, "Settings to enter");
   const body = h("div", {});
-  const copy = h("button", { type: "button", onclick: () => void copySettings() }, "Copy");
+  const copy = copyButton({ label: "Copy", text: copied }, announce);
   const radios = (["ideal", "parallel", "series"] as const).map((name) => {
     const input = h("input", { type: "radio", name: group, value: name, checked: name === chosen });
     input.addEventListener("change", () => {
@@ -136,28 +137,17 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
       h(
         "p",
         { class: "hint" },
-        `${FORMULAS[form]}; set-point weights b ${weights?.b ?? 1}, c ${weights?.c ?? 0}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`,
+        `${FORMULAS[form]}; set-point weights b ${formatSetting(weights?.b ?? 1)}, c ${formatSetting(weights?.c ?? 0)}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`,
       ),
       h("div", { class: "actions" }, copy),
     );
   }
 
-  async function copySettings(): Promise<void> {
-    if (!shown) return;
+  function copied(): string | null {
+    if (!shown) return null;
     const form = formOf(shown.entry);
     const settings = settingsOf(shown.entry, form, shown.units);
-    if (typeof settings === "string") return;
-    const text = settingsText(form, settings);
-    try {
-      await navigator.clipboard.writeText(text);
-      copy.textContent = "Copied";
-    } catch {
-      copy.textContent = copyBySelection(text) ? "Copied" : "Not copied: select it by hand";
-    }
-    announce(`${copy.textContent}.`);
-    setTimeout(() => {
-      copy.textContent = "Copy";
-    }, 2000);
+    return typeof settings === "string" ? null : settingsText(form, settings);
   }
 
   return {
@@ -167,17 +157,4 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
       write();
     },
   };
-}
-
-/** The old way: pages that do not come over TLS or from this machine have no clipboard object. */
-function copyBySelection(text: string): boolean {
-  const area = h("textarea", { class: "visually-hidden", "aria-hidden": "true", tabindex: -1 });
-  area.value = text;
-  document.body.append(area);
-  const before = document.activeElement;
-  area.select();
-  const done = document.execCommand("copy");
-  area.remove();
-  if (before instanceof HTMLElement) before.focus();
-  return done;
 }

@@ -1,9 +1,14 @@
 // Units and today's settings: both optional.
+import { getProduct } from "../../api/products.ts";
+import type { SettingValue } from "../../api/products.ts";
 import type { Baseline, FieldError, Units } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { parseNumber } from "../../form/number.ts";
+import { productFields } from "../../form/product_fields.ts";
+import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
+import type { MyController } from "../../my_controller.ts";
 
 export interface TodayCard {
   element: HTMLElement;
@@ -11,7 +16,12 @@ export interface TodayCard {
   read(): { baseline: Baseline | undefined; errors: FieldError[] };
   load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
   readName(): string;
+  /** The user's own controller, whose own form is then one of the forms. */
+  setMine(mine: MyController | null): void;
 }
+
+/** In place of a form: the settings as they stand in the user's own controller. */
+const OWN = "own";
 
 const FORMS = [
   ["ideal", "ideal"],
@@ -45,16 +55,56 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     },
     errors,
   );
+  // A loaded request may have them in another product than the one that is chosen.
+  let mine: MyController | null = null;
+  const own = productFields(errors, () => isOwn());
+  own.element.hidden = true;
   // What a loaded request had and no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
 
   function names(): [string, string, string] {
     return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
   }
+  const isOwn = (): boolean => form.input.value === OWN;
+
   function label(): void {
+    own.element.hidden = !isOwn();
+    for (const field of [...slots, filter]) field.element.hidden = isOwn();
     names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";
   }
+  function showProduct(settings?: Record<string, SettingValue>): void {
+    const id = mine?.product;
+    if (id === undefined) return own.setProduct(null);
+    getProduct(id).then(
+      (product) => {
+        if (mine?.product !== id) return;
+        own.setProduct(product);
+        if (settings) own.load(settings);
+      },
+      // Without its parameters there are no fields, and the other forms are still there.
+      () => own.setProduct(null),
+    );
+  }
+
+  /** Its own form is offered while there is a controller. */
+  function setMine(next: MyController | null, settings?: Record<string, SettingValue>): void {
+    const chosen = form.input.value;
+    mine = next;
+    form.input.replaceChildren(
+      ...[...FORMS, ...(next ? [[OWN, next.name] as const] : [])].map(([value, text]) => h("option", { value }, text)),
+    );
+    form.input.value = chosen === OWN && !next ? "ideal" : chosen;
+    label();
+    showProduct(settings);
+  }
+
+  function readOwn(): { baseline: Baseline | undefined; errors: FieldError[] } {
+    const { settings, errors: faults } = own.read();
+    if (!settings || !mine) return { baseline: undefined, errors: faults };
+    return { baseline: typedBaseline(mine, settings), errors: faults };
+  }
+
   label();
   form.input.addEventListener("change", label);
 
@@ -64,6 +114,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
     h("p", { class: "hint" }, "What the controller runs with now: drawn and counted beside every proposal."),
     h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
+    own.element,
     h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
     h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
@@ -78,7 +129,9 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       if (y.input.value.trim()) units.y = y.input.value.trim();
       return units;
     },
+    setMine,
     read() {
+      if (isOwn()) return readOwn();
       const typed = slots.map((slot) => slot.input.value.trim());
       if (typed.every((text) => text === "")) return { baseline: undefined, errors: [] };
       const faults: FieldError[] = [];
@@ -111,6 +164,14 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       time.input.value = units?.time ?? "s";
       u.input.value = units?.u ?? "";
       y.input.value = units?.y ?? "";
+      if (baseline?.product !== undefined) {
+        const { product, settings, ...spans } = baseline;
+        const loaded = mineOfRequest({ product, ...spans }, mine);
+        setMine(loaded, settings);
+        form.input.value = OWN;
+        label();
+        return onUnits();
+      }
       const known = baseline && FORMS.some(([id]) => id === baseline.form);
       form.input.value = known ? baseline.form : "ideal";
       label();

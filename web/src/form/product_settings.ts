@@ -1,0 +1,78 @@
+// Settings of a product as its parameters' fields have them: which fields there are, what is typed as values, and back.
+import type { Product, ProductParameter, SettingValue } from "../api/products.ts";
+import type { FieldError } from "../api/types.ts";
+import { parseNumber } from "./number.ts";
+
+export interface SettingField {
+  name: string;
+  label: string;
+  unit: string;
+  /** The values it may have; empty: a number, or a code that is typed. */
+  choices: SettingValue[];
+  /** The maker's, in whose place an empty field stands; "" where it is not known. */
+  standard: string;
+  /** Among those that are always typed. */
+  main: boolean;
+  hint: string;
+}
+
+/** Roles that say nothing of today's linear law. */
+const ASIDE = ["limit", "fixed"];
+
+/** One field a parameter, and one for the direction where a switch sets it. */
+export function settingFields(product: Product): SettingField[] {
+  const fields = product.parameters.map(fieldOf);
+  const { by, name, direct, text } = product.action;
+  if (by !== "switch" || name === undefined || direct === undefined || fields.some((field) => field.name === name))
+    return fields;
+  const standard = "reverse action";
+  return [...fields, { name, label: name, unit: "", choices: [direct], standard, main: false, hint: text ?? "" }];
+}
+
+function fieldOf(parameter: ProductParameter): SettingField {
+  const { name, label, unit, role, written, choices, remark } = parameter;
+  const standard = parameter.default ?? choices?.[0]?.value;
+  return {
+    name,
+    label: label || name,
+    unit,
+    choices: (choices ?? []).map((choice) => choice.value),
+    standard: standard === undefined ? "" : String(standard),
+    main: written && !ASIDE.includes(role),
+    hint: remark ?? "",
+  };
+}
+
+export interface SettingsReading {
+  /** Undefined: nothing is typed. */
+  settings: Record<string, SettingValue> | undefined;
+  errors: FieldError[];
+}
+
+/** What is typed by field name, as values. Empty fields are left to the maker's default. */
+export function readSettings(product: Product, typed: Record<string, string>): SettingsReading {
+  const settings: Record<string, SettingValue> = {};
+  const errors: FieldError[] = [];
+  for (const field of settingFields(product)) {
+    const text = (typed[field.name] ?? "").trim();
+    if (text === "") continue;
+    const choice = field.choices.find((value) => String(value) === text);
+    if (choice !== undefined) {
+      settings[field.name] = choice;
+      continue;
+    }
+    const code = product.parameters.find((parameter) => parameter.name === field.name)?.default;
+    if (typeof code === "string" && field.choices.length === 0) {
+      settings[field.name] = text;
+      continue;
+    }
+    const parsed = parseNumber(text, field.label);
+    if (parsed.ok) settings[field.name] = parsed.value;
+    else errors.push({ pointer: `/baseline/settings/${field.name}`, detail: parsed.sentence });
+  }
+  return { settings: Object.keys(settings).length === 0 ? undefined : settings, errors };
+}
+
+/** Values as they would be typed. */
+export const typedSettings = (settings: Record<string, SettingValue>): Record<string, string> =>
+  Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, String(value)]));

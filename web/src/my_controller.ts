@@ -1,0 +1,118 @@
+// The user's own controller: which product, with which spans and sample time. The browser keeps it for later designs.
+import type { Implement, Need, ProductSummary, SettingValue, Span } from "./api/products.ts";
+import type { TypedBaseline } from "./api/types.ts";
+import { productTitle } from "./words/products.ts";
+
+export interface MyController {
+  product: string;
+  /** As it is listed. */
+  name: string;
+  needs: Need[];
+  y_span?: Span;
+  u_span?: Span;
+  sample_time?: number;
+}
+
+const KEY = "tunewright-controller";
+
+/** What of its needs nobody has given yet. */
+export const missingOf = (mine: MyController): Need[] => mine.needs.filter((need) => mine[need] === undefined);
+
+/** As a request says it; null while something is missing. Spans that the product does not need stay away. */
+export function implementOf(mine: MyController | null): (Implement & { product: string }) | null {
+  if (!mine || missingOf(mine).length > 0) return null;
+  const { product, needs, y_span, u_span, sample_time } = mine;
+  return {
+    product,
+    ...(y_span && needs.includes("y_span") ? { y_span } : {}),
+    ...(u_span && needs.includes("u_span") ? { u_span } : {}),
+    ...(sample_time !== undefined ? { sample_time } : {}),
+  };
+}
+
+/** The same product with the same spans and sample time. */
+export function sameImplement(a: Implement | null | undefined, b: Implement | null | undefined): boolean {
+  const told = (implement: Implement | null | undefined): string =>
+    JSON.stringify(
+      implement ? [implement.product, implement.y_span, implement.u_span, implement.sample_time].map((x) => x ?? null) : null,
+    );
+  return told(a) === told(b);
+}
+
+/** What a request was made for; the one at hand where it names none. A request knows neither name nor needs. */
+export function mineOfRequest(implement: Implement | undefined, mine: MyController | null): MyController | null {
+  const { product, y_span, u_span, sample_time } = implement ?? {};
+  if (product === undefined) return mine;
+  const same = product === mine?.product;
+  return {
+    product,
+    name: same ? mine.name : product,
+    needs: same ? mine.needs : [],
+    ...(y_span ? { y_span } : {}),
+    ...(u_span ? { u_span } : {}),
+    ...(sample_time !== undefined ? { sample_time } : {}),
+  };
+}
+
+/** With name and needs as they are listed. */
+export function named(mine: MyController | null, products: readonly ProductSummary[]): MyController | null {
+  const product = products.find((item) => item.id === mine?.product);
+  if (!mine || !product) return mine;
+  const name = productTitle(product);
+  const same = mine.name === name && JSON.stringify(mine.needs) === JSON.stringify(product.needs);
+  return same ? mine : { ...mine, name, needs: product.needs };
+}
+
+/** Today's settings in it: a baseline names spans and sample time as `implement` does. */
+export function typedBaseline(
+  { product, y_span, u_span, sample_time }: Pick<MyController, "product" | "y_span" | "u_span" | "sample_time">,
+  settings: Record<string, SettingValue>,
+): TypedBaseline {
+  return {
+    product,
+    settings,
+    ...(y_span ? { y_span } : {}),
+    ...(u_span ? { u_span } : {}),
+    ...(sample_time !== undefined ? { sample_time } : {}),
+  };
+}
+
+export function rememberMine(mine: MyController | null): void {
+  try {
+    if (mine) localStorage.setItem(KEY, JSON.stringify(mine));
+    else localStorage.removeItem(KEY);
+  } catch {
+    // A browser without storage forgets the choice; nothing else depends on it.
+  }
+}
+
+export function rememberedMine(): MyController | null {
+  try {
+    return readMine(JSON.parse(localStorage.getItem(KEY) ?? "null"));
+  } catch {
+    return null;
+  }
+}
+
+const NEEDS: readonly string[] = ["y_span", "u_span", "sample_time"];
+
+/** What stands in the storage may be an older page's, or anybody's. */
+export function readMine(data: unknown): MyController | null {
+  if (typeof data !== "object" || data === null) return null;
+  const { product, name, needs, y_span, u_span, sample_time } = data as Record<string, unknown>;
+  if (typeof product !== "string" || typeof name !== "string" || !Array.isArray(needs)) return null;
+  return {
+    product,
+    name,
+    needs: needs.filter((need): need is Need => NEEDS.includes(need as string)),
+    ...(isSpan(y_span) ? { y_span } : {}),
+    ...(isSpan(u_span) ? { u_span } : {}),
+    ...(typeof sample_time === "number" && sample_time > 0 ? { sample_time } : {}),
+  };
+}
+
+const isSpan = (value: unknown): value is Span =>
+  Array.isArray(value) &&
+  value.length === 2 &&
+  value.every((end) => typeof end === "number" && Number.isFinite(end)) &&
+  (value[0] as number) < (value[1] as number);

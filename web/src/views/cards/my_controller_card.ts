@@ -1,0 +1,157 @@
+// "My controller": which product, and what its formulas have to know of the loop.
+import type { Need, ProductSummary } from "../../api/products.ts";
+import type { FieldError } from "../../api/types.ts";
+import { h, uniqueId } from "../../dom.ts";
+import { combobox } from "../../form/combobox.ts";
+import type { Choice } from "../../form/combobox.ts";
+import { textField } from "../../form/controls.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import { parseNumber } from "../../form/number.ts";
+import { spanFields } from "../../form/span_fields.ts";
+import { missingOf } from "../../my_controller.ts";
+import type { MyController } from "../../my_controller.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+import { evidenceWords, findProducts, needSentence, productTitle } from "../../words/products.ts";
+
+export interface MyControllerCard {
+  element: HTMLElement;
+  setProducts(products: ProductSummary[]): void;
+  setUnits(units: UnitNames): void;
+  /** Without reporting. */
+  set(mine: MyController | null): void;
+  /** As it stands in the fields; what is still missing is a fault where the whole is to be sent. */
+  read(): { mine: MyController | null; errors: FieldError[] };
+}
+
+/** `onChange`: of what could be read, whether or not something is missing yet. */
+export function myControllerCard(
+  errors: FormErrors,
+  onChange: (mine: MyController | null) => void,
+  ...below: HTMLElement[]
+): MyControllerCard {
+  let products: ProductSummary[] = [];
+  let chosen: Pick<MyController, "product" | "name" | "needs"> | null = null;
+  const title = h("h2", { id: uniqueId("mine") }, "My controller ", h("span", { class: "optional" }, "optional"));
+  const search = combobox(
+    {
+      label: "Maker and product",
+      placeholder: "type a maker or a name, such as DeltaV",
+      pointer: () => "/implement/product",
+      find: (typed) => findProducts(products, typed).map(choiceOf),
+      onChoose: choose,
+    },
+    errors,
+  );
+  const measurement = spanFields(
+    { label: "Measurement range", pointer: "/implement/y_span", placeholders: ["0", "200"], onChange: change },
+    errors,
+  );
+  const output = spanFields(
+    { label: "Output range", pointer: "/implement/u_span", placeholders: ["0", "100"], onChange: change },
+    errors,
+  );
+  const sampling = textField(
+    {
+      label: "Sample time",
+      hint: "Empty: the product's own where it is known.",
+      pointer: () => "/implement/sample_time",
+    },
+    errors,
+  );
+  sampling.input.addEventListener("change", change);
+  const needed = h("p", { class: "hint", role: "status", hidden: true });
+  const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
+  const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(null) }, "No controller");
+  const element = h(
+    "section",
+    { class: "card my-controller", "aria-labelledby": title.id },
+    h("div", { class: "head" }, title, forget),
+    search.element,
+    fields,
+    needed,
+    below,
+  );
+
+  const choiceOf = (product: ProductSummary): Choice => ({
+    id: product.id,
+    text: productTitle(product),
+    aside: evidenceWords(product.evidence),
+  });
+
+  function choose(choice: Choice | null): void {
+    const product = products.find((item) => item.id === choice?.id);
+    chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs } : null;
+    show();
+    change();
+  }
+
+  /** Asks for what the chosen product needs, and for nothing else. */
+  function show(): void {
+    search.set(chosen ? { id: chosen.product, text: chosen.name, aside: "" } : null);
+    const needs = (need: Need): boolean => chosen?.needs.includes(need) ?? false;
+    fields.hidden = !chosen;
+    forget.hidden = !chosen;
+    measurement.element.hidden = !needs("y_span");
+    output.element.hidden = !needs("u_span");
+  }
+
+  function read(): { mine: MyController | null; errors: FieldError[] } {
+    if (!chosen) return { mine: null, errors: [] };
+    const [y, u] = [measurement.read(), output.read()];
+    const typed = sampling.input.value.trim();
+    const period = typed === "" ? null : parseNumber(typed, "Sample time");
+    const faults = [...(measurement.element.hidden ? [] : y.errors), ...(output.element.hidden ? [] : u.errors)];
+    if (period && !period.ok) faults.push({ pointer: "/implement/sample_time", detail: period.sentence });
+    else if (period?.ok && !(period.value > 0))
+      faults.push({
+        pointer: "/implement/sample_time",
+        detail: `Sample time is ${typed}; it is the time from one sample to the next and must be above 0.`,
+      });
+    const mine: MyController = {
+      ...chosen,
+      ...(y.span ? { y_span: y.span } : {}),
+      ...(u.span ? { u_span: u.span } : {}),
+      ...(period?.ok && period.value > 0 ? { sample_time: period.value } : {}),
+    };
+    return { mine, errors: faults };
+  }
+
+  function sayMissing(mine: MyController | null): void {
+    needed.textContent = mine ? needSentence(missingOf(mine)) : "";
+    needed.hidden = needed.textContent === "";
+  }
+
+  function change(): void {
+    const { mine, errors: faults } = read();
+    errors.mark("/implement", faults);
+    sayMissing(mine);
+    onChange(mine);
+  }
+
+  return {
+    element,
+    setProducts(list) {
+      products = list;
+      search.refresh();
+    },
+    setUnits(units) {
+      measurement.setUnit(units.y);
+      output.setUnit(units.u);
+      sampling.setUnit(units.time);
+    },
+    set(mine) {
+      chosen = mine ? { product: mine.product, name: mine.name, needs: mine.needs } : null;
+      measurement.set(mine?.y_span);
+      output.set(mine?.u_span);
+      sampling.input.value = mine?.sample_time === undefined ? "" : String(mine.sample_time);
+      show();
+      sayMissing(mine);
+    },
+    read() {
+      const { mine, errors: faults } = read();
+      const missing = mine && faults.length === 0 ? missingOf(mine) : [];
+      const detail = needSentence(missing);
+      return { mine, errors: [...faults, ...missing.slice(0, 1).map((need) => ({ pointer: `/implement/${need}`, detail }))] };
+    },
+  };
+}

@@ -1,0 +1,47 @@
+// Today's settings as they stand in the user's own controller, to set a design against.
+import type { Product, SettingValue } from "../../api/products.ts";
+import type { TypedBaseline } from "../../api/types.ts";
+import { h } from "../../dom.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import { productFields } from "../../form/product_fields.ts";
+
+export interface OwnTodayCard {
+  element: HTMLElement;
+  /** The button that sets the design against them. */
+  button: HTMLButtonElement;
+  setProduct(product: Product | null): void;
+  load(baseline: TypedBaseline): void;
+}
+
+/** `onSet`: undefined where nothing is typed. */
+export function ownTodayCard(
+  errors: FormErrors,
+  onSet: (settings: Record<string, SettingValue> | undefined) => void,
+): OwnTodayCard {
+  const fields = productFields(errors, () => true);
+  const button = h("button", { type: "button", onclick: read }, "Set the design against these");
+  const element = h(
+    "details",
+    { class: "own-today", hidden: true },
+    h("summary", {}, "Today's settings in this controller"),
+    h("p", { class: "hint" }, "As they stand in it now; what is left empty has the maker's default."),
+    fields.element,
+    h("div", { class: "actions" }, button),
+  );
+
+  function read(): void {
+    const { settings, errors: faults } = fields.read();
+    errors.mark("/baseline", faults);
+    if (faults.length === 0) onSet(settings);
+  }
+
+  return {
+    element,
+    button,
+    setProduct(product) {
+      element.hidden = !product;
+      fields.setProduct(product);
+    },
+    load: (baseline) => fields.load(baseline.settings),
+  };
+}

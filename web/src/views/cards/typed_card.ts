@@ -1,0 +1,150 @@
+// The settings as they stand in the product's own list: what to type, what the block makes of it, and what it cannot be.
+import type { AsEntered, Product } from "../../api/products.ts";
+import type { Entry, Notice } from "../../api/types.ts";
+import { h, uniqueId } from "../../dom.ts";
+import {
+  builtRows,
+  builtWarnings,
+  evidenceSentence,
+  productTitle,
+  samplingSentences,
+  splitNotes,
+  typedRows,
+  typedText,
+} from "../../words/products.ts";
+import type { BuiltRow, TypedRow } from "../../words/products.ts";
+import { breakable } from "../breakable.ts";
+import { copyButton } from "../copy.ts";
+
+export interface TypedSettings {
+  product: Product;
+  /** Whose settings. */
+  name: string;
+  entered: AsEntered;
+  /** The ideal loop, and where it is known the loop as built; null for settings that are tried by hand. */
+  judged: Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time"> | null;
+  time: string;
+}
+
+export interface TypedCard {
+  element: HTMLElement;
+  show(typed: TypedSettings): void;
+  /** Why there is nothing to type. */
+  complain(sentence: string): void;
+  hide(): void;
+  setBusy(busy: boolean): void;
+}
+
+export function typedCard(announce: (sentence: string) => void, ...below: HTMLElement[]): TypedCard {
+  let copied = "";
+  const title = h("h2", { id: uniqueId("typed") });
+  const whose = h("p", { class: "hint" });
+  const list = h("table", { class: "typed" });
+  const all = copyButton({ label: "Copy all with units", text: () => copied }, announce);
+  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const body = h("div", { class: "typed-body" });
+  const rest = h("div", { class: "typed-rest" });
+  body.append(whose, list, h("div", { class: "actions" }, all), rest);
+  const element = h("section", { class: "card typed-card", "aria-labelledby": title.id, hidden: true }, title, trouble, body, below);
+
+  function rowOf({ label, value, unit, about }: TypedRow): HTMLElement {
+    const copy = copyButton({ label: "Copy", spoken: `Copy ${label}`, look: "quiet", text: () => value }, announce);
+    return h(
+      "tr",
+      { title: about || null },
+      h("th", { scope: "row" }, breakable(label)),
+      h("td", { class: "value" }, value),
+      h("td", { class: "unit" }, unit),
+      h("td", {}, copy),
+    );
+  }
+
+  return {
+    element,
+    show({ product, name, entered, judged, time }) {
+      const heading = productTitle(product);
+      const rows = typedRows(product, entered);
+      copied = typedText(`${heading}: ${name}`, rows);
+      title.textContent = `Type into ${heading}`;
+      whose.textContent = `Settings of ${name}, by the names of its own list.`;
+      list.replaceChildren(
+        h("caption", { class: "visually-hidden" }, `Settings of ${name} for ${heading}`),
+        h("tbody", {}, rows.map(rowOf)),
+      );
+      const { deviations, remarks } = splitNotes(entered.notes);
+      const open = rest.querySelector("details")?.open ?? false;
+      rest.replaceChildren(
+        ...judgement(judged, time),
+        ...noteList("What this block cannot do, or does otherwise", deviations),
+        h("p", { class: "evidence" }, h("strong", {}, "Evidence. "), evidenceSentence(product.evidence)),
+        remarks.length === 0
+          ? ""
+          : h("details", { open }, h("summary", {}, "How it was reckoned"), noteItems(remarks)),
+      );
+      trouble.hidden = true;
+      body.hidden = false;
+      element.hidden = false;
+    },
+    complain(sentence) {
+      title.textContent = "My controller";
+      trouble.textContent = sentence;
+      trouble.hidden = false;
+      body.hidden = true;
+      element.hidden = false;
+    },
+    hide() {
+      element.hidden = true;
+    },
+    setBusy(busy) {
+      element.setAttribute("aria-busy", String(busy));
+    },
+  };
+}
+
+const noteItems = (notes: Notice[]): HTMLElement =>
+  h(
+    "ul",
+    { class: "notes" },
+    notes.map((note) => h("li", {}, note.detail)),
+  );
+
+const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
+  notes.length === 0 ? [] : [h("h3", {}, heading), noteItems(notes)];
+
+/** The loop as built beside the ideal one, with what has to be said of it first. */
+function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[] {
+  if (!judged) return [h("p", { class: "hint" }, "Tried by hand: the loop as built is judged once these are designed.")];
+  const { implemented } = judged;
+  const sampling = samplingSentences(implemented, judged.longest_sample_time, time).join(" ");
+  return [
+    ...builtWarnings(judged).map((warning) =>
+      h("p", { class: warning.code === "unstable-as-built" ? "trouble bad" : "trouble" }, warning.detail),
+    ),
+    ...(implemented ? [builtTable(builtRows(judged, implemented))] : []),
+    ...(sampling ? [h("p", { class: "hint" }, sampling)] : []),
+  ];
+}
+
+function builtTable(rows: BuiltRow[]): HTMLElement {
+  const head = (text: string): HTMLElement => h("th", { scope: "col" }, text);
+  return h(
+    "table",
+    { class: "figures built" },
+    h("caption", { class: "visually-hidden" }, "The loop as built beside the ideal one"),
+    h("thead", {}, h("tr", {}, h("td", {}), head("ideal"), head("as built"), head("difference"))),
+    h(
+      "tbody",
+      {},
+      rows.map(({ label, ideal, built, difference, far }) =>
+        h(
+          "tr",
+          {},
+          h("th", { scope: "row" }, label),
+          h("td", {}, ideal),
+          h("td", {}, built),
+          h("td", { class: far ? "far" : null }, difference),
+        ),
+      ),
+    ),
+  );
+}

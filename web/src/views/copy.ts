@@ -1,0 +1,59 @@
+// Buttons that put a text on the clipboard and say so.
+import { h } from "../dom.ts";
+
+export interface CopyOptions {
+  /** What stands on the button. */
+  label: string;
+  /** What a screen reader says where the label alone says too little. */
+  spoken?: string;
+  look?: string;
+  /** Null: there is nothing to copy now. */
+  text(): string | null;
+}
+
+const SHOWN_MS = 2000;
+
+export function copyButton(options: CopyOptions, announce: (sentence: string) => void): HTMLButtonElement {
+  const button = h(
+    "button",
+    { type: "button", class: options.look, "aria-label": options.spoken, onclick: () => void copy() },
+    options.label,
+  );
+  let timer: ReturnType<typeof setTimeout> | undefined;
+
+  async function copy(): Promise<void> {
+    const text = options.text();
+    if (text === null) return;
+    const done = await toClipboard(text);
+    button.textContent = done ? "Copied" : "Not copied: select it by hand";
+    announce(`${button.textContent}.`);
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      button.textContent = options.label;
+    }, SHOWN_MS);
+  }
+
+  return button;
+}
+
+async function toClipboard(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    return copyBySelection(text);
+  }
+}
+
+/** The old way: pages that do not come over TLS or from this machine have no clipboard object. */
+function copyBySelection(text: string): boolean {
+  const area = h("textarea", { class: "visually-hidden", "aria-hidden": "true", tabindex: -1 });
+  area.value = text;
+  document.body.append(area);
+  const before = document.activeElement;
+  area.select();
+  const done = document.execCommand("copy");
+  area.remove();
+  if (before instanceof HTMLElement) before.focus();
+  return done;
+}

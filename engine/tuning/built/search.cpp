@@ -118,58 +118,73 @@ Error none(const Limits& limits) {
                 " on the loop as it is built. Allow more, sample faster, or choose a controller that can do more."};
 }
 
+/// The search in the logarithms of those times that the shape has.
+class TimesSearch {
+public:
+    TimesSearch(Search& local, const Shape& shape, const Settings& start) : local_(local), shape_(shape), held_(start) {
+        if (shape.has_integral) x_.push_back(std::log(start.Ti));
+        if (shape.has_derivative) x_.push_back(std::log(start.Td));
+    }
+
+    /// From the start, and again from the best while that gains.
+    Settings best(const std::stop_token& stop);
+
+private:
+    double cost(const std::vector<double>& x) const;
+    std::pair<double, double> times(const std::vector<double>& x) const {
+        const double first = x.empty() ? 0 : std::exp(x.front()), last = x.empty() ? 0 : std::exp(x.back());
+        return {shape_.has_integral ? first : held_.Ti, shape_.has_derivative ? last : held_.Td};
+    }
+
+    Search& local_;
+    const Shape& shape_;
+    const Settings held_;
+    std::vector<double> x_;
+};
+
+double TimesSearch::cost(const std::vector<double>& x) const {
+    const auto [Ti, Td] = times(x);
+    const double IAE = local_.at(Ti, Td).load_IAE;
+    if (std::isfinite(IAE) && IAE > 0) return std::log(IAE);
+    const double factor = local_.widening(shape_.Ti.within(Ti), shape_.Td.within(Td));
+    return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
+}
+
+Settings TimesSearch::best(const std::stop_token& stop) {
+    const auto watched = [&](const std::vector<double>& x, bool& end) {
+        end = stop.stop_requested();
+        return cost(x);
+    };
+    double reached = cost(x_), step = kFirstStep;
+    for (int i = 0; i < kMaxRestarts && !x_.empty(); ++i, step = kLaterStep) {
+        const auto found = find_local_minimum(LocalSearch::nelder_mead, watched, x_,
+                                              {std::vector<double>(x_.size(), step), kTolerance, kMostEvaluations});
+        const double gained = reached - found.value;
+        if (gained > 0) {
+            reached = found.value;
+            x_ = found.x;
+        }
+        if (i > 0 && gained < kNoGain) break;
+    }
+    const auto [Ti, Td] = times(x_);
+    return local_.confirmed(Ti, Td);
+}
+
 }  // namespace
 
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
                           const std::vector<Settings>& starts, const RunControl& control) {
     std::optional<Settings> best;
-    for (const Settings& start : starts) {
-        if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
+    for (Settings start : starts) {
+        start.Ti = shape.Ti.within(start.Ti);
+        start.Td = shape.Td.within(start.Td);
         // The first loop's frequencies serve all later ones.
-        const auto times = std::pair(shape.Ti.within(start.Ti), shape.Td.within(start.Td));
-        Search local(plants, shape, limits, shape.law(std::abs(start.gain), times.first, times.second));
-        const bool two = shape.has_integral && shape.has_derivative;
-        std::vector<double> x;
-        if (shape.has_integral) x.push_back(std::log(times.first));
-        if (shape.has_derivative) x.push_back(std::log(times.second));
-        const auto times_of = [&](const std::vector<double>& point) {
-            const double first = point.empty() ? 0 : std::exp(point[0]);
-            return std::pair(shape.has_integral ? first : times.first,
-                             shape.has_derivative ? (two ? std::exp(point[1]) : first) : times.second);
-        };
-        const auto cost = [&](const std::vector<double>& point, bool& stop) {
-            stop = control.stop.stop_requested();
-            const auto [i, d] = times_of(point);
-            const double IAE = local.at(i, d).load_IAE;
-            if (std::isfinite(IAE) && IAE > 0) return std::log(IAE);
-            const double factor = local.widening(shape.Ti.within(i), shape.Td.within(d));
-            return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
-        };
-        bool stop = false;
-        double reached = cost(x, stop), step = kFirstStep;
-        for (int i = 0; i < kMaxRestarts && !x.empty(); ++i, step = kLaterStep) {
-            const auto found = find_local_minimum(LocalSearch::nelder_mead, cost, x,
-                                                  {std::vector<double>(x.size(), step), kTolerance, kMostEvaluations});
-            const double gained = reached - found.value;
-            if (gained > 0) {
-                reached = found.value;
-                x = found.x;
-            }
-            if (i > 0 && gained < kNoGain) break;
-        }
-        const auto [i, d] = times_of(x);
-        const Settings found = local.confirmed(i, d);
+        Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
+        const Settings found = TimesSearch(local, shape, start).best(control.stop);
+        if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
         if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
     }
-    if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
     return best ? Expected<Settings>(*best) : Expected<Settings>(none(limits));
-}
-
-std::optional<Settings> at_times(const std::vector<const LinearPlant*>& plants, const Shape& shape,
-                                 const Limits& limits, const Settings& start) {
-    Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
-    const Settings found = local.confirmed(start.Ti, start.Td);
-    return std::isfinite(found.load_IAE) ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace tunewright::built

@@ -38,8 +38,4 @@ Limits within(const Limits& limits, double margin);
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
                           const std::vector<Settings>& starts, const RunControl& control);
 
-/// At the times of `start` the largest gain within the limits and its cost; empty where there is none.
-std::optional<Settings> at_times(const std::vector<const LinearPlant*>& plants, const Shape& shape,
-                                 const Limits& limits, const Settings& start);
-
 }  // namespace tunewright::built

@@ -1,7 +1,10 @@
 #include "engine/tuning/robust/robust.h"
 
 #include <cmath>
+#include <deque>
+#include <limits>
 
+#include "engine/loop/worst_case.h"
 #include "engine/tuning/robust/family.h"
 
 namespace tunewright {
@@ -9,7 +12,10 @@ namespace {
 
 using namespace robust;
 
-constexpr double kHold = 0.5;        // of a sample: the mean delay of the hold
+constexpr int kMaxRounds = 5;            // of adding the worst plants found inside the regions
+constexpr int kSamples = 48;             // of a region, looked at before the worst is followed
+constexpr double kAllowedInside = 5e-5;  // relative excess over a limit inside a region
+constexpr double kHold = 0.5;            // of a sample: the mean delay of the hold
 constexpr double kTiedFilter = 0.1;  // Tf/Td where the plant suggests no filter time but the sampling bounds the gain
 
 /// The plant as a sampled program sees it, nearly: later by half a sample and by the computation. An ideal design for
@@ -35,6 +41,26 @@ std::function<double(double)> filter_time(const TuningProblem& tuning, const Rob
     return {};
 }
 
+/// Of each region the plant inside on which the built loop exceeds a limit most, where it does.
+std::vector<LinearPlant> worst_as_built(const PlantFamily& family, const built::Law& law, const built::Limits& limits,
+                                        const RunControl& control) {
+    const PlantCost excess = [&](const LinearPlant& plant) {
+        return built::is_stable(plant, law) ? built::peaks_of(plant, law).excess(limits)
+                                            : std::numeric_limits<double>::infinity();
+    };
+    std::vector<LinearPlant> found;
+    for (const PlantRegion& region : family.regions) {
+        if (region.dimension() == 0) continue;
+        auto starts = region.spread(kSamples);
+        const auto ends = region.ends();
+        starts.insert(starts.end(), ends.begin(), ends.end());
+        const WorstCase worst = find_worst_case(region, excess, starts, control.stop);
+        if (!(worst.cost > kAllowedInside)) continue;
+        if (auto plant = LinearPlant::make(region.at(worst.z))) found.push_back(std::move(*plant));
+    }
+    return found;
+}
+
 }  // namespace
 
 Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const RobustOptions& options,
@@ -50,6 +76,7 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
     auto others = other_members(tuning, first_sign);
     if (!others) return others.error();
     std::vector<const LinearPlant*> plants{&tuning.linear};
+    std::deque<LinearPlant> inside;  // found between the members; their addresses stay
     for (const LinearPlant& other : *others) plants.push_back(&other);
 
     built::Wish wish;
@@ -60,6 +87,13 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
     wish.filter = wish.filter_time ? FilterType::measurement_second_order : FilterType::none;
     wish.start = start->controller;
     auto fitted = built::design(build, plants, wish, control);
+    for (int round = 0; fitted && tuning.family && round < kMaxRounds; ++round) {
+        auto added = worst_as_built(*tuning.family, fitted->law, wish.limits, control);
+        if (added.empty()) break;
+        for (LinearPlant& plant : added) plants.push_back(&inside.emplace_back(std::move(plant)));
+        wish.start = fitted->controller;
+        fitted = built::design(build, plants, wish, control);
+    }
     if (!fitted) return fitted.error();
     BuiltDesign design{std::move(*start), std::move(*fitted)};
     design.tuned.controller = built::continuous(design.fitted.controller);

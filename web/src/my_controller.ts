@@ -1,6 +1,7 @@
 // The user's own controller: which product, with which spans and sample time. The browser keeps it for later designs.
 import type { Implement, Need, ProductSummary, SettingValue, Span } from "./api/products.ts";
 import type { TypedBaseline } from "./api/types.ts";
+import type { UnitNames } from "./words/numbers.ts";
 import { productTitle } from "./words/products.ts";
 
 export interface MyController {
@@ -11,6 +12,8 @@ export interface MyController {
   y_span?: Span;
   u_span?: Span;
   sample_time?: number;
+  /** What ranges and sample time are in. */
+  units?: UnitNames;
 }
 
 const KEY = "tunewright-controller";
@@ -52,13 +55,28 @@ export function mineOfRequest(implement: Implement | undefined, mine: MyControll
 }
 
 /** Ranges that the product does not need are in no request, and are known all the same. */
-function unasked({ product, name, needs, y_span, u_span }: MyController): MyController {
+function unasked({ product, name, needs, y_span, u_span, units }: MyController): MyController {
   return {
+    ...(units ? { units } : {}),
     product,
     name,
     needs,
     ...(y_span && !needs.includes("y_span") ? { y_span } : {}),
     ...(u_span && !needs.includes("u_span") ? { u_span } : {}),
+  };
+}
+
+/** For a loop in these units: numbers that were given in others are not known for it. A unit that nobody named may be any. */
+export function inUnits(mine: MyController | null, units: UnitNames): MyController | null {
+  const { y_span, u_span, sample_time, units: given, ...rest } = mine ?? {};
+  if (!mine || !given) return mine;
+  const fits = (name: keyof UnitNames): boolean => given[name] === "" || units[name] === "" || given[name] === units[name];
+  return {
+    ...(rest as MyController),
+    ...(y_span && fits("y") ? { y_span } : {}),
+    ...(u_span && fits("u") ? { u_span } : {}),
+    ...(sample_time !== undefined && fits("time") ? { sample_time } : {}),
+    units,
   };
 }
 
@@ -107,7 +125,7 @@ const NEEDS: readonly string[] = ["y_span", "u_span", "sample_time"];
 /** What stands in the storage may be an older page's, or anybody's. */
 export function readMine(data: unknown): MyController | null {
   if (typeof data !== "object" || data === null) return null;
-  const { product, name, needs, y_span, u_span, sample_time } = data as Record<string, unknown>;
+  const { product, name, needs, y_span, u_span, sample_time, units } = data as Record<string, unknown>;
   if (typeof product !== "string" || typeof name !== "string" || !Array.isArray(needs)) return null;
   return {
     product,
@@ -116,8 +134,14 @@ export function readMine(data: unknown): MyController | null {
     ...(isSpan(y_span) ? { y_span } : {}),
     ...(isSpan(u_span) ? { u_span } : {}),
     ...(typeof sample_time === "number" && sample_time > 0 ? { sample_time } : {}),
+    ...(isUnits(units) ? { units: { time: units.time, u: units.u, y: units.y } } : {}),
   };
 }
+
+const isUnits = (value: unknown): value is UnitNames =>
+  typeof value === "object" &&
+  value !== null &&
+  ["time", "u", "y"].every((name) => typeof (value as Record<string, unknown>)[name] === "string");
 
 const isSpan = (value: unknown): value is Span =>
   Array.isArray(value) &&

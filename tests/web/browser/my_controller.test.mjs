@@ -55,7 +55,7 @@ async function designForMine(page) {
   await page.getByRole("button", { name: "Design for this controller" }).click();
   await page.waitForFunction((address) => location.href !== address, before);
   await page.getByRole("button", { name: "Design for this controller" }).waitFor({ state: "hidden" });
-  await page.waitForFunction(() => !document.querySelector(".own[aria-busy]"));
+  await page.waitForFunction(() => !document.querySelector(".own-controller[aria-busy]"));
   return jobOf(page);
 }
 
@@ -221,19 +221,38 @@ test("only what a product needs is asked for; it is remembered and sent with lat
   });
 });
 
-test("Start refuses a controller whose ranges are missing, at the field", async () => {
+test("a controller whose range is missing is not designed for, and it is said; a range that cannot be is refused", async () => {
   await withPage("", {}, async (page) => {
     await choose(page, "klipper", "Klipper heater (control: pid)");
+    await page.getByText("Until then designs are made for an ideal controller.", { exact: false }).waitFor();
+    await giveRange(page, /^Output range/, 1, "one");
     await page.getByRole("button", { name: "Tune this model" }).click();
     const summary = page.getByRole("group", { name: "What to mend" });
-    await summary.waitFor();
-    await summary.getByRole("link", { name: /^Give the range of the output/ }).click();
-    assert.ok(
-      await picker(page)
-        .getByRole("group", { name: /^Output range/ })
-        .getByLabel("from")
-        .evaluate((element) => element === document.activeElement),
-    );
+    await summary.getByRole("link", { name: /^Output range, to "one" is not a number/ }).click();
+    const end = picker(page).getByRole("group", { name: /^Output range/ }).getByLabel("to");
+    assert.ok(await end.evaluate((element) => element === document.activeElement));
+    await end.fill("");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    assert.equal((await jobOf(page)).request.implement, undefined);
+    assert.equal(await typed(page).count(), 0);
+    await giveRange(page, /^Output range/, 0, 1);
+    await typed(page).waitFor();
+  });
+});
+
+test("a loop that its sampling makes unstable is said to be so, in the verdict too", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneModel(page);
+    await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
+    await picker(page).getByLabel("Sample time (s)").fill("60");
+    await picker(page).getByLabel("Sample time (s)").press("Tab");
+    await typed(page).getByText("On the controller as it is built the loop is unstable", { exact: false }).waitFor();
+    // Designed for that sample time it holds its limits again.
+    const job = await designForMine(page);
+    const [entry] = job.result.controllers;
+    assert.ok(entry.implemented.robustness.stable && entry.implemented.robustness.Ms <= 1.4 * (1 + 1e-4));
+    await page.getByRole("region", { name: "Verdict" }).getByText("On your controller as it is built Ms is", { exact: false }).waitFor();
   });
 });
 

@@ -8,6 +8,7 @@ import { readSpan } from "../../../web/src/form/span_fields.ts";
 import { withImplement } from "../../../web/src/form/tuning_request.ts";
 import {
   implementOf,
+  inUnits,
   mineOfRequest,
   missingOf,
   named,
@@ -18,7 +19,8 @@ import {
 import type { MyController } from "../../../web/src/my_controller.ts";
 import {
   builtRows,
-  builtWarnings,
+  builtTroubles,
+  differenceSentence,
   evidenceSentence,
   findProducts,
   needSentence,
@@ -75,7 +77,7 @@ test("a maker is not said twice", () => {
 
 test("what is missing is asked for, with the reason", () => {
   assert.equal(needSentence([]), "");
-  assert.match(needSentence(["y_span", "u_span"]), /^Give the range of the measurement and the range of the output: .*them\.$/);
+  assert.match(needSentence(["y_span", "u_span"]), /^Give the range of the measurement and the range of the output: .*them\. Until then/);
   assert.match(needSentence(["sample_time"]), /^Give the sample time: /);
 });
 
@@ -169,14 +171,19 @@ test("the loop as built stands beside the ideal one; beyond 2 % it is marked, in
   );
 });
 
-test("warnings about the loop as built come worst first, the others stay away", () => {
+test("what differs by more than 2 % is said, and what leaves nothing to compare is handed on", () => {
+  assert.equal(
+    differenceSentence(built(5.91, -2.05)),
+    "As built it is another loop: Ms 5.9 % higher, the load IAE 2.0 % lower than the ideal one's.",
+  );
+  assert.equal(differenceSentence(built(1.99, null)), "");
   const warning = (code: string) => ({ code, detail: code });
   const entry = { warnings: ["differs-as-built", "far-from-linear", "unstable-as-built"].map(warning) };
   assert.deepEqual(
-    builtWarnings(entry).map(({ code }) => code),
-    ["unstable-as-built", "differs-as-built"],
+    builtTroubles(entry).map(({ code }) => code),
+    ["unstable-as-built"],
   );
-  assert.deepEqual(builtWarnings({}), []);
+  assert.deepEqual(builtTroubles({}), []);
 });
 
 test("it is said how the loop was reckoned and how slow it may be sampled", () => {
@@ -187,6 +194,7 @@ test("it is said how the loop was reckoned and how slow it may be sampled", () =
   assert.deepEqual(samplingSentences({ ...built(0, 0), sample_time: null }, null, "s"), [
     "Reckoned as continuous, because no sample time is known.",
   ]);
+  assert.match(samplingSentences(built(0, 0), 0.2, "s")[1]!, /^That is slow: up to 0.200 s /);
   assert.deepEqual(samplingSentences(undefined, undefined, "s"), []);
 });
 
@@ -263,6 +271,16 @@ test("what a job was made for is shown; ranges that the product does not need st
   assert.equal(mineOfRequest({ sample_time: 1 }, MINE), MINE);
   assert.deepEqual(named({ product: "foxboro_pid", name: "foxboro_pid", needs: [] }, LIST)?.name, "Foxboro I/A Series PID block");
   assert.equal(named(MINE, LIST), MINE);
+});
+
+test("ranges and sample time that were given in other units are not taken for this loop", () => {
+  const given: MyController = { ...MINE, units: { time: "s", u: "%", y: "°C" } };
+  assert.deepEqual(inUnits(given, { time: "s", u: "", y: "°C" }), { ...MINE, units: { time: "s", u: "", y: "°C" } });
+  const other = inUnits(given, { time: "min", u: "%", y: "bar" })!;
+  assert.deepEqual([other.sample_time, other.y_span, other.u_span], [undefined, undefined, [0, 100]]);
+  assert.deepEqual(missingOf(other), ["y_span"]);
+  assert.equal(inUnits(MINE, { time: "min", u: "", y: "" }), MINE, "nobody knows what they were in");
+  assert.equal(inUnits(null, { time: "s", u: "", y: "" }), null);
 });
 
 test("what stands in the browser's storage is read with care", () => {

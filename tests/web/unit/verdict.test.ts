@@ -157,3 +157,18 @@ test("settings are given in each form that exists, else the reason", () => {
   assert.match(String(settingsOf(entry(), "series", units)), /no series form/);
   assert.ok(Array.isArray(settingsOf(entry(), "parallel", units)));
 });
+
+test("what runs is judged: the loop on the user's controller before the ideal one", () => {
+  const built = (robustness: Record<string, unknown>): Entry =>
+    ({
+      ...entry({ Ms: 1.3, Mt: 1.2 }),
+      implemented: { robustness, performance: { load: { IAE: 16.4 } }, difference: {} },
+    }) as unknown as Entry;
+  const reached = verdictOf(built({ stable: true, Ms: 1.6, Mt: 1.3 }), undefined, undefined);
+  assert.equal(reached.head, "Robust, limited by the margin you asked for.");
+  assert.match(reached.sentences[0]!, /as it is built Ms is 1\.60 and a load disturbance costs 16\.4; what follows is the ideal/);
+  assert.equal(verdictOf(built({ stable: true, Ms: 2.4, Mt: 2 }), undefined, undefined).level, "bad");
+  const unstable = verdictOf(built({ stable: false, Ms: null, Mt: null }), undefined, undefined);
+  assert.deepEqual([unstable.level, unstable.head], ["bad", "Unstable on your controller as it is built."]);
+  assert.match(unstable.sentences[0]!, /sample faster/);
+});

@@ -40,6 +40,8 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   const none = h("p", { class: "finds none", hidden: true });
   const element = h("div", { class: "combobox" }, field.element, count);
   list.hidden = true;
+  // The focus stays in the field, which would close the list; the click then takes the option.
+  list.addEventListener("mousedown", (event) => event.preventDefault());
   // The list hangs below the field, above its hint.
   input.after(h("div", { class: "hanger" }, list, none));
   for (const [name, value] of [
@@ -72,8 +74,6 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
       h("span", {}, choice.text),
       h("span", { class: "aside" }, choice.aside),
     );
-    // The focus stays in the field; the click then takes the option.
-    item.addEventListener("mousedown", (event) => event.preventDefault());
     item.addEventListener("click", () => take(choice));
     return item;
   }

@@ -21,15 +21,12 @@ export interface SpanFields {
 }
 
 export function spanFields(
-  options: { label: string; pointer: string; placeholders: [string, string]; onChange(): void },
+  options: { label: string; pointer: string; onChange(): void },
   errors: FormErrors,
 ): SpanFields {
   const unit = h("span", { class: "unit" });
   const ends = (["from", "to"] as const).map((label, index) =>
-    textField(
-      { label, placeholder: options.placeholders[index]!, pointer: () => `${options.pointer}/${index}` },
-      errors,
-    ),
+    textField({ label, pointer: () => `${options.pointer}/${index}` }, errors),
   );
   const [low, high] = [ends[0]!, ends[1]!];
   for (const end of ends) end.input.addEventListener("change", options.onChange);

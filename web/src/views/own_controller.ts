@@ -8,7 +8,7 @@ import type { Controller, Entry, Job, Result, TuningRequest } from "../api/types
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { withBaseline, withImplement } from "../form/tuning_request.ts";
-import { implementOf, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
+import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
 import type { UnitNames } from "../words/numbers.ts";
@@ -57,12 +57,14 @@ export function ownController(
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const picker = myControllerCard(errors, chooseMine, h("div", { class: "actions" }, redesign), trouble, today.element);
   const typed = typedCard(announce);
-  const side = h("div", { class: "own" }, picker.element, typed.element);
+  const side = h("div", { class: "own-controller" }, picker.element, typed.element);
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
     onBusy: typed.setBusy,
     onAnswer({ product, entered, judged }) {
-      if (shown) showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      if (!shown) return;
+      showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
+      if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
       typed.complain(sentenceOf(error));
@@ -127,7 +129,6 @@ export function ownController(
 
   /** Another controller, or another job's. */
   function showMine(): void {
-    picker.setUnits(shown?.units ?? { time: "s", u: "", y: "" });
     showProduct();
     code.propose(mine);
     update();
@@ -223,7 +224,8 @@ export function ownController(
       if (!sameJob || shown?.index !== next.index) tried = null;
       shown = next;
       if (!sameJob) {
-        mine = mineOfRequest(next.job.request?.implement, mine);
+        mine = mineOfRequest(next.job.request?.implement, inUnits(mine, next.units));
+        picker.setUnits(next.units);
         picker.set(mine);
         nameMine();
         showMine();

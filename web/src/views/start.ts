@@ -7,7 +7,7 @@ import { FormErrors } from "../form/errors.ts";
 import type { PlantReading } from "../form/plant.ts";
 import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
-import { implementOf, mineOfRequest, named, rememberMine } from "../my_controller.ts";
+import { implementOf, inUnits, mineOfRequest, named, rememberMine } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
@@ -202,7 +202,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   function load(request: TuningRequest): void {
     errors.clear();
     base = request;
-    showMine(mineOfRequest(request.implement, mine));
+    showMine(mineOfRequest(request.implement, inUnits(mine, unitNames(request.units))));
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);
@@ -252,7 +252,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   methods.setMethods(store.get().methods);
   mineCard.setProducts(store.get().products);
   mineCard.setUnits(unitNames(today.readUnits()));
-  showMine(mine);
+  showMine(inUnits(mine, unitNames(today.readUnits())));
   showLists(store.get());
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.methods !== previous.methods) methods.setMethods(workspace.methods);
@@ -261,7 +261,8 @@ export function startView(store: Store, events: StartEvents): StartView {
       showMine(mine);
     }
     // Chosen on Design.
-    if (workspace.mine !== previous.mine && workspace.mine !== mine) showMine(workspace.mine);
+    if (workspace.mine !== previous.mine && workspace.mine !== mine)
+      showMine(inUnits(workspace.mine, unitNames(today.readUnits())));
     const changed =
       workspace.examples !== previous.examples ||
       workspace.recent !== previous.recent ||

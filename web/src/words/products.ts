@@ -38,7 +38,7 @@ export function needSentence(missing: readonly Need[]): string {
   const why = missing.includes("sample_time")
     ? "its parameters count in them"
     : "its gain is in percent or counts of them";
-  return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}.`;
+  return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}. Until then designs are made for an ideal controller.`;
 }
 
 /** A setting as it is typed. */
@@ -120,11 +120,22 @@ function signed(percent: number): string {
   return Number(text) === 0 ? text : `${percent > 0 ? "+" : "−"}${text}`;
 }
 
-const AS_BUILT = ["unstable-as-built", "differs-as-built", "not-as-built"];
+/** How far the loop as built lies from the ideal one, where that is worth saying; "" where it is not. */
+export function differenceSentence({ difference }: Implemented): string {
+  const parts = [
+    ["Ms", difference.Ms_percent],
+    ["the load IAE", difference.load_IAE_percent],
+  ].flatMap(([name, percent]) =>
+    typeof percent === "number" && Math.abs(percent) > WORTH_SAYING_PERCENT
+      ? [`${name} ${Math.abs(percent).toFixed(1)} % ${percent > 0 ? "higher" : "lower"}`]
+      : [],
+  );
+  return parts.length === 0 ? "" : `As built it is another loop: ${parts.join(", ")} than the ideal one's.`;
+}
 
-/** Warnings of an entry that are about the loop as built, the worst first. */
-export const builtWarnings = (entry: Pick<Entry, "warnings">): Notice[] =>
-  AS_BUILT.flatMap((code) => (entry.warnings ?? []).filter((warning) => warning.code === code));
+/** Of an entry's warnings those that leave no loop to compare: unstable as built, or not to be built at all. */
+export const builtTroubles = (entry: Pick<Entry, "warnings">): Notice[] =>
+  (entry.warnings ?? []).filter(({ code }) => code === "unstable-as-built" || code === "not-as-built");
 
 /** How the loop was reckoned, and how slow it may be sampled. */
 export function samplingSentences(
@@ -133,14 +144,19 @@ export function samplingSentences(
   time: string,
 ): string[] {
   const sentences: string[] = [];
+  const period = built?.sample_time ?? null;
   if (built)
     sentences.push(
-      built.sample_time === null
+      period === null
         ? "Reckoned as continuous, because no sample time is known."
-        : `Reckoned with a sample every ${formatParameter(built.sample_time)} ${time}.`,
+        : `Reckoned with a sample every ${formatParameter(period)} ${time}.`,
     );
-  if (typeof longest === "number")
-    sentences.push(`Sampling up to every ${formatNumber(longest)} ${time} keeps Ms within 5 %.`);
+  if (typeof longest !== "number") return sentences;
+  sentences.push(
+    period !== null && period > longest
+      ? `That is slow: up to ${formatNumber(longest)} ${time} would keep Ms within 5 % of the ideal loop's.`
+      : `Sampling up to every ${formatNumber(longest)} ${time} keeps Ms within 5 %.`,
+  );
   return sentences;
 }
 

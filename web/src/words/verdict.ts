@@ -44,8 +44,9 @@ export function verdictOf(entry: Entry, today: Entry | undefined, request: Tunin
   }
   const units = unitNames(request?.units);
   return {
-    ...regionHeading(entry, heading(entry)),
+    ...builtHeading(entry, regionHeading(entry, heading(entry))),
     sentences: [
+      ...builtSentences(entry),
       ...limitSentences(entry, units.time),
       ...nonlinearSentences(entry),
       ...regionSentences(entry),
@@ -56,12 +57,14 @@ export function verdictOf(entry: Entry, today: Entry | undefined, request: Tunin
   };
 }
 
+/** Judged by what runs: the loop as it is built, where that is known. */
 function heading(entry: Entry): Pick<Verdict, "level" | "head"> {
-  const Ms = entry.robustness?.Ms ?? null;
+  const runs = entry.implemented?.robustness ?? entry.robustness;
+  const Ms = runs?.Ms ?? null;
   if (Ms === null) return { level: "warn", head: "Stable, with an unknown margin." };
   if (Ms > TOO_SHARP_MS * (1 + 1e-6)) return { level: "bad", head: "Too sharp for a plant that changes." };
   if (Ms > LITTLE_MARGIN_MS * (1 + 1e-6)) return { level: "warn", head: "Fast, with little margin left." };
-  if (entry.method !== "baseline" && reached(entry).length > 0)
+  if (entry.method !== "baseline" && reached(entry, runs).length > 0)
     return { level: "good", head: "Robust, limited by the margin you asked for." };
   return { level: "good", head: entry.method === "baseline" ? "Today's settings are robust." : "Robust." };
 }
@@ -72,6 +75,22 @@ function regionHeading(entry: Entry, nominal: Pick<Verdict, "level" | "head">): 
   return typeof stable === "number" && stable < 1
     ? { level: "bad", head: "Unstable on a part of what the plant may be." }
     : nominal;
+}
+
+/** What is typed is what runs: no margin of the ideal loop helps where the built one runs away. */
+function builtHeading(entry: Entry, ideal: Pick<Verdict, "level" | "head">): Pick<Verdict, "level" | "head"> {
+  return entry.implemented?.robustness.stable === false
+    ? { level: "bad", head: "Unstable on your controller as it is built." }
+    : ideal;
+}
+
+function builtSentences(entry: Entry): string[] {
+  const { robustness, performance } = entry.implemented ?? {};
+  if (!robustness) return [];
+  if (!robustness.stable) return ["Only the ideal loop is stable: sample faster, or design for your controller."];
+  const IAE = performance?.load?.["IAE"];
+  const cost = typeof IAE === "number" ? ` and a load disturbance costs ${formatNumber(IAE)}` : "";
+  return [`On your controller as it is built Ms is ${formatNumber(robustness.Ms)}${cost}; what follows is the ideal loop's.`];
 }
 
 function regionSentences(entry: Entry): string[] {
@@ -91,11 +110,11 @@ export const percent = (fraction: number): string =>
   String(fraction > 0 ? Math.max(0.1, Math.floor(1000 * fraction + 1e-9) / 10) : 0);
 
 /** The limits that the design touches. */
-function reached(entry: Entry): ("Ms" | "Mt" | "Mks")[] {
+function reached(entry: Entry, robustness = entry.robustness): ("Ms" | "Mt" | "Mks")[] {
   const limits = limitsOf(entry);
   return (["Ms", "Mt", "Mks"] as const).filter((name) => {
     const limit = limits[name];
-    const value = entry.robustness?.[name];
+    const value = robustness?.[name];
     return limit !== null && typeof value === "number" && Math.abs(value / limit - 1) < REACHED;
   });
 }

@@ -19,7 +19,7 @@ export interface MyControllerCard {
   setUnits(units: UnitNames): void;
   /** Without reporting. */
   set(mine: MyController | null): void;
-  /** As it stands in the fields; what is still missing is a fault where the whole is to be sent. */
+  /** As it stands in the fields. What is still missing is no fault: it is said beside them. */
   read(): { mine: MyController | null; errors: FieldError[] };
 }
 
@@ -30,6 +30,7 @@ export function myControllerCard(
   ...below: HTMLElement[]
 ): MyControllerCard {
   let products: ProductSummary[] = [];
+  let units: UnitNames | null = null;
   let chosen: Pick<MyController, "product" | "name" | "needs"> | null = null;
   const title = h("h2", { id: uniqueId("mine") }, "My controller ", h("span", { class: "optional" }, "optional"));
   const search = combobox(
@@ -43,11 +44,11 @@ export function myControllerCard(
     errors,
   );
   const measurement = spanFields(
-    { label: "Measurement range", pointer: "/implement/y_span", placeholders: ["0", "200"], onChange: change },
+    { label: "Measurement range", pointer: "/implement/y_span", onChange: change },
     errors,
   );
   const output = spanFields(
-    { label: "Output range", pointer: "/implement/u_span", placeholders: ["0", "100"], onChange: change },
+    { label: "Output range", pointer: "/implement/u_span", onChange: change },
     errors,
   );
   const sampling = textField(
@@ -112,6 +113,7 @@ export function myControllerCard(
       ...(y.span ? { y_span: y.span } : {}),
       ...(u.span ? { u_span: u.span } : {}),
       ...(period?.ok && period.value > 0 ? { sample_time: period.value } : {}),
+      ...(units ? { units } : {}),
     };
     return { mine, errors: faults };
   }
@@ -134,7 +136,8 @@ export function myControllerCard(
       products = list;
       search.refresh();
     },
-    setUnits(units) {
+    setUnits(next) {
+      units = next;
       measurement.setUnit(units.y);
       output.setUnit(units.u);
       sampling.setUnit(units.time);
@@ -147,11 +150,6 @@ export function myControllerCard(
       show();
       sayMissing(mine);
     },
-    read() {
-      const { mine, errors: faults } = read();
-      const missing = mine && faults.length === 0 ? missingOf(mine) : [];
-      const detail = needSentence(missing);
-      return { mine, errors: [...faults, ...missing.slice(0, 1).map((need) => ({ pointer: `/implement/${need}`, detail }))] };
-    },
+    read,
   };
 }

@@ -69,6 +69,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
 
   function label(): void {
     own.element.hidden = !isOwn();
+    form.element.classList.toggle("wide", isOwn());
     for (const field of [...slots, filter]) field.element.hidden = isOwn();
     names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";

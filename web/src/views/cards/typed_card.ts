@@ -4,7 +4,8 @@ import type { Entry, Notice } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import {
   builtRows,
-  builtWarnings,
+  builtTroubles,
+  differenceSentence,
   evidenceSentence,
   productTitle,
   samplingSentences,
@@ -86,7 +87,7 @@ export function typedCard(announce: (sentence: string) => void, ...below: HTMLEl
       element.hidden = false;
     },
     complain(sentence) {
-      title.textContent = "My controller";
+      title.textContent = "Nothing to type";
       trouble.textContent = sentence;
       trouble.hidden = false;
       body.hidden = true;
@@ -113,14 +114,18 @@ const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
 
 /** The loop as built beside the ideal one, with what has to be said of it first. */
 function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[] {
-  if (!judged) return [h("p", { class: "hint" }, "Tried by hand: the loop as built is judged once these are designed.")];
+  if (!judged) return [h("p", { class: "hint" }, "Tried by hand: what stands beside the sliders is the loop with an ideal controller.")];
   const { implemented } = judged;
+  const differs = implemented?.robustness.stable ? differenceSentence(implemented) : "";
   const sampling = samplingSentences(implemented, judged.longest_sample_time, time).join(" ");
   return [
-    ...builtWarnings(judged).map((warning) =>
+    ...builtTroubles(judged).map((warning) =>
       h("p", { class: warning.code === "unstable-as-built" ? "trouble bad" : "trouble" }, warning.detail),
     ),
-    ...(implemented ? [builtTable(builtRows(judged, implemented))] : []),
+    ...(differs ? [h("p", { class: "trouble" }, differs)] : []),
+    implemented
+      ? builtTable(builtRows(judged, implemented))
+      : h("p", { class: "hint" }, "How the loop runs on it is not known here: only the settings were converted."),
     ...(sampling ? [h("p", { class: "hint" }, sampling)] : []),
   ];
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "engine/evaluation/evaluate_nonlinear.h"
 #include "engine/evaluation/evaluation_start.h"
@@ -15,13 +17,15 @@
 namespace tunewright {
 namespace {
 
-constexpr double kPeakMoves = 4;      // a sampled loop's peak lies within this factor of the continuous one's
 constexpr double kFirstSample = 0.1;  // of 1/omega_Ms: where the search for the longest sample time starts
 constexpr double kShortest = 1e-3;    // of 1/omega_Ms
 constexpr double kLongest = 1e3;      // of 1/omega_Ms: where it ends
-constexpr double kShorter = 0.9;      // of a sample time that the whole loop does not bear
-constexpr double kSampleTolerance = 3e-4;
-constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may lie above that near the peak
+constexpr double kFirstLook = 0.1;    // of 1/omega_Ms: from there on the whole loop is looked at
+constexpr double kLookRatio = 1.4;    // of the sample times at which it is
+constexpr double kFarBelow = -0.02;   // of ln Ms below its limit: no closer look is worth it there
+constexpr int kHalvings = 2;          // of a step between two looks
+constexpr double kSampleTolerance = 1e-4;
+constexpr double kNearEnough = 3e-4;  // of ln Ms
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
 
@@ -126,24 +130,60 @@ double whole_peak(const LinearPlant& plant, const ParallelPid& gains, double Ts)
 
 }  // namespace
 
+namespace {
+
+struct Look {
+    double Ts = 0, excess = 0;
+};
+
+/// Two sample times between these between which the excess first rises above 0: looked for where it comes near.
+std::optional<std::pair<Look, Look>> excess_between(const std::function<double(double)>& of_loop, const Look& left,
+                                                    const Look& right, int halvings) {
+    if (halvings == 0 || std::max(left.excess, std::min(right.excess, 0.0)) < kFarBelow) return std::nullopt;
+    const double Ts = std::sqrt(left.Ts * right.Ts);
+    const Look middle{Ts, of_loop(Ts)};
+    if (auto first = excess_between(of_loop, left, middle, halvings - 1)) return first;
+    if (middle.excess > 0) return std::pair(left, middle);
+    return excess_between(of_loop, middle, right, halvings - 1);
+}
+
+}  // namespace
+
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor) {
-    TrackedPeak peak(plant, gains, omega_Ms);
-    const auto excess = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
     const double longest = kLongest / omega_Ms;
-    double low = 0, f_low = -std::log(factor), high = kFirstSample / omega_Ms, f_high = excess(high);
+    // Near the continuous loop's peak alone, to know where to look.
+    TrackedPeak peak(plant, gains, omega_Ms);
+    const auto of_peak = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
+    double low = 0, f_low = -std::log(factor), high = kFirstSample / omega_Ms, f_high = of_peak(high);
     while (f_high <= 0 && high < longest) {
         low = high;
         f_low = f_high;
         high *= 2;
-        f_high = excess(high);
+        f_high = of_peak(high);
     }
-    if (f_high <= 0) return std::nullopt;
-    double found = root_between(excess, low, high, f_low, f_high, kSampleTolerance * high);
-    // Another peak, or a loop that is unstable: shorter until the whole loop says the same.
-    const double shortest = kShortest / omega_Ms;
-    while (found > shortest && !(whole_peak(plant, gains, found) <= factor * Ms * (1 + kWholeLoop))) found *= kShorter;
-    return found > shortest ? std::optional(found) : std::nullopt;
+    const double guess = f_high > 0 ? root_between(of_peak, low, high, f_low, f_high, kSampleTolerance * high) : high;
+    // The whole loop: another peak may take over, or come and go, at shorter sample times too.
+    const auto of_loop = [&](double Ts) { return std::log(whole_peak(plant, gains, Ts) / (factor * Ms)); };
+    const int looks = std::max(0, static_cast<int>(std::log(guess * omega_Ms / kFirstLook) / std::log(kLookRatio)));
+    Look left{guess * std::pow(kLookRatio, -looks), 0}, right;
+    left.excess = of_loop(left.Ts);
+    for (right = left; left.excess > 0; left = {0.5 * left.Ts, of_loop(0.5 * left.Ts)}) {
+        if (left.Ts < 2 * kShortest / omega_Ms) return std::nullopt;
+        right = left;
+    }
+    for (int i = looks - 1; right.excess <= 0; --i) {
+        if (right.Ts >= longest) return std::nullopt;
+        left = right;
+        right.Ts = i == 0 ? guess : guess * std::pow(kLookRatio, -i);
+        right.excess = of_loop(right.Ts);
+        if (const auto between = excess_between(of_loop, left, right, kHalvings)) {
+            std::tie(left, right) = *between;
+        } else if (i == 0 && std::abs(right.excess) <= kNearEnough) {
+            return guess;
+        }
+    }
+    return log_root(of_loop, left.Ts, right.Ts, left.excess, right.excess, kSampleTolerance);
 }
 
 }  // namespace tunewright

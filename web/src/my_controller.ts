@@ -43,14 +43,22 @@ export function sameImplement(a: Implement | null | undefined, b: Implement | nu
 export function mineOfRequest(implement: Implement | undefined, mine: MyController | null): MyController | null {
   const { product, y_span, u_span, sample_time } = implement ?? {};
   if (product === undefined) return mine;
-  const same = product === mine?.product;
   return {
-    product,
-    name: same ? mine.name : product,
-    needs: same ? mine.needs : [],
+    ...(product === mine?.product ? unasked(mine) : { product, name: product, needs: [] }),
     ...(y_span ? { y_span } : {}),
     ...(u_span ? { u_span } : {}),
     ...(sample_time !== undefined ? { sample_time } : {}),
+  };
+}
+
+/** Ranges that the product does not need are in no request, and are known all the same. */
+function unasked({ product, name, needs, y_span, u_span }: MyController): MyController {
+  return {
+    product,
+    name,
+    needs,
+    ...(y_span && !needs.includes("y_span") ? { y_span } : {}),
+    ...(u_span && !needs.includes("u_span") ? { u_span } : {}),
   };
 }
 

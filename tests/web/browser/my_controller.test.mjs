@@ -1,0 +1,345 @@
+// The user's own controller: chosen, typed, remembered, judged as it is built, and as code.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../harness.mjs";
+
+const tests = browserTests();
+const { withPage, jobOf } = tests;
+
+const designShown = (page) => page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+const picker = (page) => page.getByRole("region", { name: /^My controller/ });
+const typed = (page) => page.getByRole("region", { name: /^Type into/ });
+const found = (page) => page.getByRole("listbox", { name: "Maker and product" }).getByRole("option");
+const search = (page) => page.getByRole("combobox", { name: "Maker and product" });
+
+const post = async (path, body) => {
+  const response = await fetch(`${tests.service.base}/v1/${path}`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+  });
+  return { status: response.status, body: await response.json() };
+};
+
+/** Finds a product by what is typed; the first that is found is taken. */
+async function choose(page, words, title) {
+  await search(page).fill(words);
+  await found(page).first().waitFor();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction((text) => document.querySelector("input[role=combobox]").value === text, title);
+}
+
+async function giveRange(page, name, low, high) {
+  const range = picker(page).getByRole("group", { name });
+  await range.getByLabel("from").fill(String(low));
+  await range.getByLabel("to").fill(String(high));
+  await range.getByLabel("to").press("Tab");
+}
+
+/** What stands in the list to type: label, value, unit. */
+const rowsOf = (page) =>
+  typed(page)
+    .locator("table.typed tr")
+    .evaluateAll((rows) => rows.map((row) => [...row.children].slice(0, 3).map((cell) => cell.textContent)));
+
+async function tuneModel(page, address = "#/new/fopdt?K=1.25&T=40&L=8") {
+  await page.goto(`${tests.service.base}/${address}`);
+  await page.getByRole("button", { name: "Tune this model" }).click();
+  await designShown(page);
+}
+
+/** Designs anew for what is chosen, and answers the new job. */
+async function designForMine(page) {
+  const before = page.url();
+  await page.getByRole("button", { name: "Design for this controller" }).click();
+  await page.waitForFunction((address) => location.href !== address, before);
+  await page.getByRole("button", { name: "Design for this controller" }).waitFor({ state: "hidden" });
+  await page.waitForFunction(() => !document.querySelector(".own[aria-busy]"));
+  return jobOf(page);
+}
+
+/** A setting as it is typed, as the value that it is. */
+const valueOf = (text) => (text === "true" || text === "false" ? text === "true" : text === "" || isNaN(text) ? text : Number(text));
+
+const close = (a, b, what) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(b)), `${what}: ${a} against ${b}`);
+
+const PRODUCTS = [
+  { words: "deltav series", title: "Emerson DeltaV PID, FORM Series", id: "emerson_deltav_series", y: [0, 100], u: [0, 100] },
+  { words: "mitsubishi", title: "Mitsubishi FX/FX3/FX5 PID (FNC 88)", id: "mitsubishi_fx_pid", y: [0, 100], u: [0, 100] },
+  { words: "labview", title: "NI LabVIEW PID / LabWindows PID toolkit", id: "labview_pid" },
+];
+
+test("from a record to the settings of three products, each read back as the controller that it is, and to code", async () => {
+  await withPage("#/examples/tclab-step", {}, async (page) => {
+    await page.waitForLoadState("networkidle");
+    await page.getByRole("button", { name: "Tune at once" }).click();
+    await designShown(page);
+    for (const { words, title, id, y, u } of PRODUCTS) {
+      await choose(page, words, title);
+      assert.equal(await picker(page).getByRole("group", { name: /^Measurement range/ }).isVisible(), Boolean(y), title);
+      if (y) await giveRange(page, /^Measurement range/, ...y);
+      if (u) await giveRange(page, /^Output range/, ...u);
+      await picker(page).getByLabel("Sample time (s)").fill("1");
+      await picker(page).getByLabel("Sample time (s)").press("Tab");
+      const job = await designForMine(page);
+      const spans = { ...(y ? { y_span: y } : {}), ...(u ? { u_span: u } : {}) };
+      assert.deepEqual(job.request.implement, { product: id, ...spans, sample_time: 1 });
+      const [entry] = job.result.controllers;
+      await page.waitForFunction((text) => document.querySelector(".typed-card h2").textContent === text, `Type into ${title}`);
+      await page.waitForFunction(
+        (text) => document.querySelector("table.typed .value")?.textContent === text,
+        Object.values(entry.as_entered.as_typed)[0],
+      );
+
+      // The list holds what the service says, under the product's own labels.
+      const product = await (await fetch(`${tests.service.base}/v1/controllers/${id}`)).json();
+      const rows = await rowsOf(page);
+      assert.deepEqual(
+        rows,
+        product.parameters
+          .filter(({ name }) => name in entry.as_entered.as_typed)
+          .map(({ name, label }) => [label, entry.as_entered.as_typed[name], entry.as_entered.units[name] ?? ""]),
+      );
+
+      // What a person then types is that controller.
+      const settings = Object.fromEntries(
+        Object.entries(entry.as_entered.as_typed).map(([name, text]) => [name, valueOf(text)]),
+      );
+      const back = await post(`controllers/${id}/controller`, { settings, ...spans, sample_time: 1 });
+      assert.equal(back.status, 200, JSON.stringify(back.body));
+      for (const name of ["Kp", "Ti", "Td"])
+        close(back.body.controller[name], entry.as_entered.realised[name], `${title} ${name}`);
+      close(back.body.controller.filter.Tf ?? 0, entry.as_entered.realised.filter.Tf ?? 0, `${title} Tf`);
+
+      // The loop as built stands beside the ideal one.
+      const built = await typed(page).locator("table.built tbody tr").first().locator("td").allInnerTexts();
+      assert.equal(Number(built[0]), Number(entry.robustness.Ms.toPrecision(3)));
+      assert.equal(Number(built[1]), Number(entry.implemented.robustness.Ms.toPrecision(3)));
+      await page.getByRole("heading", { name: `How ${title} computes` }).waitFor();
+      assert.ok((await page.locator(".law-formulas math mfrac").count()) > 0, `${title} has a formula`);
+    }
+
+    const job = await jobOf(page);
+    await page.getByText("Controller as code: Structured Text, C, Python").click();
+    const text = page.getByRole("region", { name: "Source text" });
+    for (const [tab, language, sign, file] of [
+      ["Structured Text", "st", "FUNCTION_BLOCK", ".st"],
+      ["C", "c", "#include", ".h"],
+      ["Python", "python", "class ", ".py"],
+    ]) {
+      await page.getByRole("tab", { selected: true }).focus();
+      if (language !== "st") await page.keyboard.press("ArrowRight");
+      await page.getByRole("tab", { name: tab, selected: true }).waitFor();
+      await text.getByText(sign).first().waitFor();
+      const address = `${tests.service.base}/v1/jobs/${job.id}/controllers/0/code?language=${language}&sample_time=1&u_min=0&u_max=100`;
+      assert.equal(await text.textContent(), await (await fetch(address)).text(), language);
+      const [download] = await Promise.all([
+        page.waitForEvent("download"),
+        page.getByRole("button", { name: /^Download/ }).click(),
+      ]);
+      assert.ok(download.suggestedFilename().endsWith(file), download.suggestedFilename());
+      assert.equal(readFileSync(await download.path(), "utf8"), await text.textContent());
+    }
+  });
+});
+
+test("a list is searched by maker, name and parameter, with the keyboard alone", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneModel(page);
+    await search(page).focus();
+    const { controllers } = await (await fetch(`${tests.service.base}/v1/controllers`)).json();
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await found(page).count(), controllers.length);
+    assert.equal(await search(page).getAttribute("aria-expanded"), "true");
+    await page.keyboard.type("rockwell pide");
+    assert.deepEqual(
+      (await found(page).locator("span:first-child").allInnerTexts()).map((text) => text.slice(0, 13)),
+      ["Rockwell Logi", "Rockwell Logi"],
+    );
+    const active = () => search(page).getAttribute("aria-activedescendant");
+    const first = await active();
+    await page.keyboard.press("ArrowDown");
+    assert.notEqual(await active(), first);
+    assert.equal(await page.locator(`#${await active()}`).getAttribute("aria-selected"), "true");
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await active(), first, "after the last comes the first");
+    await page.keyboard.press("Escape");
+    assert.equal(await search(page).getAttribute("aria-expanded"), "false");
+    assert.equal(await search(page).inputValue(), "", "nothing is chosen by leaving");
+    await page.keyboard.type("PBAND");
+    await found(page).filter({ hasText: /^Foxboro/ }).waitFor();
+    await search(page).fill("no such maker");
+    await page.getByText('Nothing is called "no such maker" here.').first().waitFor();
+    await page.keyboard.press("Tab");
+    assert.equal(await search(page).inputValue(), "");
+    assert.equal(await typed(page).count(), 0);
+  });
+});
+
+test("only what a product needs is asked for; it is remembered and sent with later designs, until it is taken back", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneModel(page);
+    await choose(page, "deltav standard", "Emerson DeltaV PID, FORM Standard");
+    await page.getByText("Give the range of the measurement and the range of the output:", { exact: false }).waitFor();
+    assert.equal(await typed(page).count(), 0);
+    await giveRange(page, /^Measurement range/, 200, 0);
+    const end = picker(page).getByRole("group", { name: /^Measurement range/ }).getByLabel("to");
+    assert.equal(await end.getAttribute("aria-invalid"), "true");
+    await giveRange(page, /^Measurement range/, 0, 200);
+    assert.equal(await end.getAttribute("aria-invalid"), null);
+    await giveRange(page, /^Output range/, 0, 100);
+    await typed(page).waitFor();
+    // Before anything is designed for it, the settings are those of the ideal design.
+    const [entry] = (await jobOf(page)).result.controllers;
+    const asked = await post("controllers/emerson_deltav_standard/settings", {
+      controller: { ...entry.controller, action: undefined },
+      y_span: [0, 200],
+      u_span: [0, 100],
+    });
+    assert.equal((await rowsOf(page))[0][1], asked.body.as_typed.GAIN);
+    assert.ok((await typed(page).innerText()).includes("exact place of ALPHA in the Standard form"), "what is not verified is named");
+
+    await page.getByRole("link", { name: "Start" }).click();
+    assert.equal(await search(page).inputValue(), "Emerson DeltaV PID, FORM Standard");
+    await page.reload();
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    assert.deepEqual((await jobOf(page)).request.implement, {
+      product: "emerson_deltav_standard",
+      y_span: [0, 200],
+      u_span: [0, 100],
+    });
+    await typed(page).waitFor();
+    await picker(page).getByRole("button", { name: "No controller" }).click();
+    assert.equal(await typed(page).count(), 0);
+    await page.getByRole("button", { name: "Design for an ideal controller" }).click();
+    await page.getByRole("button", { name: "Design for an ideal controller" }).waitFor({ state: "hidden" });
+    assert.equal((await jobOf(page)).request.implement, undefined);
+    await page.getByRole("link", { name: "Start" }).click();
+    assert.equal(await search(page).inputValue(), "");
+  });
+});
+
+test("Start refuses a controller whose ranges are missing, at the field", async () => {
+  await withPage("", {}, async (page) => {
+    await choose(page, "klipper", "Klipper heater (control: pid)");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    const summary = page.getByRole("group", { name: "What to mend" });
+    await summary.waitFor();
+    await summary.getByRole("link", { name: /^Give the range of the output/ }).click();
+    assert.ok(
+      await picker(page)
+        .getByRole("group", { name: /^Output range/ })
+        .getByLabel("from")
+        .evaluate((element) => element === document.activeElement),
+    );
+  });
+});
+
+test("one value is copied as it is typed, all of them with their units", async () => {
+  await withPage("", {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: tests.service.base });
+    await tuneModel(page);
+    await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
+    await typed(page).waitFor();
+    const rows = await rowsOf(page);
+    const clipboard = () => page.evaluate(() => navigator.clipboard.readText());
+    await typed(page).getByRole("button", { name: "Copy Ti", exact: true }).click();
+    assert.equal(await clipboard(), rows.find(([label]) => label === "Ti")[1]);
+    await typed(page).getByRole("button", { name: "Copy all with units" }).click();
+    await typed(page).getByRole("button", { name: "Copied" }).last().waitFor();
+    const lines = rows.map(([label, value, unit]) => `${label} = ${value}${unit ? ` ${unit}` : ""}`);
+    assert.equal(await clipboard(), ["NI LabVIEW PID / LabWindows PID toolkit: robust", ...lines].join("\n"));
+  });
+});
+
+test("today's settings are typed as the product names them, on Design and on Start", async () => {
+  await withPage("", {}, async (page) => {
+    await tuneModel(page);
+    await choose(page, "foxboro", "Foxboro I/A Series PID block");
+    await giveRange(page, /^Measurement range/, 0, 200);
+    await giveRange(page, /^Output range/, 0, 100);
+    await page.getByText("Today's settings in this controller").click();
+    await picker(page).getByLabel("PBAND (%)", { exact: true }).fill("150");
+    await picker(page).getByLabel("INT (min)", { exact: true }).fill("1,2");
+    await picker(page).getByRole("button", { name: "Set the design against these" }).click();
+    await page.getByRole("button", { name: "today", exact: true }).waitFor();
+    const today = { PBAND: 150, INT: 1.2 };
+    let job = await jobOf(page);
+    assert.deepEqual(job.request.baseline, {
+      product: "foxboro_pid",
+      settings: today,
+      y_span: [0, 200],
+      u_span: [0, 100],
+    });
+    const twin = await post("controllers/foxboro_pid/controller", { settings: today, y_span: [0, 200], u_span: [0, 100] });
+    assert.equal(job.result.controllers.at(-1).method, "baseline");
+    close(job.result.controllers.at(-1).controller.Ti, twin.body.controller.Ti, "Ti of today's settings");
+    assert.equal(await picker(page).getByLabel("PBAND (%)", { exact: true }).inputValue(), "150");
+
+    // Back in the form they stand there still, and are sent again.
+    await page.getByRole("link", { name: "Change the request" }).click();
+    const form = page.getByRole("region", { name: /^Today's settings/ });
+    await form.getByLabel("PBAND (%)", { exact: true }).waitFor();
+    assert.equal(await form.getByLabel("INT (min)", { exact: true }).inputValue(), "1.2");
+    await form.getByLabel("PBAND (%)", { exact: true }).fill("120");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    job = await jobOf(page);
+    assert.deepEqual(job.request.baseline.settings, { PBAND: 120, INT: 1.2 });
+  });
+});
+
+test("settings that are tried by hand are followed by what to type", async () => {
+  const { examples } = await (await fetch(`${tests.service.base}/v1/examples`)).json();
+  const title = examples.find((example) => example.id === "cstr-temperature").title;
+  await withPage("", {}, async (page) => {
+    await page.getByRole("button", { name: /^Tune: / }).first().waitFor();
+    await page.locator(".examples details summary").click();
+    await page.getByRole("button", { name: `Tune: ${title}`, exact: true }).click();
+    await designShown(page);
+    await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
+    await typed(page).waitFor();
+    const before = await rowsOf(page);
+    await page.getByText("Try other settings").click();
+    const slider = page.getByRole("slider", { name: "Kp, slider" });
+    const answers = [];
+    page.on("response", (response) => {
+      if (response.url().endsWith("/v1/controllers/labview_pid/settings")) answers.push(response);
+    });
+    await slider.focus();
+    for (let press = 0; press < 6; press += 1) await page.keyboard.press("Shift+ArrowRight");
+    await typed(page).getByText(/^Settings of what is tried by hand, /).waitFor();
+    const kp = await page.locator(".by-hand").getByLabel("Kp", { exact: false }).first().inputValue();
+    await page.waitForFunction(
+      (value) => Math.abs(Number(document.querySelector("table.typed .value").textContent) / Number(value) - 1) < 2e-3,
+      kp,
+    );
+    const last = await answers.at(-1).json();
+    assert.equal((await rowsOf(page))[0][1], last.as_typed.Kc);
+    await page.getByRole("button", { name: "Back to the optimum" }).click();
+    await page.waitForFunction(
+      (value) => document.querySelector("table.typed .value").textContent === value,
+      before[0][1],
+    );
+  });
+});
+
+for (const [name, options] of WINDOWS) {
+  test(`with a controller, on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
+    await withPage("", options, async (page) => {
+      await tuneModel(page);
+      await search(page).fill("siemens");
+      await found(page).first().waitFor();
+      assert.deepEqual(await accessibilityViolations(page), []);
+      await choose(page, "pid_compact", "Siemens PID_Compact (S7-1200/1500)");
+      await typed(page).waitFor();
+      await page.getByText("Today's settings in this controller").click();
+      await page.getByText("Controller as code: Structured Text, C, Python").click();
+      await page.getByRole("region", { name: "Source text" }).getByText("FUNCTION_BLOCK").first().waitFor();
+      assert.deepEqual(await accessibilityViolations(page), []);
+      assert.ok((await overflow(page)) <= 0);
+    });
+  });
+}

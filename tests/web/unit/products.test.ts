@@ -1,0 +1,303 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { codePath } from "../../../web/src/api/code.ts";
+import type { AsEntered, Implemented, Product, ProductParameter, ProductSummary } from "../../../web/src/api/products.ts";
+import type { Robustness } from "../../../web/src/api/types.ts";
+import { readSettings, settingFields, typedSettings } from "../../../web/src/form/product_settings.ts";
+import { readSpan } from "../../../web/src/form/span_fields.ts";
+import { withImplement } from "../../../web/src/form/tuning_request.ts";
+import {
+  implementOf,
+  mineOfRequest,
+  missingOf,
+  named,
+  readMine,
+  sameImplement,
+  typedBaseline,
+} from "../../../web/src/my_controller.ts";
+import type { MyController } from "../../../web/src/my_controller.ts";
+import {
+  builtRows,
+  builtWarnings,
+  evidenceSentence,
+  findProducts,
+  needSentence,
+  productTitle,
+  rangeWords,
+  samplingSentences,
+  splitNotes,
+  typedRows,
+  typedText,
+} from "../../../web/src/words/products.ts";
+
+const summary = (id: string, maker: string, name: string, parameters: string[]): ProductSummary => ({
+  id,
+  maker,
+  name,
+  form: "ideal",
+  needs: [],
+  evidence: "read",
+  parameters,
+});
+
+const LIST = [
+  summary("siemens_pid_compact", "Siemens", "PID_Compact (S7-1200/1500)", ["Gain", "Ti"]),
+  summary("emerson_deltav_series", "Emerson", "DeltaV PID, FORM Series", ["GAIN", "RESET"]),
+  summary("emerson_deltav_standard", "Emerson", "DeltaV PID, FORM Standard", ["GAIN", "BETA"]),
+  summary("foxboro_pid", "Foxboro", "I/A Series PID block", ["PBAND", "INT"]),
+  summary("klipper", "Klipper", "Klipper heater (control: pid)", ["pid_Kp"]),
+];
+
+const found = (typed: string): string[] => findProducts(LIST, typed).map((product) => product.id);
+
+test("a product is found by words of maker, name, id and parameters, in any order and case", () => {
+  assert.deepEqual(found("series emerson"), ["emerson_deltav_series"]);
+  assert.deepEqual(found("deltav"), ["emerson_deltav_series", "emerson_deltav_standard"]);
+  assert.deepEqual(found("PID-compact s7"), ["siemens_pid_compact"]);
+  assert.deepEqual(found("pband"), ["foxboro_pid"]);
+  assert.deepEqual(found("honeywell"), []);
+  assert.equal(found("").length, LIST.length);
+  assert.equal(found("")[0], "emerson_deltav_series", "by maker");
+});
+
+test("a name's own words come before what lies inside words and parameters", () => {
+  const list = [summary("a", "Acme", "Regulator", ["fox"]), summary("b", "Zeta", "Fox", [])];
+  assert.deepEqual(
+    findProducts(list, "fox").map((product) => product.id),
+    ["b", "a"],
+  );
+});
+
+test("a maker is not said twice", () => {
+  assert.equal(productTitle(LIST[4]!), "Klipper heater (control: pid)");
+  assert.equal(productTitle(LIST[1]!), "Emerson DeltaV PID, FORM Series");
+});
+
+test("what is missing is asked for, with the reason", () => {
+  assert.equal(needSentence([]), "");
+  assert.match(needSentence(["y_span", "u_span"]), /^Give the range of the measurement and the range of the output: .*them\.$/);
+  assert.match(needSentence(["sample_time"]), /^Give the sample time: /);
+});
+
+const parameter = (name: string, more: Partial<ProductParameter> = {}): ProductParameter => ({
+  name,
+  label: name,
+  unit: "",
+  role: "gain",
+  formula: "Kp",
+  low: null,
+  high: null,
+  resolution: null,
+  off: null,
+  written: true,
+  ...more,
+});
+
+const PRODUCT: Product = {
+  id: "acme",
+  maker: "Acme",
+  name: "PID",
+  form: "ideal",
+  needs: [],
+  law: "u = Kp e",
+  gain_basis: "engineering units",
+  parameters: [
+    parameter("Kp", { label: "S1 Kp", low: 0 }),
+    parameter("Ti", { unit: "min", role: "integral", low: 0, high: 60, resolution: 0.01 }),
+    parameter("type", { role: "choice", written: false, choices: [{ value: "PI-D" }, { value: "I-PD", b: 0 }] }),
+    parameter("code", { role: "weight_b", default: "000" }),
+  ],
+  setpoint_weights: { b: 1, c: 0 },
+  action: { by: "switch", name: "CA", direct: 1, text: "CA turns the error." },
+  algorithm: { integral: "backward", derivative: "difference", form: "position", published: true, sample_time: null, clock_fixed: false },
+  traps: [],
+  evidence: { level: "partly", read: ["form"], unverified: ["filter", "clock"], sources: ["a manual"] },
+};
+
+const ENTERED: AsEntered = {
+  settings: { CA: 1, Ti: 1.25, Kp: 2.5 },
+  as_typed: { CA: "1", Ti: "1.25", Kp: "2.500" },
+  units: { Ti: "min" },
+  realised: { form: "ideal", Kp: -2.5, Ti: 75, Td: 0 },
+  notes: [],
+};
+
+test("rows stand in the product's order under its labels; the switch of the direction comes last", () => {
+  const rows = typedRows(PRODUCT, ENTERED);
+  assert.deepEqual(
+    rows.map(({ label, value, unit }) => [label, value, unit]),
+    [
+      ["S1 Kp", "2.500", ""],
+      ["Ti", "1.25", "min"],
+      ["CA", "1", ""],
+    ],
+  );
+  assert.equal(rows[1]!.about, "0 to 60, step 0.01");
+  assert.equal(rows[2]!.about, "CA turns the error.");
+  assert.equal(typedText("Acme PID: robust", rows), "Acme PID: robust\nS1 Kp = 2.500\nTi = 1.25 min\nCA = 1");
+});
+
+test("a range says what there is of it", () => {
+  assert.equal(rangeWords(parameter("a", { low: 0, high: 100 })), "0 to 100");
+  assert.equal(rangeWords(parameter("a", { low: 1, resolution: 1 })), "at least 1, step 1");
+  assert.equal(rangeWords(parameter("a", { high: 5 })), "at most 5");
+  assert.equal(rangeWords(parameter("a")), "");
+});
+
+const robustness = (Ms: number | null): Robustness => ({ stable: Ms !== null, Ms }) as unknown as Robustness;
+const built = (Ms_percent: number | null, load_IAE_percent: number | null): Implemented => ({
+  sample_time: 0.5,
+  robustness: robustness(1.44),
+  performance: { load: { IAE: 8.37 } },
+  difference: { Ms_percent, load_IAE_percent },
+});
+
+test("the loop as built stands beside the ideal one; beyond 2 % it is marked, in both directions", () => {
+  const ideal = { robustness: robustness(1.4), performance: { load: { IAE: 8.4 } } };
+  assert.deepEqual(builtRows(ideal, built(2.857, -0.36)), [
+    { label: "Ms", ideal: "1.40", built: "1.44", difference: "+2.9 %", far: true },
+    { label: "Load IAE", ideal: "8.40", built: "8.37", difference: "−0.4 %", far: false },
+  ]);
+  assert.ok(builtRows(ideal, built(0, -2.01))[1]!.far);
+  assert.equal(builtRows(ideal, built(-0.001, null))[0]!.difference, "0.0 %");
+  assert.deepEqual(
+    builtRows(ideal, built(null, null)).map(({ difference, far }) => [difference, far]),
+    [
+      ["–", false],
+      ["–", false],
+    ],
+  );
+});
+
+test("warnings about the loop as built come worst first, the others stay away", () => {
+  const warning = (code: string) => ({ code, detail: code });
+  const entry = { warnings: ["differs-as-built", "far-from-linear", "unstable-as-built"].map(warning) };
+  assert.deepEqual(
+    builtWarnings(entry).map(({ code }) => code),
+    ["unstable-as-built", "differs-as-built"],
+  );
+  assert.deepEqual(builtWarnings({}), []);
+});
+
+test("it is said how the loop was reckoned and how slow it may be sampled", () => {
+  assert.deepEqual(samplingSentences(built(0, 0), 3.61, "s"), [
+    "Reckoned with a sample every 0.5 s.",
+    "Sampling up to every 3.61 s keeps Ms within 5 %.",
+  ]);
+  assert.deepEqual(samplingSentences({ ...built(0, 0), sample_time: null }, null, "s"), [
+    "Reckoned as continuous, because no sample time is known.",
+  ]);
+  assert.deepEqual(samplingSentences(undefined, undefined, "s"), []);
+});
+
+test("evidence names what was not verified, and sends to the manual where not all was read", () => {
+  assert.equal(
+    evidenceSentence(PRODUCT.evidence),
+    "Read in part, or in third parties' texts. Not verified: filter; clock. Check the settings against your manual before you use them.",
+  );
+  assert.equal(evidenceSentence({ level: "read", read: [], unverified: [], sources: [] }), "Read in the maker's code or text.");
+});
+
+test("notes on what the block cannot be are kept apart; an unknown one counts among them", () => {
+  const notes = ["filter", "unverified", "something-new", "discretisation"].map((code) => ({ code, detail: "" }));
+  const { deviations, remarks } = splitNotes(notes);
+  assert.deepEqual([deviations.map((note) => note.code), remarks.map((note) => note.code)], [
+    ["filter", "something-new"],
+    ["unverified", "discretisation"],
+  ]);
+});
+
+test("a product's parameters are fields, with one for the direction", () => {
+  assert.deepEqual(
+    settingFields(PRODUCT).map(({ name, label, choices, standard, main }) => [name, label, choices, standard, main]),
+    [
+      ["Kp", "S1 Kp", [], "", true],
+      ["Ti", "Ti", [], "", true],
+      ["type", "type", ["PI-D", "I-PD"], "PI-D", false],
+      ["code", "code", [], "000", true],
+      ["CA", "CA", [1], "reverse action", false],
+    ],
+  );
+});
+
+test("typed settings become values: numbers, words, codes and switches; empty ones stay away", () => {
+  assert.deepEqual(readSettings(PRODUCT, { Kp: "1,5", Ti: " ", type: "I-PD", code: "165", CA: "1" }), {
+    settings: { Kp: 1.5, type: "I-PD", code: "165", CA: 1 },
+    errors: [],
+  });
+  assert.deepEqual(readSettings(PRODUCT, {}), { settings: undefined, errors: [] });
+  const { errors } = readSettings(PRODUCT, { Kp: "much" });
+  assert.deepEqual(errors.map((error) => error.pointer), ["/baseline/settings/Kp"]);
+  assert.match(errors[0]!.detail, /^S1 Kp "much" is not a number/);
+  assert.deepEqual(typedSettings({ Kp: 1.5, on: true, code: "165" }), { Kp: "1.5", on: "true", code: "165" });
+});
+
+test("a range needs both ends, the second above the first", () => {
+  assert.deepEqual(readSpan(["0", "200"], "Output range", "/u"), { span: [0, 200], errors: [] });
+  assert.deepEqual(readSpan(["-5", "2,5"], "Output range", "/u").span, [-5, 2.5]);
+  assert.deepEqual(readSpan(["0", ""], "Output range", "/u"), { span: null, errors: [] });
+  assert.deepEqual(
+    readSpan(["a", "b"], "Output range", "/u").errors.map((error) => error.pointer),
+    ["/u/0", "/u/1"],
+  );
+  assert.match(readSpan(["5", "5"], "Output range", "/u").errors[0]!.detail, /write a higher end/);
+});
+
+const MINE: MyController = { product: "acme", name: "Acme PID", needs: ["y_span"], y_span: [0, 200], u_span: [0, 100], sample_time: 0.5 };
+
+test("a request names what the product needs, and nothing while that is missing", () => {
+  assert.deepEqual(implementOf(MINE), { product: "acme", y_span: [0, 200], sample_time: 0.5 });
+  const { y_span: _y, ...without } = MINE;
+  assert.deepEqual(missingOf(without), ["y_span"]);
+  assert.equal(implementOf(without), null);
+  assert.equal(implementOf(null), null);
+  assert.ok(sameImplement({ sample_time: 0.5, y_span: [0, 200], product: "acme" }, implementOf(MINE)));
+  assert.ok(!sameImplement(undefined, implementOf(MINE)));
+  assert.ok(sameImplement(undefined, null));
+});
+
+test("what a job was made for is shown; ranges that the product does not need stay known", () => {
+  const shown = mineOfRequest({ product: "acme", y_span: [0, 50] }, MINE);
+  assert.deepEqual(shown, { product: "acme", name: "Acme PID", needs: ["y_span"], u_span: [0, 100], y_span: [0, 50] });
+  assert.deepEqual(mineOfRequest({ product: "foxboro_pid" }, MINE), { product: "foxboro_pid", name: "foxboro_pid", needs: [] });
+  assert.equal(mineOfRequest({ sample_time: 1 }, MINE), MINE);
+  assert.deepEqual(named({ product: "foxboro_pid", name: "foxboro_pid", needs: [] }, LIST)?.name, "Foxboro I/A Series PID block");
+  assert.equal(named(MINE, LIST), MINE);
+});
+
+test("what stands in the browser's storage is read with care", () => {
+  assert.deepEqual(readMine(JSON.parse(JSON.stringify(MINE))), MINE);
+  assert.deepEqual(readMine({ product: "a", name: "A", needs: ["y_span", "more"], y_span: [2, 1], sample_time: "1" }), {
+    product: "a",
+    name: "A",
+    needs: ["y_span"],
+  });
+  for (const broken of [null, "a", 1, [], {}, { product: 1 }, { product: "a", name: "A" }]) assert.equal(readMine(broken), null);
+});
+
+test("a request is made for another product, keeps what belongs to its own, and goes back to the ideal", () => {
+  const request = { plant: { type: "fopdt" }, implement: { product: "acme", sample_time: 2, computation_delay: 0.1 } };
+  assert.deepEqual(withImplement(request, { product: "acme", y_span: [0, 1] }).implement, {
+    product: "acme",
+    y_span: [0, 1],
+    computation_delay: 0.1,
+  });
+  assert.deepEqual(withImplement(request, { product: "other" }).implement, { product: "other" });
+  assert.deepEqual(withImplement(request, null), { plant: { type: "fopdt" } });
+});
+
+test("today's settings carry the ranges that they were typed for", () => {
+  assert.deepEqual(typedBaseline(implementOf(MINE)!, { Kp: 1 }), {
+    product: "acme",
+    settings: { Kp: 1 },
+    y_span: [0, 200],
+    sample_time: 0.5,
+  });
+});
+
+test("the address of a controller's code holds what was asked for alone", () => {
+  assert.equal(
+    codePath({ job: "a b", index: 1, language: "c", sample_time: 0.5, u_min: undefined, u_max: 100 }),
+    "v1/jobs/a%20b/controllers/1/code?language=c&sample_time=0.5&u_max=100",
+  );
+});

@@ -54,6 +54,8 @@ double sampled_Ms(const ContinuousLoop& loop, double Ts) {
     return sampled.count_unstable_poles().stable() ? sampled.peaks(sampled.grid()).S.value : INFINITY;
 }
 
+// To 1e-3 of the whole loop's Ms, at that sample time and at shorter ones down to a thousandth of the peak's radian; by
+// way of the samples after a pulse too.
 TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
     int looked_at = 0, by_pulse = 0;
     for (const ContinuousLoop& loop : continuous_loops(100)) {
@@ -73,6 +75,39 @@ TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
     }
     EXPECT_GT(looked_at, 90);
     EXPECT_GT(by_pulse, 50);
+}
+
+// Of K Kp = 0.02 |S| is below 1/(1 - 0.02) at any sample time: nothing is too long.
+TEST(LongestSampleTime, IsNoneWhereNothingIsTooLong) {
+    const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 1});
+    const ParallelPid gains{.Kp = 0.02};
+    const Loop loop = *Loop::make(plant, gains);
+    const Peak S = find_peaks(loop, make_peak_grid(loop)).S;
+    EXPECT_FALSE(longest_sample_time(plant, gains, S.value, S.omega, 1.05));
+}
+
+TEST(EvaluateSampled, HasTheFiguresOfTheLoopAndOfItsResponse) {
+    const Plant plant = Fopdt{.K = 2, .T = 1, .L = 0.3};
+    const SampledPid law{.gains = {.Kp = 0.4, .Ki = 0.5}, .Ts = 0.2};
+    EvaluateOptions options;
+    options.setpoint_step = -3;
+    options.load_step = 0.5;
+    const BuiltLoop built = *evaluate_sampled(subject_of(plant), law, {}, options);
+    const OwnPlant own({2}, {1, 1});
+    const BrutePeaks peaks = peaks_of(*pulse_response_of(OwnLoop(own, 0.3, law), 5000, 2));
+    EXPECT_NEAR(*built.robustness.Ms, peaks.S, 1e-8);
+    EXPECT_NEAR(*built.robustness.Mt, peaks.T, 1e-8);
+    EXPECT_NEAR(*built.robustness.Mks, peaks.CS, 1e-8);
+    const BruteForce brute{own, 0.3, law};
+    const BruteResponse setpoint = brute.respond(-3, 0, -3), load = brute.respond(0, 0.5, 0);
+    EXPECT_NEAR(*built.performance.setpoint.IAE, setpoint.IAE, 1e-6 * setpoint.IAE);
+    EXPECT_NEAR(*built.performance.setpoint.TV, setpoint.TV, 1e-6 * setpoint.TV);
+    EXPECT_NEAR(*built.performance.setpoint.overshoot_percent, std::max(0.0, 100 * (setpoint.y_min / -3 - 1)), 1e-4);
+    EXPECT_NEAR(*built.performance.setpoint.first_move, -3 * (0.4 + 0.5 * 0.2), 1e-12);
+    EXPECT_NEAR(*built.performance.load.IAE, load.IAE, 1e-6 * load.IAE);
+    EXPECT_NEAR(*built.performance.load.peak, load.y_max, 1e-6);
+    ASSERT_TRUE(built.responses);
+    EXPECT_EQ(built.responses->setpoint.t.size(), 400u);
 }
 
 }  // namespace

@@ -27,9 +27,12 @@ constexpr double kTurnStep = 0.15;  // rad of them between two looks there
 constexpr double kWorthRefining = 0.9;  // of the highest so far
 constexpr double kNoGain = 1e-7;        // relative: what turns can add to a peak below it is not looked for
 
-constexpr double kLargestTurn = 0.4;  // |q2 - q1| relative to the smaller: below it the argument cannot be mistaken
-constexpr double kBelowOne = 0.99;    // of |L| at both ends: 1 + L stays in the right half-plane
-constexpr double kBoundary = 1e-9;    // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
+constexpr double kLargestTurn = 0.4;      // |q2 - q1| relative to the smaller: below it the argument cannot be mistaken
+constexpr double kFollowedTurn = 2;       // rad of z and of the dead time: below it no whole turn is missed
+constexpr double kBelowOne = 0.99;        // of |L| at both ends: 1 + L stays in the right half-plane
+constexpr double kBoundary = 1e-9;        // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
+constexpr double kAtAPole = 1e10;         // of 1 + |L|: there is nothing but rounding left of the distance to the pole
+constexpr double kBeyondNumbers = 1e100;  // of a plant's pole: no law that is written in numbers holds it
 constexpr int kMaxHalvings = 60;
 
 // 1 - e^(-j x) without cancellation.
@@ -133,12 +136,6 @@ LoopGrid SampledLoop::grid() const {
     return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep)) : grid;
 }
 
-// The steps between neighbours of the grid: one, unless z and the dead time turn far between them.
-int SampledLoop::looks_between(double left, double right) const {
-    const double turn = (right - left) * (law_.Ts * (plant_.whole_samples() + 1) + plant_.rest());
-    return turn < kLongTurn ? 1 : static_cast<int>(std::ceil(turn / kTurnStep));
-}
-
 // Where S moves little from point to point, the dead time may still turn L between them, and C S with it: |1 + L| is at
 // least |1 - |L||. Looks there where that lets a peak be higher.
 void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
@@ -148,7 +145,7 @@ void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
     std::vector<Stretch> stretches;
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        if (looks_between(left, right) == 1) continue;
+        if (turn(right - left) < kLongTurn) continue;
         const LoopPoint &a = grid.point[i - 1], &b = grid.point[i];
         const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
         if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
@@ -164,7 +161,7 @@ void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
         for (const Stretch& s : stretches) {
             if (s.*bound <= best.value * (1 + kNoGain)) return;
             const auto f = [&](double omega) { return value(at(omega)); };
-            const int looks = looks_between(s.left, s.right);
+            const int looks = static_cast<int>(std::ceil(turn(s.right - s.left) / kTurnStep));
             const double step = (s.right - s.left) / looks;
             double before = f(s.left), here = f(s.left + step);
             for (int k = 1; k < looks; ++k) {
@@ -202,28 +199,11 @@ Peaks SampledLoop::peaks(const LoopGrid& grid) const {
     return peaks;
 }
 
-// L crosses the real axis once every turn, also where the grid follows S alone: looks there wherever such a crossing
-// could bound the gain more closely.
 Margins SampledLoop::margins(const LoopGrid& grid) const {
-    const auto L = [&](double omega) { return open_loop(omega); };
-    const Margins on_grid = find_interior_margins(L, grid);
-    LoopGrid fine{{grid.omega.front()}, {grid.point.front()}, grid.resolved_to};
-    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
-        const double left = grid.omega[i - 1], right = grid.omega[i];
-        const double a = magnitude(grid.point[i - 1].L), b = magnitude(grid.point[i].L);
-        const bool bounds = std::max(a, b) * on_grid.gain_margin > 1 && std::min(a, b) * on_grid.gain_margin_low < 1;
-        const int looks = bounds ? looks_between(left, right) : 1;
-        for (int k = 1; k < looks; ++k) {
-            fine.omega.push_back(left + k * (right - left) / looks);
-            fine.point.push_back(at(fine.omega.back()));
-        }
-        fine.omega.push_back(right);
-        fine.point.push_back(grid.point[i]);
-    }
-    Margins margins = find_interior_margins(L, fine);
+    Margins margins = find_interior_margins([&](double omega) { return open_loop(omega); }, grid);
     // At both ends L is real.
     note_real_crossing(margins, grid.point.back().L.real(), grid.omega.back());
-    if (finite_at_zero()) note_real_crossing(margins, L(0).real(), 0);
+    if (finite_at_zero()) note_real_crossing(margins, open_loop(0).real(), 0);
     return margins;
 }
 
@@ -253,6 +233,9 @@ public:
         return {omega, open, 1.0 + L, 1 + magnitude(L)};
     }
 
+    /// Of z and of the dead time from one to the other, rad.
+    double turn(const Value& left, const Value& right) const { return loop_.turn(right.omega - left.omega); }
+
 private:
     const SampledLoop& loop_;
     std::vector<Complex> poles_;
@@ -271,7 +254,10 @@ Turn turn_between(const Characteristic& q, const Characteristic::Value& left, co
     // Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
     if (left.size < 1 + kBelowOne && right.size < 1 + kBelowOne && magnitude(open - 1.0) <= kLargestTurn)
         return {std::arg(open) + std::arg(right.returned) - std::arg(left.returned), false};
-    if (magnitude(step - 1.0) <= kLargestTurn * std::min(1.0, magnitude(step))) return {std::arg(step), false};
+    // A whole turn of the dead time in between would look like none.
+    const bool followed = q.turn(left, right) <= kFollowedTurn;
+    if (followed && magnitude(step - 1.0) <= kLargestTurn * std::min(1.0, magnitude(step)))
+        return {std::arg(step), false};
     if (depth == 0) return {std::arg(step), true};
     const auto centre = q.at(std::sqrt(left.omega * right.omega));
     const Turn first = turn_between(q, left, centre, depth - 1);
@@ -291,8 +277,16 @@ StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
     const double start = std::arg(left.open * left.returned);
     double angle = start - std::numbers::pi * std::round(start / std::numbers::pi);
     StabilityCount count;
+    for (const Complex pole : plant_.poles()) count.unstable_poles += !(magnitude(pole) < kBeyondNumbers);
+    if (count.unstable_poles > 0) return count;
+    if (finite_at_zero()) {
+        const Complex L = open_loop(0);
+        count.on_the_boundary = magnitude(1.0 + L) <= kBoundary * (1 + magnitude(L));
+    }
     for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {
         const auto right = q.at(along.omega[i], along.point[i].L);
+        // At a pole of the plant on the circle q = 0 times infinity: its neighbours tell what it does.
+        if (!(right.size < kAtAPole)) continue;
         const Turn turn = turn_between(q, left, right, kMaxHalvings);
         angle += turn.angle;
         count.on_the_boundary = turn.boundary;

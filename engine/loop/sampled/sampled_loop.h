@@ -41,12 +41,13 @@ public:
     const HeldPlant& plant() const { return plant_; }
     const SampledPid& law() const { return law_; }
     double highest_frequency() const;  ///< pi/Ts
+    /// rad by which z and the dead time turn over so many rad/time.
+    double turn(double omega) const { return omega * (law_.Ts * (plant_.whole_samples() + 1) + plant_.rest()); }
 
 private:
     bool finite_at_zero() const;
     LoopGrid grid_from(double step) const;
     LoopPoint at_zero() const;  // the limit, S = 0 with an integrator
-    int looks_between(double left, double right) const;
     void raise_by_turns(const LoopGrid& grid, Peaks& peaks) const;
 
     HeldPlant plant_;

@@ -15,8 +15,9 @@ struct RandomLoop {
     SampledPid law;
 };
 
-/// Any plant of the searches' random ones under any law, stable or not: up to 20 samples of dead time and delay.
-RandomLoop random_loop(int index) {
+/// Any plant of the searches' random ones under any law, stable or not: up to `most` samples of dead time and five of
+/// delay.
+RandomLoop random_loop(int index, int most = 15) {
     Random random(1000 + static_cast<std::uint64_t>(index));
     RandomPlant drawn = random_plant(static_cast<std::uint64_t>(index), index % 4 == 0);
     double slowest = 0;
@@ -25,7 +26,7 @@ RandomLoop random_loop(int index) {
     if (slowest == 0) slowest = 1;
     SampledPid law;
     law.Ts = slowest * random.log_uniform(0.02, 2);
-    drawn.plant.L = law.Ts * (random.one_in(3) ? random.whole(0, 15) : random.uniform(0, 15));
+    drawn.plant.L = law.Ts * (random.one_in(3) ? random.whole(0, most) : random.uniform(0, most));
     law.computation_delay = law.Ts * (random.one_in(2) ? 0 : random.uniform(0, 5));
     law.integral = static_cast<IntegralRule>(random.whole(0, 2));
     law.derivative = static_cast<DerivativeRule>(random.whole(0, 5));
@@ -84,6 +85,19 @@ TEST(SampledStability, CountsTheEigenvaluesOutsideTheCircle) {
     EXPECT_GT(stable, kLoops / 4);
     EXPECT_LT(stable, 3 * kLoops / 4);
     EXPECT_GT(compared, kLoops - 20);
+}
+
+// From point to point of a grid the dead time may turn L by more than once, which must not count as standing still.
+TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
+    int many = 0;
+    for (int i = 0; i < 150; ++i) {
+        const RandomLoop loop = random_loop(i, 100);
+        const Eigen::VectorXcd values = eigenvalues(loop);
+        if (distance(values) < 1e-6) continue;
+        EXPECT_EQ(SampledLoop(loop.plant, loop.law).count_unstable_poles().unstable_poles, outside(values)) << i;
+        many += outside(values) > 20;
+    }
+    EXPECT_GT(many, 10);
 }
 
 /// With all gains times a factor the loop is stable between the gain margins and no longer stable beyond each of them.

@@ -3,7 +3,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
-#include "api/contract/product/settings.h"
+#include "api/contract/product/product.h"
 #include "engine/evaluation/evaluate.h"
 
 namespace tunewright::api {

@@ -62,3 +62,7 @@ export function uniqueId(prefix: string): string {
   counter += 1;
   return `${prefix}-${counter}`;
 }
+
+/** Long names of parameters, which may be broken where their parts meet. */
+export const breakable = (name: string): (string | HTMLElement)[] =>
+  name.split(/(?<=[._])/).flatMap((part, index) => (index === 0 ? [part] : [h("wbr", {}), part]));

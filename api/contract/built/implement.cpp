@@ -1,6 +1,6 @@
 #include "api/contract/built/built.h"
 
-#include "api/contract/product/settings.h"
+#include "api/contract/product/product.h"
 #include "api/csv/time_stamp.h"
 #include "engine/controller/product/catalogue.h"
 

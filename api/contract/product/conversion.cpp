@@ -1,6 +1,5 @@
 #include "api/contract/controller.h"
 #include "api/contract/product/product.h"
-#include "api/contract/product/settings.h"
 
 namespace tunewright::api {
 namespace {

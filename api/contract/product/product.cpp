@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "api/contract/controller.h"
-#include "api/contract/product/settings.h"
 #include "engine/controller/product/needs.h"
 
 namespace tunewright::api {

@@ -1,4 +1,4 @@
-#include "api/contract/product/settings.h"
+#include "api/contract/product/product.h"
 
 #include "api/csv/time_stamp.h"
 

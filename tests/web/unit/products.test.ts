@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { codePath } from "../../../web/src/api/code.ts";
+import { codePath } from "../../../web/src/api/products.ts";
 import type { AsEntered, Implemented, Product, ProductParameter, ProductSummary } from "../../../web/src/api/products.ts";
 import type { Robustness } from "../../../web/src/api/types.ts";
 import { readSettings, settingFields, typedSettings } from "../../../web/src/form/product_settings.ts";

@@ -1,5 +1,7 @@
-// Controllers as their makers build them: what there is, what to type into them, and what that makes of a loop.
-import { call } from "./client.ts";
+// Controllers as their makers build them: what there is, what to type into them, and what that makes of a loop; and a
+// controller as source text, for who builds his own.
+import { call, getText } from "./client.ts";
+import type { TextFile } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import type { Controller, Figures, Notice, Response, Robustness, Units, WhyNull } from "./types.ts";
 
@@ -129,3 +131,23 @@ export async function settingsFor(
   const body = { controller: settingsOf(controller), y_span, u_span, sample_time, units: units ?? {}, nearest: true };
   return (await call("POST", `v1/controllers/${encodeURIComponent(product)}/settings`, body)).data as AsEntered;
 }
+
+export type Language = "st" | "c" | "python";
+
+export interface CodeQuestion {
+  job: string;
+  /** Of the entry in the result. */
+  index: number;
+  language: Language;
+  sample_time?: number | undefined;
+  u_min?: number | undefined;
+  u_max?: number | undefined;
+}
+
+export function codePath({ job, index, ...question }: CodeQuestion): string {
+  const query = new URLSearchParams();
+  for (const [name, value] of Object.entries(question)) if (value !== undefined) query.set(name, String(value));
+  return `v1/jobs/${encodeURIComponent(job)}/controllers/${index}/code?${query.toString()}`;
+}
+
+export const getCode = (question: CodeQuestion): Promise<TextFile> => getText(codePath(question));

@@ -1,8 +1,8 @@
 // The controller as a program: Structured Text, C or Python, to read, to copy and to save.
 import type { TextFile } from "../../api/client.ts";
 import { ApiError } from "../../api/client.ts";
-import { getCode } from "../../api/code.ts";
-import type { CodeQuestion, Language } from "../../api/code.ts";
+import { getCode } from "../../api/products.ts";
+import type { CodeQuestion, Language } from "../../api/products.ts";
 import { latest } from "../../api/latest.ts";
 import type { FieldError } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";

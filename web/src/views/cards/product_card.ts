@@ -1,9 +1,8 @@
 // What is known of a product: its law as a formula, how it computes, what goes wrong easily, and where that was read.
 import type { Product, ProductParameter } from "../../api/products.ts";
-import { h, mathElement, uniqueId } from "../../dom.ts";
+import { breakable, h, mathElement, uniqueId } from "../../dom.ts";
 import { lawFormulas } from "../../form/law.ts";
 import { evidenceSentence, productTitle, rangeWords } from "../../words/products.ts";
-import { breakable } from "../breakable.ts";
 
 export interface ProductCard {
   element: HTMLElement;

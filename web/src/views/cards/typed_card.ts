@@ -1,7 +1,7 @@
 // The settings as they stand in the product's own list: what to type, what the block makes of it, and what it cannot be.
 import type { AsEntered, Product } from "../../api/products.ts";
 import type { Entry, Notice } from "../../api/types.ts";
-import { h, uniqueId } from "../../dom.ts";
+import { breakable, h, uniqueId } from "../../dom.ts";
 import {
   builtRows,
   builtTroubles,
@@ -14,7 +14,6 @@ import {
   typedText,
 } from "../../words/products.ts";
 import type { BuiltRow, TypedRow } from "../../words/products.ts";
-import { breakable } from "../breakable.ts";
 import { copyButton } from "../copy.ts";
 
 export interface TypedSettings {

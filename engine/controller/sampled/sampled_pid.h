@@ -20,6 +20,8 @@
 //
 //   y_f by backward Euler: of the first order y_f,k = (Tf y_f,k-1 + Ts y_k)/(Tf + Ts); of the second, with v = dy_f/dt,
 //       v_k = (v_{k-1} + (2 Ts/Tf^2)(y_k - y_f,k-1))/(1 + 2 Ts/Tf + 2 (Ts/Tf)^2),   y_f,k = y_f,k-1 + Ts v_k.
+//   With "filtered, trapezoidal" the whole law is the continuous one with s = (2/Ts)(z - 1)/(z + 1), y_f and the
+//   derivative of y_f too.
 //
 // A velocity algorithm adds the increments of the same sum to what it last gave: within limits the same output.
 // Sources: Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund,
@@ -36,7 +38,7 @@ enum class DerivativeRule {
     difference,            ///< no filter of the derivative, whatever the gains say
     filtered_backward,     ///< of the gains' `derivative` filter; without one the difference
     filtered_forward,      ///< the same; stable only for Tf > Ts/2
-    filtered_trapezoidal,  ///< the same
+    filtered_trapezoidal,  ///< the same; a filter of the measurement is trapezoidal too
     slope,                 ///< over `slope_samples` periods; no filter
     four_points,           ///< no filter
 };
@@ -50,5 +52,12 @@ struct SampledPid {
     double computation_delay = 0;  ///< >= 0, time; also more than Ts
     bool velocity = false;
 };
+
+/// Whether the measurement's filter is trapezoidal, and the derivative with it.
+inline bool whole_by_trapezoids(const SampledPid& law) {
+    const FilterType type = law.gains.filter.type;
+    return law.derivative == DerivativeRule::filtered_trapezoidal &&
+           (type == FilterType::measurement_first_order || type == FilterType::measurement_second_order);
+}
 
 }  // namespace tunewright

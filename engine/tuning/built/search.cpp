@@ -22,8 +22,11 @@ constexpr double kNoGain = 1e-5;     // relative: a search that gains less is th
 constexpr int kMaxRestarts = 4;
 constexpr int kMostEvaluations = 150;  // of one simplex
 constexpr double kTolerance = 1e-6;    // of ln IAE
+constexpr int kMostNear = 50;          // both, of a start that is near
+constexpr double kNearTolerance = 1e-4;
 constexpr int kMaxCorrections = 6;
-constexpr double kMargin = 1e-5;  // of M - 1: where limits bound the gain from both sides, the last grid may differ
+// Of M - 1: where limits bound the gain from both sides, the last grid may differ and leave no gain; then the next.
+constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
 constexpr double kHolds = 1e-6;   // relative excess over a limit that counts as none
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
 
@@ -40,9 +43,11 @@ namespace {
 class Search {
 public:
     Search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits, const Law& first)
-        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargin)) {
+        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargins[0])) {
         for (const LinearPlant* plant : plants) limiters_.emplace_back(*plant, first);
     }
+
+    void keep_margin(double margin) { inner_ = within(limits_, margin); }
 
     /// The cost is infinite where no gain serves.
     Settings at(double Ti, double Td);
@@ -59,16 +64,17 @@ private:
 
     const std::vector<const LinearPlant*>& plants_;
     const Shape& shape_;
-    const Limits limits_, inner_;
+    const Limits limits_;
+    Limits inner_;
     std::vector<GainLimiter> limiters_;
 };
 
 Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
     Settings best{0, Ti, Td, kInfinity};
     const auto k = largest_gain(
-        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits);
+        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits, shape_.gain.high);
     if (!k || *k < shape_.gain.low) return best;
-    const double most = std::min(*k, shape_.gain.high);
+    const double most = *k;
     best = {shape_.sign * most, Ti, Td, cost(most, Ti, Td)};
     for (const double share : kLowerGains) {
         const double gain = std::max(share * most, shape_.gain.low), lower = cost(gain, Ti, Td);
@@ -83,9 +89,9 @@ Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(
 double Search::widening(double Ti, double Td) const {
     const auto serves = [&](double factor) {
         const Limits wider{1 + factor * (inner_.Ms - 1), 1 + factor * (inner_.Mt - 1), {}};
-        return largest_gain(
-                   limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider)
-            .has_value();
+        const auto k = largest_gain(
+            limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider, shape_.gain.high);
+        return k && *k >= shape_.gain.low;
     };
     double low = 0, high = std::log(kWidest);
     if (!serves(kWidest)) return kInfinity;
@@ -121,7 +127,8 @@ Error none(const Limits& limits) {
 }  // namespace
 
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
-                          const std::vector<Settings>& starts, const RunControl& control) {
+                          const std::vector<Settings>& starts, const RunControl& control, Reach reach) {
+    const bool wide = reach == Reach::wide;
     std::optional<Settings> best;
     for (const Settings& start : starts) {
         if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
@@ -145,20 +152,27 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
             const double factor = local.widening(shape.Ti.within(i), shape.Td.within(d));
             return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
         };
-        bool stop = false;
-        double reached = cost(x, stop), step = kFirstStep;
-        for (int i = 0; i < kMaxRestarts && !x.empty(); ++i, step = kLaterStep) {
-            const auto found = find_local_minimum(LocalSearch::nelder_mead, cost, x,
-                                                  {std::vector<double>(x.size(), step), kTolerance, kMostEvaluations});
-            const double gained = reached - found.value;
-            if (gained > 0) {
-                reached = found.value;
-                x = found.x;
+        Settings found{0, 0, 0, kInfinity};
+        for (const double margin : kMargins) {
+            local.keep_margin(margin);
+            bool stop = false;
+            double reached = cost(x, stop), step = wide ? kFirstStep : kLaterStep;
+            for (int i = 0; i < (wide ? kMaxRestarts : 1) && !x.empty(); ++i, step = kLaterStep) {
+                const auto minimum = find_local_minimum(
+                    LocalSearch::nelder_mead, cost, x,
+                    {std::vector<double>(x.size(), step), wide ? kTolerance : kNearTolerance,
+                     wide ? kMostEvaluations : kMostNear});
+                const double gained = reached - minimum.value;
+                if (gained > 0) {
+                    reached = minimum.value;
+                    x = minimum.x;
+                }
+                if (i > 0 && gained < kNoGain) break;
             }
-            if (i > 0 && gained < kNoGain) break;
+            const auto [i, d] = times_of(x);
+            found = local.confirmed(i, d);
+            if (std::isfinite(found.load_IAE) || reached >= kOutside) break;
         }
-        const auto [i, d] = times_of(x);
-        const Settings found = local.confirmed(i, d);
         if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
     }
     if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};

@@ -64,7 +64,7 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
     const StabilityCount count = loop.count_unstable_poles(grid);
     if (!count.stable()) {
         built.robustness = unstable_robustness(count);
-        built.performance = no_performance("The loop as built is unstable.");
+        built.performance = no_performance("On the controller as it is built the loop is unstable.");
         return built;
     }
     built.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));

@@ -271,7 +271,10 @@ TuningEntry TuningRun::baseline() {
     entry.title = "Baseline";
     entry.source = "the settings given in the request";
     const double started = now_ms();
-    evaluate_into(entry, *request_.baseline, {});
+    Controller given = *request_.baseline;
+    if (auto* pid = std::get_if<IdealPid>(&given); pid != nullptr && request_.baseline_settings)
+        *pid = built::continuous(*pid);
+    evaluate_into(entry, given, {});
     add_reports(entry, nullptr);
     add_baseline_as_built(entry);
     if (entry.evaluation && result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);

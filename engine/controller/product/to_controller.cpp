@@ -258,6 +258,7 @@ SampledPid sampled_law(const Product& product, const Settings& settings, const C
     law.Ts = Ts;
     law.integral = product.algorithm.integral;
     law.derivative = product.algorithm.derivative;
+    law.trapezoidal_filter = law.derivative == DerivativeRule::filtered_trapezoidal;
     law.velocity = product.algorithm.velocity;
     if (product.filter.kind == FilterKind::slope) {
         const Parameter* samples = parameter_of(product, Role::filter);

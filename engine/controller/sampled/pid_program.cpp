@@ -21,7 +21,23 @@ double rounded(double value, double resolution) {
 PidProgram::PidProgram(const SampledPid& law, const ProgramLimits& limits)
     : law_(law), limits_(limits), past_(samples_kept(law), 0.0) {}
 
+// y_f and v = dy_f/dt: of the first order v = (y - y_f)/Tf, of the second v' = (2/Tf^2)(y - y_f) - (2/Tf) v.
+double PidProgram::filtered_trapezoidal(double y) {
+    const double Tf = law_.gains.filter.Tf, r = 0.5 * law_.Ts / Tf, mean = 0.5 * (y + y_before_), before = y_f_;
+    y_before_ = y;
+    if (law_.gains.filter.type == FilterType::measurement_first_order) {
+        y_f_ = ((1 - r) * before + 2 * r * mean) / (1 + r);
+        v_ = (y - y_f_) / Tf;
+    } else {
+        const double a = 2 * r + 2 * r * r, v = v_;
+        v_ = ((1 - a) * v + 8 * r * r / law_.Ts * (mean - before)) / (1 + a);
+        y_f_ = before + 0.5 * law_.Ts * (v + v_);
+    }
+    return y_f_;
+}
+
 double PidProgram::filtered(double y) {
+    if (whole_by_trapezoids(law_)) return filtered_trapezoidal(y);
     const double Ts = law_.Ts, Tf = law_.gains.filter.Tf;
     switch (law_.gains.filter.type) {
         case FilterType::measurement_first_order: y_f_ = (Tf * y_f_ + Ts * y) / (Tf + Ts); return y_f_;
@@ -44,6 +60,12 @@ double PidProgram::derivative(double f) {
         case DerivativeRule::filtered_backward: D_ = (Tf * D_ + move) / (Tf + Ts); break;
         case DerivativeRule::filtered_forward: D_ = has_filter ? (1 - Ts / Tf) * D_ + move / Tf : move / Ts; break;
         case DerivativeRule::filtered_trapezoidal:
+            if (whole_by_trapezoids(law_)) {
+                const double set = f + y_f_;  // c r, which no filter smooths
+                D_ = Kd * ((set - set_before_) / Ts - v_);
+                set_before_ = set;
+                break;
+            }
             D_ = has_filter ? ((2 * Tf - Ts) * D_ + 2 * move) / (2 * Tf + Ts) : move / Ts;
             break;
         case DerivativeRule::slope: D_ = Kd * (f - past_.back()) / (law_.slope_samples * Ts); break;

@@ -30,12 +30,14 @@ public:
 
 private:
     double filtered(double y);
+    double filtered_trapezoidal(double y);
     double derivative(double f);
     double integral_increment(double e) const;
 
     SampledPid law_;
     ProgramLimits limits_;
-    double y_f_ = 0, v_ = 0;    // the measurement's filter
+    double y_f_ = 0, v_ = 0;  // the measurement's filter
+    double y_before_ = 0, set_before_ = 0;
     std::vector<double> past_;  // f of the samples before, the latest first
     double D_ = 0, I_ = 0, e_ = 0;
     double P_ = 0, u_ = 0;  // of the sample before, for the velocity algorithm

@@ -20,6 +20,8 @@
 //
 //   y_f by backward Euler: of the first order y_f,k = (Tf y_f,k-1 + Ts y_k)/(Tf + Ts); of the second, with v = dy_f/dt,
 //       v_k = (v_{k-1} + (2 Ts/Tf^2)(y_k - y_f,k-1))/(1 + 2 Ts/Tf + 2 (Ts/Tf)^2),   y_f,k = y_f,k-1 + Ts v_k.
+//   By trapezoids, where `trapezoidal_filter` says so: y_f, and the derivative of y_f with it, are the continuous ones
+//   with s = (2/Ts)(z - 1)/(z + 1).
 //
 // A velocity algorithm adds the increments of the same sum to what it last gave: within limits the same output.
 // Sources: Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund,
@@ -49,6 +51,14 @@ struct SampledPid {
     int slope_samples = 1;         ///< M >= 1
     double computation_delay = 0;  ///< >= 0, time; also more than Ts
     bool velocity = false;
+    bool trapezoidal_filter = false;  ///< of the measurement
 };
+
+/// Whether filter of the measurement and derivative are formed together, by trapezoids.
+inline bool whole_by_trapezoids(const SampledPid& law) {
+    const FilterType type = law.gains.filter.type;
+    return law.trapezoidal_filter &&
+           (type == FilterType::measurement_first_order || type == FilterType::measurement_second_order);
+}
 
 }  // namespace tunewright

@@ -81,6 +81,15 @@ Complex filter_part(const SampledPid& law, Complex difference) {
     }
 }
 
+// s = w/q, q = 1 + z^-1, in P, I, D and the filter together: at pi/Ts q is 0 and D alone infinite.
+Complex whole_by_trapezoids_at(const SampledPid& law, Complex difference, Complex back) {
+    const Complex q = 1.0 + back, w = 2.0 * difference / law.Ts, lag = law.gains.filter.Tf * w;
+    Complex sum = law.gains.Kp;
+    if (law.gains.Ki != 0) sum += integral_part(law, difference, back);
+    if (law.gains.filter.type == FilterType::measurement_first_order) return (sum * q + law.gains.Kd * w) / (q + lag);
+    return (sum * q + law.gains.Kd * w) * q / (q * q + lag * q + 0.5 * lag * lag);
+}
+
 // Of a derivative filter by the forward rule: outside the circle for Tf < Ts/2.
 double forward_pole(const SampledPid& law) {
     const bool runs = law.derivative == DerivativeRule::filtered_forward &&
@@ -93,6 +102,7 @@ double forward_pole(const SampledPid& law) {
 Complex pulse_response(const SampledPid& law, double omega) {
     const double x = omega * law.Ts;
     const Complex difference = one_minus_back(x), back = std::polar(1.0, -x);
+    if (whole_by_trapezoids(law)) return whole_by_trapezoids_at(law, difference, back);
     Complex sum = law.gains.Kp;
     if (law.gains.Ki != 0) sum += integral_part(law, difference, back);
     if (law.gains.Kd != 0) sum += derivative_part(law, difference, back, x);

@@ -4,13 +4,17 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/controller/product/formula.h"
 #include "engine/number_text.h"
+#include "engine/tuning/built/typed_ranges.h"
 
 namespace tunewright::built {
 namespace {
 
 // Of M - 1, left for the rounding of what is typed: the least with which settings are found that hold the limits.
-constexpr double kMargins[] = {0, 0.001, 0.004, 0.015, 0.05};
+constexpr double kMargins[] = {0, 0.0005, 0.001, 0.002, 0.004, 0.015, 0.05};
+constexpr double kCoarse = 0.01;     // a step relative to the number: smaller ones are left to the rounding
+constexpr double kCostOfMargin = 2;  // of ln IAE, per share of M - 1
 constexpr double kEqualTimes = 0.5;  // of sqrt(Ti Td): a start of a series form whose ideal twin has complex zeros
 
 /// Text and value of what is typed, one for each setting.
@@ -36,6 +40,17 @@ Law program_of(const Build& build, const IdealPid& pid) {
             .velocity = build.velocity};
 }
 
+/// The period with which the block runs: of one whose settings hold it in steps, what stands there.
+double period_of(const Build& build, const product::Settings& typed) {
+    const product::Parameter* period = product::parameter_of(*build.product, product::Role::sample_time);
+    if (period == nullptr || period->resolution == 0) return build.Ts;
+    for (const product::Setting& setting : typed)
+        if (const auto* value = std::get_if<double>(&setting.value); value != nullptr && setting.name == period->name)
+            return product::solved(period->term, {}, &product::Quantities::Ts, period->term.Ts, *value) /
+                   build.context.seconds_per_time;
+    return build.Ts;
+}
+
 }  // namespace
 
 IdealPid continuous(IdealPid pid) {
@@ -56,7 +71,7 @@ Expected<Fitted> fit(const Build& build, const product::Settings& typed) {
         fitted.law.gains = to_parallel(continuous(*twin));
         return fitted;
     }
-    fitted.law = product::sampled_law(product, fitted.typed, build.context, build.Ts);
+    fitted.law = product::sampled_law(product, fitted.typed, build.context, period_of(build, fitted.typed));
     fitted.law.computation_delay = build.computation_delay;
     return fitted;
 }
@@ -144,6 +159,120 @@ Expected<Law> rules_of(const Build& build, const IdealPid& pid) {
     return fitted->law;
 }
 
+/// Gain and times as they are typed.
+struct TypedNumbers {
+    explicit TypedNumbers(const Build& build)
+        : gain(build, product::Role::gain), Ti(build, product::Role::integral), Td(build, product::Role::derivative) {}
+    TypedQuantity gain, Ti, Td;
+};
+
+/// A design, and what of its shape is left to choose.
+struct Numbers {
+    Shape shape;
+    Settings found;
+};
+
+/// What comes in coarse steps is settled one after the other, the coarsest first, each at both of its values, and the
+/// rest searched anew: rounding a design leaves the limits or gives up what they allow.
+class Settling {
+public:
+    Settling(const Build& build, const OwnForm& form, const TypedNumbers& numbers,
+             const std::vector<const LinearPlant*>& plants, const Limits& limits, const RunControl& control)
+        : build_(build), form_(form), numbers_(numbers), plants_(plants), limits_(limits), control_(control) {}
+
+    /// From a design whose numbers are free.
+    Expected<Fitted> best(const Numbers& free) {
+        settle(free);
+        return std::move(best_);
+    }
+
+private:
+    void settle(const Numbers& from);
+    void settle_at(Shape shape, const Settings& start);
+    void type(Numbers near);
+    void take(Expected<Fitted> typed);
+
+    const Build& build_;
+    const OwnForm& form_;
+    const TypedNumbers& numbers_;
+    const std::vector<const LinearPlant*>& plants_;
+    const Limits& limits_;
+    const RunControl& control_;
+    Expected<Fitted> best_ = Error{ErrorKind::no_feasible_controller, "", ""};
+    double least_ = std::numeric_limits<double>::infinity();
+};
+
+void Settling::settle(const Numbers& from) {
+    type(from);
+    const Settings& found = from.found;
+    const double gain = from.shape.gain.low < from.shape.gain.high ? numbers_.gain.step(std::abs(found.gain)) : 0,
+                 Ti = from.shape.has_integral ? numbers_.Ti.step(found.Ti) : 0,
+                 Td = from.shape.has_derivative ? numbers_.Td.step(found.Td) : 0;
+    const double coarsest = std::max({gain, Ti, Td});
+    if (coarsest <= kCoarse) return;
+    const TypedQuantity& next = coarsest == gain ? numbers_.gain : coarsest == Td ? numbers_.Td : numbers_.Ti;
+    const double size = coarsest == gain ? std::abs(found.gain) : coarsest == Td ? found.Td : found.Ti;
+    for (const double choice : next.choices(size)) {
+        Shape shape = from.shape;
+        if (coarsest == gain) {
+            shape.gain = {choice, choice};
+        } else if (coarsest == Td) {
+            shape.Td = {choice, choice};
+            shape.has_derivative = false;
+        } else {
+            shape.Ti = {choice, choice};
+            shape.has_integral = false;
+        }
+        settle_at(std::move(shape), found);
+    }
+}
+
+// With more settled nothing gets quicker: what is slower already leads nowhere.
+void Settling::settle_at(Shape shape, const Settings& start) {
+    const auto found = search(plants_, shape, limits_, {start}, control_, Reach::near);
+    if (found && found->load_IAE < least_) settle({std::move(shape), *found});
+}
+
+// With as little margin for the rounding as serves: a margin costs a few times itself.
+void Settling::type(Numbers near) {
+    const double designed = near.found.load_IAE;
+    for (const double margin : kMargins) {
+        if (least_ <= designed * (1 + kCostOfMargin * margin)) return;
+        if (margin > 0) {
+            const auto found =
+                search(plants_, near.shape, within(limits_, margin), {near.found}, control_, Reach::near);
+            if (!found) return;  // what has been typed says why
+            near.found = *found;
+        }
+        auto rounded = fit(build_, form_.controller(std::abs(near.found.gain), near.found.Ti, near.found.Td), true);
+        if (rounded) rounded = on_grid(build_, plants_, limits_, std::move(*rounded), least_, control_);
+        take(std::move(rounded));
+    }
+}
+
+void Settling::take(Expected<Fitted> typed) {
+    if (!typed) {
+        if (!best_) best_ = typed.error();
+        return;
+    }
+    const double IAE = load_iae_of(*plants_.front(), typed->law);
+    if (IAE >= least_) return;
+    least_ = IAE;
+    best_ = std::move(typed);
+}
+
+/// The sign is settled before anything is searched: a controller turned round would be unstable at any gain.
+std::optional<Error> wrong_direction(const Build& build, const Wish& wish) {
+    if (build.product == nullptr || build.product->action.kind != product::Action::Kind::reverse_only || wish.sign > 0)
+        return std::nullopt;
+    return Error{ErrorKind::not_representable, "",
+                 std::string(build.product->name) +
+                     " cannot control this plant: its gain is never negative and it has no switch for the direction, "
+                     "and this plant asks for a negative Kp. Turn the actuator round, so that the plant's gain changes "
+                     "its sign. " +
+                     std::string(build.product->action.text)};
+}
+
 }  // namespace
 
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,
@@ -153,6 +282,7 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
                      std::string(build.product->name) +
                          " has proportional action alone, and a design with integral "
                          "action cannot be typed into it. Choose another controller."};
+    if (auto error = wrong_direction(build, wish)) return *error;
     const OwnForm form(build, wish);
     Settings start = start_of(build, wish);
     const auto rules = rules_of(build, form.controller(std::abs(start.gain), start.Ti, start.Td));
@@ -163,6 +293,10 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
     shape.has_derivative = wish.pid && (build.product == nullptr ||
                                         product::parameter_of(*build.product, product::Role::derivative) != nullptr);
     shape.sign = wish.sign;
+    const TypedNumbers numbers(build);
+    shape.gain = numbers.gain.range();
+    shape.Ti = numbers.Ti.range();
+    shape.Td = numbers.Td.range();
     shape.law = [&](double gain, double Ti, double Td) {
         const IdealPid pid = form.controller(gain, Ti, Td);
         Law law = *rules;
@@ -172,17 +306,10 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
         if (build.product == nullptr) law.derivative = rule_of(build, pid);
         return law;
     };
-    Expected<Fitted> last = Error{};
-    for (const double margin : kMargins) {
-        const auto found = search(plants, shape, within(wish.limits, margin), {start}, control);
-        if (!found) return found.error();
-        start = *found;
-        last = fit(build, form.controller(std::abs(found->gain), found->Ti, found->Td), true);
-        if (!last || build.product == nullptr) return last;
-        last = on_grid(build, plants, wish.limits, std::move(*last), control);
-        if (last || last.error().kind != ErrorKind::no_feasible_controller) return last;
-    }
-    return last;
+    const auto free = search(plants, shape, wish.limits, {start}, control);
+    if (!free) return free.error();
+    if (build.product == nullptr) return fit(build, form.controller(std::abs(free->gain), free->Ti, free->Td), true);
+    return Settling(build, form, numbers, plants, wish.limits, control).best({shape, *free});
 }
 
 }  // namespace tunewright::built

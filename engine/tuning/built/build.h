@@ -71,8 +71,9 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
 double number_of(const std::string& text, double otherwise);
 
 /// `near` is a design within the limits before its settings were rounded. All ways to round its numbers up or down are
-/// tried, and where a step is coarse the neighbours too. Error: no_feasible_controller where none holds the limits.
+/// tried, and where a step is coarse the neighbours too. Error: no_feasible_controller where none holds the limits and
+/// has a load IAE below `enough`.
 Expected<Fitted> on_grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits,
-                         Fitted near, const RunControl& control);
+                         Fitted near, double enough, const RunControl& control);
 
 }  // namespace tunewright::built

@@ -136,7 +136,7 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
 }
 
 std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
-                                   const Limits& limits) {
+                                   const Limits& limits, double most) {
     const Law unit_law = law_at(1);
     const auto unit = [&](double omega) { return response_of(unit_law, omega); };
     std::vector<GainLimiter::Interval> all;
@@ -145,17 +145,18 @@ std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const
         all.insert(all.end(), some.begin(), some.end());
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
-    std::vector<double> ends;  // upper ends of what is allowed
+    std::vector<double> gains;  // the largest of each gap
     double reached = 0;
     for (const auto& interval : all) {
-        if (interval.from > reached) ends.push_back(interval.from);
+        if (interval.from > reached && reached < most) gains.push_back(std::min(interval.from, most));
         reached = std::max(reached, interval.to);
     }
-    for (auto end = ends.rbegin(); end != ends.rend(); ++end) {
-        const Law law = law_at(kNearEnd * *end);
+    for (auto gain = gains.rbegin(); gain != gains.rend(); ++gain) {
+        const bool whole = *gain < most;
+        const Law law = law_at(whole ? kNearEnd * *gain : *gain);
         const bool stable = std::all_of(plants.begin(), plants.end(),
                                         [&](const GainLimiter& plant) { return is_stable(plant.plant(), law); });
-        if (stable) return kInside * *end;
+        if (stable) return whole ? kInside * *gain : *gain;
     }
     return std::nullopt;
 }

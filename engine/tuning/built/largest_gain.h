@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -39,8 +40,9 @@ private:
     std::vector<std::complex<double>> P_;
 };
 
-/// On all plants at once. `law_at(k)`: the controller at gain k. Empty: no gain is stable and within the limits.
+/// On all plants at once, not above `most`. `law_at(k)`: the controller at gain k. Empty: no gain is stable and within
+/// the limits.
 std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
-                                   const Limits& limits);
+                                   const Limits& limits, double most = std::numeric_limits<double>::infinity());
 
 }  // namespace tunewright::built

@@ -22,9 +22,12 @@ constexpr double kNoGain = 1e-5;     // relative: a search that gains less is th
 constexpr int kMaxRestarts = 4;
 constexpr int kMostEvaluations = 150;  // of one simplex
 constexpr double kTolerance = 1e-6;    // of ln IAE
+constexpr int kMostNear = 50;          // both, of a start that is near
+constexpr double kNearTolerance = 1e-4;
 constexpr int kMaxCorrections = 6;
-constexpr double kMargin = 1e-5;  // of M - 1: where limits bound the gain from both sides, the last grid may differ
-constexpr double kHolds = 1e-6;   // relative excess over a limit that counts as none
+// Of M - 1: where limits bound the gain from both sides, the last grid may differ and leave no gain; then the next.
+constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
+constexpr double kHolds = 1e-6;                      // relative excess over a limit that counts as none
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
 
 }  // namespace
@@ -40,9 +43,11 @@ namespace {
 class Search {
 public:
     Search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits, const Law& first)
-        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargin)) {
+        : plants_(plants), shape_(shape), limits_(limits), inner_(within(limits, kMargins[0])) {
         for (const LinearPlant* plant : plants) limiters_.emplace_back(*plant, first);
     }
+
+    void keep_margin(double margin) { inner_ = within(limits_, margin); }
 
     /// The cost is infinite where no gain serves.
     Settings at(double Ti, double Td);
@@ -59,16 +64,17 @@ private:
 
     const std::vector<const LinearPlant*>& plants_;
     const Shape& shape_;
-    const Limits limits_, inner_;
+    const Limits limits_;
+    Limits inner_;
     std::vector<GainLimiter> limiters_;
 };
 
 Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
     Settings best{0, Ti, Td, kInfinity};
     const auto k = largest_gain(
-        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits);
+        limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits, shape_.gain.high);
     if (!k || *k < shape_.gain.low) return best;
-    const double most = std::min(*k, shape_.gain.high);
+    const double most = *k;
     best = {shape_.sign * most, Ti, Td, cost(most, Ti, Td)};
     for (const double share : kLowerGains) {
         const double gain = std::max(share * most, shape_.gain.low), lower = cost(gain, Ti, Td);
@@ -83,9 +89,9 @@ Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(
 double Search::widening(double Ti, double Td) const {
     const auto serves = [&](double factor) {
         const Limits wider{1 + factor * (inner_.Ms - 1), 1 + factor * (inner_.Mt - 1), {}};
-        return largest_gain(
-                   limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider)
-            .has_value();
+        const auto k = largest_gain(
+            limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider, shape_.gain.high);
+        return k && *k >= shape_.gain.low;
     };
     double low = 0, high = std::log(kWidest);
     if (!serves(kWidest)) return kInfinity;
@@ -126,11 +132,14 @@ public:
         if (shape.has_derivative) x_.push_back(std::log(start.Td));
     }
 
-    /// From the start, and again from the best while that gains.
-    Settings best(const std::stop_token& stop);
+    /// From the start, and again from the best while that gains; under a wider margin where the last grid leaves no
+    /// gain.
+    Settings best(Reach reach, const std::stop_token& stop);
 
 private:
     double cost(const std::vector<double>& x) const;
+    /// Leaves the best times in x_; its cost.
+    double descend(Reach reach, const std::stop_token& stop);
     std::pair<double, double> times(const std::vector<double>& x) const {
         const double first = x.empty() ? 0 : std::exp(x.front()), last = x.empty() ? 0 : std::exp(x.back());
         return {shape_.has_integral ? first : held_.Ti, shape_.has_derivative ? last : held_.Td};
@@ -150,15 +159,17 @@ double TimesSearch::cost(const std::vector<double>& x) const {
     return std::isfinite(factor) ? kOutside + std::log(factor) : kNoCost;
 }
 
-Settings TimesSearch::best(const std::stop_token& stop) {
+double TimesSearch::descend(Reach reach, const std::stop_token& stop) {
+    const bool wide = reach == Reach::wide;
     const auto watched = [&](const std::vector<double>& x, bool& end) {
         end = stop.stop_requested();
         return cost(x);
     };
-    double reached = cost(x_), step = kFirstStep;
-    for (int i = 0; i < kMaxRestarts && !x_.empty(); ++i, step = kLaterStep) {
-        const auto found = find_local_minimum(LocalSearch::nelder_mead, watched, x_,
-                                              {std::vector<double>(x_.size(), step), kTolerance, kMostEvaluations});
+    double reached = cost(x_), step = wide ? kFirstStep : kLaterStep;
+    for (int i = 0; i < (wide ? kMaxRestarts : 1) && !x_.empty(); ++i, step = kLaterStep) {
+        const LocalOptions options{std::vector<double>(x_.size(), step), wide ? kTolerance : kNearTolerance,
+                                   wide ? kMostEvaluations : kMostNear};
+        const auto found = find_local_minimum(LocalSearch::nelder_mead, watched, x_, options);
         const double gained = reached - found.value;
         if (gained > 0) {
             reached = found.value;
@@ -166,21 +177,32 @@ Settings TimesSearch::best(const std::stop_token& stop) {
         }
         if (i > 0 && gained < kNoGain) break;
     }
-    const auto [Ti, Td] = times(x_);
-    return local_.confirmed(Ti, Td);
+    return reached;
+}
+
+Settings TimesSearch::best(Reach reach, const std::stop_token& stop) {
+    Settings found{0, 0, 0, kInfinity};
+    for (const double margin : kMargins) {
+        local_.keep_margin(margin);
+        const double reached = descend(reach, stop);
+        const auto [Ti, Td] = times(x_);
+        found = local_.confirmed(Ti, Td);
+        if (std::isfinite(found.load_IAE) || reached >= kOutside) break;
+    }
+    return found;
 }
 
 }  // namespace
 
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
-                          const std::vector<Settings>& starts, const RunControl& control) {
+                          const std::vector<Settings>& starts, const RunControl& control, Reach reach) {
     std::optional<Settings> best;
     for (Settings start : starts) {
         start.Ti = shape.Ti.within(start.Ti);
         start.Td = shape.Td.within(start.Td);
         // The first loop's frequencies serve all later ones.
         Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
-        const Settings found = TimesSearch(local, shape, start).best(control.stop);
+        const Settings found = TimesSearch(local, shape, start).best(reach, control.stop);
         if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
         if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
     }

@@ -35,7 +35,11 @@ Limits within(const Limits& limits, double margin);
 /// By simplices over (Ti, Td), the gain at its largest within the limits, from each of `starts`, whose gains are only
 /// where the loop's frequencies are chosen at. `plants`: the nominal one first, whose load IAE counts; limits hold on
 /// all, to 1e-6. Errors: no_feasible_controller; cancelled.
+enum class Reach {
+    wide,
+    near,  ///< the starts are good ones of almost the same task: one small simplex
+};
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
-                          const std::vector<Settings>& starts, const RunControl& control);
+                          const std::vector<Settings>& starts, const RunControl& control, Reach reach = Reach::wide);
 
 }  // namespace tunewright::built

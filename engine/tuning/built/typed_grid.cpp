@@ -9,12 +9,14 @@ namespace tunewright::built {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kHolds = 1e-6;    // relative excess over a limit that counts as none
-constexpr double kCoarse = 0.004;  // of a value: larger steps are worth a look at the neighbours too
-constexpr int kFarSteps = 2;       // so many steps beyond floor and ceiling, where they are coarse
-constexpr int kMostGains = 6;      // steps of the gain that are tried below the first
-constexpr double kALittle = 1.01;  // times a number, to see which way it acts
-constexpr int kTypedDigits = 4;    // of a number without a resolution of its own
+constexpr double kHolds = 1e-6;         // relative excess over a limit that counts as none
+constexpr double kCoarse = 0.004;       // of a value: larger steps are worth a look at the neighbours too
+constexpr int kFarSteps = 2;            // so many steps beyond floor and ceiling, where they are coarse
+constexpr int kMostGains = 6;           // steps of the gain that are tried below the first
+constexpr double kLongestClimb = 64;    // steps of the gain
+constexpr double kMostOfAClimb = 1.25;  // times the IAE: what a climb is not expected to save
+constexpr double kALittle = 1.01;       // times a number, to see which way it acts
+constexpr int kTypedDigits = 4;         // of a number without a resolution of its own
 
 /// One number that can be typed.
 struct Number {
@@ -58,8 +60,9 @@ bool weakens(const Build& build, product::Settings settings, std::size_t at) {
 
 class Grid {
 public:
-    Grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits, Fitted near)
-        : build_(build), plants_(plants), limits_(limits), near_(std::move(near)) {
+    Grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits, Fitted near,
+         double enough)
+        : build_(build), plants_(plants), limits_(limits), near_(std::move(near)), least_(enough) {
         for (const product::Tunable& tunable : product::tunable_parameters(*build.product)) {
             for (std::size_t i = 0; i < near_.settings.size(); ++i) {
                 const auto* value = std::get_if<double>(&near_.settings[i].value);
@@ -75,6 +78,9 @@ public:
 private:
     void look(product::Settings settings, std::size_t number);
     void look_at_gains(product::Settings settings, const Number& gain);
+    void climb(product::Settings& settings, std::size_t gain, double step) const;
+    double least_possible(const product::Settings& settings) const;
+    std::optional<Fitted> held(const product::Settings& settings) const;
     bool consider(const product::Settings& settings);
 
     const Build& build_;
@@ -84,15 +90,29 @@ private:
     std::vector<Number> numbers_;
     double gain_step_ = 0;
     std::optional<Fitted> best_;
-    double least_ = kInfinity;
+    double least_;
 };
+
+// |integral of y| after a unit load: Ti/|Kp|.
+double Grid::least_possible(const product::Settings& settings) const {
+    std::vector<product::Note> notes;
+    const auto pid = product::to_controller(*build_.product, settings, build_.context, notes);
+    return pid ? pid->Ti / std::abs(pid->Kp) : kInfinity;
+}
+
+std::optional<Fitted> Grid::held(const product::Settings& settings) const {
+    auto fitted = fit(build_, settings);
+    if (!fitted) return std::nullopt;
+    for (const LinearPlant* plant : plants_)
+        if (!is_stable(*plant, fitted->law) || peaks_of(*plant, fitted->law).excess(limits_) > kHolds)
+            return std::nullopt;
+    return std::move(*fitted);
+}
 
 // True where the limits hold.
 bool Grid::consider(const product::Settings& settings) {
-    auto fitted = fit(build_, settings);
+    auto fitted = held(settings);
     if (!fitted) return false;
-    for (const LinearPlant* plant : plants_)
-        if (!is_stable(*plant, fitted->law) || peaks_of(*plant, fitted->law).excess(limits_) > kHolds) return false;
     const double IAE = load_iae_of(*plants_.front(), fitted->law);
     if (IAE < least_) {
         least_ = IAE;
@@ -101,22 +121,43 @@ bool Grid::consider(const product::Settings& settings) {
     return true;
 }
 
-// From the strongest gain down to the first that holds.
+// From the strongest gain down to the first that holds; where the strongest does, further up while they hold: other
+// numbers than the design's may allow more.
 void Grid::look_at_gains(product::Settings settings, const Number& gain) {
-    const double first = std::get<double>(settings[gain.at].value);
+    double& value = std::get<double>(settings[gain.at].value);
+    const double first = value;
     std::vector<double> values = gain.values;
     // A proportional band runs against the gain.
     const bool band = weakens(build_, settings, gain.at);
+    const double stronger = (band ? -gain_step_ : gain_step_) * (first < 0 ? -1 : 1);
     std::sort(values.begin(), values.end(),
               [&](double a, double b) { return band ? std::abs(a) < std::abs(b) : std::abs(a) > std::abs(b); });
     for (int i = 0; i < kMostGains; ++i) {
-        const double next = values.back() + (band ? gain_step_ : -gain_step_) * (first < 0 ? -1 : 1);
+        const double next = values.back() - stronger;
         if ((next > 0) == (first > 0)) values.push_back(next);
     }
-    for (const double value : values) {
-        settings[gain.at].value = value;
-        if (consider(settings)) return;
+    for (const double candidate : values) {
+        value = candidate;
+        if (!(least_possible(settings) < least_ * (candidate == values.front() ? kMostOfAClimb : 1))) return;
+        if (!held(settings)) continue;
+        if (candidate == values.front()) climb(settings, gain.at, stronger);
+        consider(settings);
+        return;
     }
+}
+
+void Grid::climb(product::Settings& settings, std::size_t gain, double step) const {
+    double& value = std::get<double>(settings[gain].value);
+    const auto moved = [&](double by) {
+        const double from = value;
+        value += by;
+        if ((value > 0) == (from > 0) && held(settings)) return true;
+        value = from;
+        return false;
+    };
+    double width = 1;
+    while (width < kLongestClimb && moved(width * step)) width *= 2;
+    for (width /= 2; width >= 1; width /= 2) moved(width * step);
 }
 
 void Grid::look(product::Settings settings, std::size_t number) {
@@ -153,8 +194,8 @@ double number_of(const std::string& text, double otherwise) {
 }
 
 Expected<Fitted> on_grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits,
-                         Fitted near, const RunControl& control) {
-    if (auto best = Grid(build, plants, limits, std::move(near)).best(control)) return std::move(*best);
+                         Fitted near, double enough, const RunControl& control) {
+    if (auto best = Grid(build, plants, limits, std::move(near), enough).best(control)) return std::move(*best);
     if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
     return Error{ErrorKind::no_feasible_controller, "",
                  "No settings that can be typed near the optimum keep the limits: the steps of this controller are too "

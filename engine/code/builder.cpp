@@ -72,6 +72,12 @@ void Builder::add_change_of_settings() {
 }
 
 void Builder::add_signals() {
+    if (plan_.filters_setpoint()) {
+        add(remark("The set point's filter: what follows sees its output."));
+        const Expr filtered = local("setpoint_f", "filtered set point");
+        add(assign(filtered, (Tr_ * setpoint_last_ + Ts_ * setpoint_) / (Tr_ + Ts_)));
+        setpoint_ = filtered;
+    }
     add(remark(plan_.smooths() ? "The measurement's filter, and the error." : "The error."));
     if (!plan_.position) {
         y_f_last_ = local("y_f_last", "y_f of the last call");

@@ -27,6 +27,8 @@ void Builder::declare_settings() {
 
 void Builder::declare_fixed_settings() {
     Ts_ = setting("Ts", plan_.pid.Ts, "sample time in s: the time from call to call");
+    if (plan_.filters_setpoint())
+        Tr_ = setting("Tr", plan_.pid.gains.setpoint_lag, "time constant of the set point's filter in s");
     if (plan_.smooths())
         Tf_ = setting("Tf", plan_.pid.gains.filter.Tf, "time constant of the measurement's filter in s");
     if (plan_.filters_slope())
@@ -42,7 +44,8 @@ void Builder::declare_states() {
         integral_ = state("integral", plan_.integral ? "the integral part, a term in u" : "what u is without error");
     y_f_ = state("y_f", plan_.smooths() ? "filtered measurement" : "measurement");
     if (plan_.smooths_twice()) filter_rate_ = state("filter_rate", "slope of y_f");
-    setpoint_last_ = state("setpoint_last", "set point of the last call");
+    setpoint_last_ = state("setpoint_last", plan_.filters_setpoint() ? "filtered set point of the last call"
+                                                                     : "set point of the last call");
     if (plan_.keeps_error) fed_last_ = state("fed_last", "what the integral was last fed with");
     if (plan_.derivative) declare_history();
     u_last_ = state("u_last", "output of the last call");

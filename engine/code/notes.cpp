@@ -48,7 +48,10 @@ std::string law_note(const Plan& plan) {
         plan.position ? "Law: u = Kp (b r - y_f) + I + D, with the set point r and e = r - y_f. "
                       : "Law, in its velocity form: each call adds to the last u what has been gained by Kp (b "
                         "r - y_f) + I + D, with the set point r and e = r - y_f. ";
-    return form + measurement_note(plan) + " " + integral_note(plan) + " " + derivative_note(plan) +
+    const std::string set = plan.filters_setpoint()
+                                ? "r is the set point behind a filter of first order, 1/(1 + s Tr), by backward Euler. "
+                                : "";
+    return form + set + measurement_note(plan) + " " + integral_note(plan) + " " + derivative_note(plan) +
            " Times are in seconds. The gains are positive; direct turns the action round.";
 }
 

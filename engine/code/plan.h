@@ -31,6 +31,7 @@ struct Plan {
 
     bool smooths() const { return filter == FilterType::measurement_first_order || smooths_twice(); }
     bool smooths_twice() const { return filter == FilterType::measurement_second_order; }
+    bool filters_setpoint() const { return pid.gains.setpoint_lag > 0; }
     bool filters_slope() const {
         return derivative && (rule == DerivativeRule::filtered_backward || rule == DerivativeRule::filtered_forward ||
                               rule == DerivativeRule::filtered_trapezoidal);

@@ -47,11 +47,17 @@ Error no_series(const IdealPid& pid, double Tf) {
 }  // namespace
 
 ParallelPid to_parallel(const IdealPid& pid) {
-    return {.Kp = pid.Kp, .Ki = pid.Kp / pid.Ti, .Kd = pid.Kp * pid.Td, .b = pid.b, .c = pid.c, .filter = pid.filter};
+    return {.Kp = pid.Kp,
+            .Ki = pid.Kp / pid.Ti,
+            .Kd = pid.Kp * pid.Td,
+            .b = pid.b,
+            .c = pid.c,
+            .filter = pid.filter,
+            .setpoint_lag = pid.setpoint_lag};
 }
 
 Expected<IdealPid> to_ideal(const ParallelPid& pid) {
-    IdealPid ideal{.Kp = pid.Kp, .b = pid.b, .c = pid.c, .filter = pid.filter};
+    IdealPid ideal{.Kp = pid.Kp, .b = pid.b, .c = pid.c, .filter = pid.filter, .setpoint_lag = pid.setpoint_lag};
     if (pid.Kp == 0) {
         if (pid.Ki == 0 && pid.Kd == 0) return ideal;
         return Error{ErrorKind::unsupported, "",
@@ -79,12 +85,19 @@ Expected<IdealPid> to_ideal(const SeriesPid& pid) {
                     .Td = pid.Td / factor - Tf,
                     .b = pid.b / factor,
                     .c = pid.c,
-                    .filter = pid.filter};
+                    .filter = pid.filter,
+                    .setpoint_lag = pid.setpoint_lag};
 }
 
 Expected<SeriesPid> to_series(const IdealPid& pid) {
     const double Tf = lead_filter(pid.filter);
-    SeriesPid series{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td + Tf, .b = pid.b, .c = pid.c, .filter = pid.filter};
+    SeriesPid series{.Kp = pid.Kp,
+                     .Ti = pid.Ti,
+                     .Td = pid.Td + Tf,
+                     .b = pid.b,
+                     .c = pid.c,
+                     .filter = pid.filter,
+                     .setpoint_lag = pid.setpoint_lag};
     if (!pid.has_integral()) return series;
     const double sum = pid.Ti + Tf;
     // Equals sum^2 - 4 Ti (Td + Tf), written so that Td = 0 gives a square exactly.
@@ -124,7 +137,8 @@ ParallelPid gains_of(const SeriesPid& pid) {
             .Kd = pid.Kp * (pid.Td - Tf * factor),
             .b = factor == 0 ? pid.b : pid.b / factor,
             .c = pid.c,
-            .filter = pid.filter};
+            .filter = pid.filter,
+            .setpoint_lag = pid.setpoint_lag};
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // What controls: the PID law of the contract in its ideal form, with set-point weights and filters.
 //
-//   u = Kp [ (b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f) ]
+//   u = Kp [ (b r_f - y_f) + (1/Ti) int (r_f - y_f) dt + Td d/dt (c r_f - y_f) ],   r_f = r/(1 + s T)
 //
 // The nonlinear PID differs from it (b = 1, c = 0) only in what its integral is fed with: exp(-e^2/(2 delta_r^2)) e.
 //
@@ -47,6 +47,7 @@ struct IdealPid {
     double b = 1;
     double c = 0;
     Filter filter = {};
+    double setpoint_lag = 0;  ///< T of the set-point filter, >= 0; 0: none
 
     bool has_integral() const { return Ti < std::numeric_limits<double>::infinity(); }
     bool operator==(const IdealPid&) const = default;
@@ -60,6 +61,7 @@ struct ParallelPid {
     double b = 1;
     double c = 0;
     Filter filter = {};
+    double setpoint_lag = 0;
 };
 
 /// Kp (1 + 1/(s Ti)) (1 + s Td): the interacting form. With `derivative` the filter covers the whole lead (1 + s Td)/(1
@@ -71,6 +73,7 @@ struct SeriesPid {
     double b = 1;
     double c = 0;
     Filter filter = {};
+    double setpoint_lag = 0;
     double b_equivalent = 1;  ///< Ti'/Ti of the ideal form: what b = 1 in the series form amounts to
 };
 

@@ -54,10 +54,12 @@ MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::option
         options.tolerance = kNonlinearTolerance;
         options.max_steps = kMaxNonlinearSteps;
     }
+    ParallelPid acting = loop.gains();
+    if (inputs.r == 0) acting.setpoint_lag = 0;
     const auto run = [&](const ResponseOptions& how) {
-        if (delta_r) return simulate_npid(plant, loop.gains(), *delta_r, inputs, how);
-        if (!o.actuator) return simulate_linear(plant, loop.gains(), inputs, how);
-        return simulate_limited(plant, loop.gains(), inputs, {o.actuator->min, o.actuator->max}, how);
+        if (delta_r) return simulate_npid(plant, acting, *delta_r, inputs, how);
+        if (!o.actuator) return simulate_linear(plant, acting, inputs, how);
+        return simulate_limited(plant, acting, inputs, {o.actuator->min, o.actuator->max}, how);
     };
     return measure(run, options, inputs.r);
 }
@@ -126,6 +128,15 @@ void add_region(Evaluation& evaluation, const PlantFamily& family) {
                                    "robust, which holds its limits on all of them."});
 }
 
+/// The frequencies that a reader looks for.
+std::vector<double> marked(const Robustness& r) {
+    std::vector<double> omega;
+    for (const Figure& figure : {r.omega_Ms, r.omega_Mt, r.gain_crossover, r.phase_crossover})
+        if (figure && *figure > 0) omega.push_back(*figure);
+    std::ranges::sort(omega);
+    return omega;
+}
+
 }  // namespace
 
 Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Controller& controller,
@@ -145,7 +156,8 @@ Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Control
     } else {
         mark_unstable(evaluation, count);
     }
-    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, grid, options.points);
+    if (options.points >= 2)
+        evaluation.frequency = frequency_traces(*loop, grid, options.points, marked(evaluation.robustness));
     if (auto error = stopped(options)) return *error;
     if (!subject.family.single()) add_region(evaluation, subject.family);
     return evaluation;

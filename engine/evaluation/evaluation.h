@@ -27,7 +27,7 @@ struct EvaluateOptions {
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
     double rank_Ms = 2.0;               ///< entries with Ms above it rank last
-    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: with "all"
+    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: of several
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)
     std::stop_token stop;  ///< asked between the parts of an evaluation, which is then the error `cancelled`

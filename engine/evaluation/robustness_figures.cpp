@@ -109,9 +109,12 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
 
 namespace {
 
-constexpr double kSmoothStep = 0.06;  // between neighbours on the Nyquist curve, where |L| < kNear
-constexpr double kNear = 4;
-constexpr double kLeastShownS = 1e-3, kLeastShownT = 1e-4;  // beyond them the curves show nothing
+constexpr double kLeastShownS = 1e-3, kLeastShownT = 2e-3;  // beyond them the curves show nothing
+constexpr double kNear = 0.3;        // of |L|: a curve nearer to the origin is looked at less closely, and from
+constexpr double kUnseen = 0.02;     // here on its turns are not followed
+constexpr double kSameTurn = 0.1;    // rad of L that count as much as
+constexpr double kSameChange = 0.2;  // this change of ln |L| or
+constexpr double kSameRatio = 0.15;  // this one of ln omega
 
 struct Sample {
     double omega;
@@ -129,40 +132,68 @@ std::vector<Sample> visible(const LoopGrid& grid) {
     return samples;
 }
 
-/// Halves the longest chords of the Nyquist curve while points are left.
-std::vector<Sample> smoothed(const Loop& loop, std::vector<Sample> samples, std::size_t points) {
-    for (int round = 0; round < 6; ++round) {
-        std::vector<Sample> finer;
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            finer.push_back(samples[i]);
-            if (i + 1 == samples.size() || finer.size() + samples.size() - i >= points) continue;
-            const auto a = samples[i].point.L, b = samples[i + 1].point.L;
-            if (magnitude(a - b) < kSmoothStep * std::max(1.0, magnitude(a)) ||
-                std::min(magnitude(a), magnitude(b)) > kNear)
-                continue;
-            const double middle = std::sqrt(samples[i].omega * samples[i + 1].omega);
-            finer.push_back({middle, loop.at(middle)});
-        }
-        if (finer.size() == samples.size()) break;
-        samples = std::move(finer);
+/// How much of a turn at |L| the eye sees: a chord leaves the arc by |L| turn^2 / 8.
+double seen_at(double gain) { return gain < kUnseen ? 0 : std::min(1.0, std::sqrt(gain / kNear)); }
+
+/// How far the curves have come at each sample, seen by the eye: turning of L, growth of |L|, omega, each in its
+/// measure. `turns`: the phase of L, unwrapped.
+std::vector<double> progress_along(const std::vector<Sample>& samples, const std::vector<double>& turns) {
+    std::vector<double> along{0};
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+        const double a = magnitude(samples[i - 1].point.L), b = magnitude(samples[i].point.L);
+        const double seen = seen_at(std::max(a, b));
+        const double turn = (turns[i] - turns[i - 1]) / kSameTurn, change = std::log(b / a) / kSameChange;
+        const double ratio = std::log(samples[i].omega / samples[i - 1].omega) / kSameRatio;
+        const double curve = std::isfinite(change) ? std::hypot(turn, change) : std::abs(turn);
+        along.push_back(along.back() + seen * curve + ratio);
     }
-    return samples;
+    return along;
 }
 
-FrequencyTraces traces_of(const std::vector<Sample>& samples, std::size_t most) {
-    const std::size_t stride = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
+/// The phase of L at each sample, the dead time's turns between neighbours counted.
+std::vector<double> unwrapped(const std::vector<Sample>& samples, double dead_time) {
+    std::vector<double> turns;
+    double rest = 0, last = 0;  // the phase without the dead time's own
+    for (const Sample& sample : samples) {
+        const double own = std::arg(sample.point.L) + sample.omega * dead_time;
+        rest = turns.empty() ? std::arg(sample.point.L) + sample.omega * dead_time
+                             : rest + std::remainder(own - last, 2 * std::numbers::pi);
+        last = own;
+        turns.push_back(rest - sample.omega * dead_time);
+    }
+    return turns;
+}
+
+/// At most `most` frequencies, evenly spread along the curves; `kept` (ascending) are among them.
+std::vector<double> spread(const std::vector<Sample>& samples, const std::vector<double>& along, std::size_t most,
+                           const std::vector<double>& kept) {
+    const std::size_t count = most > kept.size() + 2 ? most - kept.size() : most;
+    std::vector<double> omega;
+    std::size_t i = 1;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double wanted = along.back() * static_cast<double>(k) / static_cast<double>(count - 1);
+        while (i + 1 < along.size() && along[i] < wanted) ++i;
+        const double part = (wanted - along[i - 1]) / (along[i] - along[i - 1]);
+        omega.push_back(samples[i - 1].omega *
+                        std::pow(samples[i].omega / samples[i - 1].omega, std::clamp(part, 0.0, 1.0)));
+    }
+    const double first = omega.front(), last = omega.back();
+    if (count < most)
+        for (const double frequency : kept)
+            if (frequency > first && frequency < last) omega.push_back(frequency);
+    std::ranges::sort(omega);
+    omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
+    return omega;
+}
+
+FrequencyTraces traces_of(const std::vector<Sample>& samples, const std::vector<double>& turns) {
     FrequencyTraces traces;
-    double phase = 0, previous = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const LoopPoint& p = samples[i].point;
-        const double wrapped = std::arg(p.L);
-        phase = i == 0 ? wrapped : phase + std::remainder(wrapped - previous, 2 * std::numbers::pi);
-        previous = wrapped;
-        if (i % stride != 0) continue;
         traces.omega.push_back(samples[i].omega);
         traces.L_re.push_back(p.L.real());
         traces.L_im.push_back(p.L.imag());
-        traces.L_phase_deg.push_back(phase * 180 / std::numbers::pi);
+        traces.L_phase_deg.push_back(turns[i] * 180 / std::numbers::pi);
         traces.S_abs.push_back(std::abs(p.S));
         traces.T_abs.push_back(std::abs(p.T));
         traces.CS_abs.push_back(std::abs(p.CS));
@@ -170,17 +201,45 @@ FrequencyTraces traces_of(const std::vector<Sample>& samples, std::size_t most) 
     return traces;
 }
 
+/// The phase at a new frequency: the wrapped one, on the turn that the neighbours are on.
+double on_turn(double wrapped, double nearby) {
+    return nearby + std::remainder(wrapped - nearby, 2 * std::numbers::pi);
+}
+
 }  // namespace
 
-FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points) {
-    const auto most = static_cast<std::size_t>(points);
-    return traces_of(smoothed(loop, visible(grid), most), most);
+FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points, const std::vector<double>& kept) {
+    const double L = loop.plant().dead_time();
+    const std::vector<Sample> seen = visible(grid);
+    const std::vector<double> turns = unwrapped(seen, L);
+    if (seen.size() < 2) return traces_of(seen, turns);
+    std::vector<Sample> samples;
+    std::vector<double> phase;
+    std::size_t i = 1;
+    for (const double omega : spread(seen, progress_along(seen, turns), static_cast<std::size_t>(points), kept)) {
+        while (i + 1 < seen.size() && seen[i].omega < omega) ++i;
+        samples.push_back({omega, loop.at(omega)});
+        // Between neighbours the dead time's turning is known; the rest moves little.
+        const double part = (omega - seen[i - 1].omega) / (seen[i].omega - seen[i - 1].omega);
+        phase.push_back(on_turn(std::arg(samples.back().point.L), turns[i - 1] + part * (turns[i] - turns[i - 1])));
+    }
+    return traces_of(samples, phase);
 }
 
 FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points) {
     std::vector<Sample> samples;
-    for (const double omega : loop.omega()) samples.push_back({omega, loop.at(omega)});
-    return traces_of(samples, static_cast<std::size_t>(points));
+    const auto& omega = loop.omega();
+    const std::size_t most = static_cast<std::size_t>(points),
+                      stride = std::max<std::size_t>(1, (omega.size() + most - 1) / most);
+    for (const double frequency : omega) samples.push_back({frequency, loop.at(frequency)});
+    const std::vector<double> turns = unwrapped(samples, 0);
+    std::vector<Sample> some;
+    std::vector<double> phase;
+    for (std::size_t i = 0; i < samples.size(); i += stride) {
+        some.push_back(samples[i]);
+        phase.push_back(turns[i]);
+    }
+    return traces_of(some, phase);
 }
 
 }  // namespace tunewright

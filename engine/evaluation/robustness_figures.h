@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <vector>
+
 #include "engine/evaluation/evaluation.h"
 #include "engine/loop/frequency_grid.h"
 #include "engine/loop/margins.h"
@@ -23,9 +25,11 @@ Robustness unstable_robustness(const StabilityCount& count);
 /// `worst_Ms`: the largest at those points, at the regions' ends and where a local search from the worst of them leads.
 RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller);
 
-/// The loop's curves, thinned out for drawing: at most about `points` frequencies of the decades that matter: the
-/// grid's own, with more where the Nyquist curve bends near the critical point, phase unwrapped on the fine grid.
-FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points);
+/// The loop's curves for drawing: at most `points` frequencies, spread so that between neighbours L turns, grows and
+/// omega rises by as little as that number allows; a dead time's turns are followed until |L| is too small to be seen.
+/// `kept`, frequencies of peaks and crossovers, are among them. The phase is unwrapped, the dead time's turns counted.
+FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points,
+                                 const std::vector<double>& kept = {});
 
 /// The whole measured band.
 FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points);

@@ -144,7 +144,8 @@ struct IdentifiedModel {
 ///   rounding of y does.
 /// - Where a controller moves u in answer to y, the model rests on what moves of the set point (column r, or plain
 ///   kicks of u) do to u and y (closed_loop.h); without any, the record is refused. Warning closed-loop.
-/// - `fit` has at most 2,000 points; of more than 100,000 samples means over blocks are fitted. Warning codes:
+/// - `fit` has at most 2,000 points; of more than 20,000 samples means over blocks are fitted, if the
+///   plant is slow beside them; of more than 100,000 always. Warning codes:
 ///   diagnosis.h, model_answer.cpp, data_quality.h.
 ///
 /// Progress runs from 0 to 1 with stage "identify". Errors: not_identifiable with the cure (fewer than 8 samples, u or

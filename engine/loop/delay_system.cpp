@@ -1,6 +1,7 @@
 #include "engine/loop/delay_system.h"
 
 #include <Eigen/Core>
+#include <utility>
 
 namespace tunewright {
 namespace {
@@ -24,7 +25,8 @@ public:
                                   : c.filter.type == FilterType::measurement_second_order ? 2
                                                                                           : 1;
         const bool integral = c.Ki != 0;
-        system_.n = plant_.n + filter_states + (integral ? 1 : 0);
+        const bool lag = c.setpoint_lag > 0;
+        system_.n = plant_.n + filter_states + (integral ? 1 : 0) + (lag ? 1 : 0);
         system_.L = plant.dead_time();
         const auto n = static_cast<std::size_t>(system_.n);
         system_.F.assign(n * n, 0);
@@ -37,6 +39,7 @@ public:
         system_.Z = plant_.D;
         filter_ = plant_.n;
         if (integral) system_.integral_state = plant_.n + filter_states;
+        if (lag) system_.setpoint_state = system_.n - 1;
     }
 
     DelaySystem build() {
@@ -51,6 +54,7 @@ public:
             system_.M[index(i)] = c_.Ki;
         }
         system_.R += c_.Kp * c_.b;
+        if (system_.setpoint_state >= 0) filter_setpoint();
         return system_;
     }
 
@@ -114,6 +118,16 @@ private:
         system_.M[index(filter_)] = -c_.Kp;
         system_.M[index(filter_ + 1)] = -c_.Kd / Tf;
         if (system_.integral_state >= 0) F(system_.integral_state, filter_) = -1;
+    }
+
+    /// What r did, its filtered value does: r_f' = (r - r_f)/T.
+    void filter_setpoint() {
+        const int last = system_.setpoint_state;
+        for (int i = 0; i < last; ++i) F(i, last) = std::exchange(system_.H[index(i)], 0);
+        system_.M[index(last)] = std::exchange(system_.R, 0);
+        system_.setpoint_lag = c_.setpoint_lag;
+        F(last, last) = -1 / c_.setpoint_lag;
+        system_.H[index(last)] = 1 / c_.setpoint_lag;
     }
 
     const Realisation& plant_;

@@ -2,9 +2,9 @@
 //
 //   x' = F x + G v + H r,   u = M x + N v + R r,   y = Y x + Z v,   v(t) = w(t - L),  w = u + d
 //
-// Plant states first, then the controller's: integral of r - y_f, filter states. N couples u to the delayed signal
-// directly (proportional action on a plant with a direct term, or a pure derivative on a plant of pole excess one): a
-// neutral loop.
+// Plant states first, then the controller's: filter states, integral of r - y_f, filtered set point. N couples u to the
+// delayed signal directly (proportional action on a plant with a direct term, or a pure derivative on a plant of pole
+// excess one): a neutral loop.
 #pragma once
 
 #include <vector>
@@ -23,6 +23,8 @@ struct DelaySystem {
     std::vector<double> Y;        // n
     double N = 0, R = 0, Z = 0;
     int integral_state = -1;  // index of the integral's state, -1 without integral action
+    int setpoint_state = -1;  // of the filtered set point, the last one; -1 without a set-point filter
+    double setpoint_lag = 0;  // its T
 };
 
 /// The loop is well posed (Loop::make accepted it). Set-point weights act here; a derivative of r needs the

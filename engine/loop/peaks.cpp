@@ -17,8 +17,14 @@ using Magnitude = double (*)(const LoopPoint&);
 double magnitude_S(const LoopPoint& p) { return magnitude(p.S); }
 double magnitude_T(const LoopPoint& p) { return magnitude(p.T); }
 double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
+double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 + p.L); }
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
+
+constexpr double kLongTurn = 0.3;        // rad of the dead time between neighbours of the grid: more hides a peak
+constexpr double kTurnStep = 0.15;       // rad between two looks there
+constexpr double kWorthFollowing = 0.9;  // of the highest so far
+constexpr double kBetween = 1.01;        // |L| and |C| may be larger between neighbours than at both
 
 constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 constexpr double kLowRise = 0.3;       // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
@@ -41,7 +47,7 @@ Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magni
 }
 
 /// Beyond the resolved range: |S| <= 1/(1 - |L|), reached once every turn of the dead time. Scans a few turns around
-/// the places where |L| is locally largest.
+/// the places where such a bound is locally largest.
 void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks) {
     const double L = loop.plant().dead_time();
     if (L == 0) return;
@@ -57,16 +63,28 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
             if (peak.value > best.value) best = {peak.value, peak.x};
         }
     };
-    const auto gain = [&](std::size_t i) { return magnitude(grid.point[i].L); };
-    for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
-        if (grid.omega[i] <= grid.resolved_to || gain(i) >= 1) continue;
-        const bool first = grid.omega[i - 1] <= grid.resolved_to;
-        if (!first && (gain(i) < gain(i - 1) || gain(i) < gain(i + 1))) continue;
-        if (1 / (1 - gain(i)) > peaks.S.value) scan(grid.omega[i], magnitude_S, peaks.S);
-        if (gain(i) / (1 - gain(i)) > peaks.T.value) scan(grid.omega[i], magnitude_T, peaks.T);
-        if (magnitude(grid.point[i].CS) * (1 + gain(i)) / (1 - gain(i)) > peaks.CS.value)
-            scan(grid.omega[i], magnitude_CS, peaks.CS);
-    }
+    const auto raise = [&](Peak& best, Magnitude value, auto&& numerator) {
+        const auto bound = [&](const LoopPoint& p) {
+            const double gain = magnitude(p.L);
+            return gain < 1 ? numerator(p) / (1 - gain) : 0;
+        };
+        const auto bound_at = [&](double omega) { return bound(loop.at(omega)); };
+        double left = grid.resolved_to, before = bound_at(left);
+        if (before > best.value) scan(left, value, best);
+        for (std::size_t i = 1; i + 1 < grid.omega.size(); ++i) {
+            if (grid.omega[i] <= left) continue;
+            const double here = bound(grid.point[i]);
+            if (here > before && here >= bound(grid.point[i + 1])) {
+                const Maximum top = log_maximum(bound_at, left, {grid.omega[i], here}, grid.omega[i + 1]);
+                if (top.value > best.value) scan(top.x, value, best);
+            }
+            left = grid.omega[i];
+            before = here;
+        }
+    };
+    raise(peaks.S, magnitude_S, [](const LoopPoint&) { return 1.0; });
+    raise(peaks.T, magnitude_T, [](const LoopPoint& p) { return magnitude(p.L); });
+    raise(peaks.CS, magnitude_CS, magnitude_C);
 }
 
 void raise(Peak& peak, double value, double omega) {
@@ -112,8 +130,53 @@ Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
     return peaks.S;
 }
 
+void raise_by_turns(const std::function<LoopPoint(double)>& at, double time, const LoopGrid& grid, Peaks& peaks) {
+    const auto turn = [time](double omega) { return omega * time; };
+    struct Stretch {
+        double left, right, S, T, CS;  // what its peaks can be at most
+    };
+    std::vector<Stretch> stretches;
+    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
+        const double left = grid.omega[i - 1], right = grid.omega[i];
+        if (turn(right - left) < kLongTurn || right > grid.resolved_to) continue;
+        const LoopPoint &a = grid.point[i - 1], &b = grid.point[i];
+        const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
+        if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
+        const double small = std::min(gain_a, gain_b), large = std::max(gain_a, gain_b);
+        const double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
+        stretches.push_back(
+            {left, right, 1 / nearest, large / nearest, std::max(magnitude_C(a), magnitude_C(b)) / nearest});
+    }
+    using Bound = double Stretch::*;
+    const auto raise = [&](Peak& best, Bound bound, auto&& value) {
+        std::sort(stretches.begin(), stretches.end(),
+                  [&](const Stretch& a, const Stretch& b) { return a.*bound > b.*bound; });
+        for (const Stretch& s : stretches) {
+            if (s.*bound * kBetween <= best.value) return;
+            const auto f = [&](double omega) { return value(at(omega)); };
+            const int looks = static_cast<int>(std::ceil(turn(s.right - s.left) / kTurnStep));
+            const double step = (s.right - s.left) / looks;
+            double before = f(s.left - step), here = f(s.left);
+            for (int k = 0; k <= looks; ++k) {
+                const double omega = s.left + k * step, after = f(omega + step);
+                if (here > kWorthFollowing * best.value && here >= before && here >= after) {
+                    const Maximum top = log_maximum(f, omega - step, {omega, here}, omega + step);
+                    if (top.value > best.value) best = {top.value, top.x};
+                }
+                before = here;
+                here = after;
+            }
+        }
+    };
+    raise(peaks.S, &Stretch::S, [](const LoopPoint& p) { return magnitude(p.S); });
+    raise(peaks.T, &Stretch::T, [](const LoopPoint& p) { return magnitude(p.T); });
+    raise(peaks.CS, &Stretch::CS, [](const LoopPoint& p) { return magnitude(p.CS); });
+}
+
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {
-    Peaks peaks = find_interior_peaks([&](double omega) { return loop.at(omega); }, grid);
+    const LoopFunction at = [&](double omega) { return loop.at(omega); };
+    Peaks peaks = find_interior_peaks(at, grid);
+    raise_by_turns(at, loop.plant().dead_time(), grid, peaks);
     raise_by_fast_turning(loop, grid, peaks);
     raise_by_limits(loop, peaks);
     return peaks;

@@ -176,7 +176,9 @@ StabilityCount count_unstable_poles(const Loop& loop) {
 }
 
 Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {
-    const DelaySystem system = make_delay_system(loop.plant(), loop.gains());
+    ParallelPid in_loop = loop.gains();
+    in_loop.setpoint_lag = 0;  // outside the loop
+    const DelaySystem system = make_delay_system(loop.plant(), in_loop);
     std::vector<std::complex<double>> poles;
     if (system.L > 0) {
         poles = eigenvalues(discretised(system, nodes), system.n + nodes);

@@ -3,14 +3,26 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/request/as_built.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/verdict/finding.h"
 #include "engine/tuning/method/method.h"
 
 namespace tunewright {
+
+/// How an entry stands in a comparison, and why it stands behind others.
+struct Standing {
+    bool settles = false;   ///< stable, and both responses come to rest where they should
+    bool within = true;     ///< the limit on Ms that was asked of this entry, if one was
+    Figure Ms;              ///< of the loop as it will run: on the worst plant, in the user's own controller
+    Figure excess_percent;  ///< of the load IAE over the least at the same Ms; by it entries rank
+    std::string why;        ///< what keeps it from the first group; empty where nothing does
+    bool holds() const { return why.empty(); }
+};
 
 /// A controller with its evaluation, or why there is none.
 struct TuningEntry {
@@ -21,13 +33,17 @@ struct TuningEntry {
     MethodOptions options;     ///< given, over the defaults
     std::optional<Plant> reduced_model;
     std::optional<double> Ms_limit;            ///< that the method was asked for
+    std::optional<double> asked_Ms;            ///< the same where the request asked, or the method promises it
     Reports reports;                           ///< of the method, and what was asked for of every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
+    std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits
     std::optional<AsBuilt> as_built;           ///< where asked for and possible
+    std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
+    std::vector<verdict::Finding> verdict;  ///< the most important first
 
     /// The report of this type; null if there is none.
     template <class Report>

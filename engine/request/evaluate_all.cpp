@@ -1,11 +1,15 @@
 #include "engine/request/evaluate_all.h"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/verdict/verdict.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
 
 namespace tunewright {
@@ -23,11 +27,20 @@ Error out_of_time(std::size_t done) {
             "The time allowed was over after " + std::to_string(done) + " controllers; send fewer, or fewer points."};
 }
 
+std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {
+    std::vector<int> order(entries.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, [&](int index) {
+        return entries[static_cast<std::size_t>(index)].evaluation->performance.load.IAE.value_or(INFINITY);
+    });
+    return order;
+}
+
 }  // namespace
 
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const RunControl& control) {
+                                        const verdict::Labels& labels, const RunControl& control) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
@@ -54,6 +67,9 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }
+    const verdict::Context context{subject, options, labels, implement ? implement->Ts : 0};
+    verdict::judge(result.controllers, context);
+    result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);
     return result;
 }
 

@@ -17,15 +17,16 @@ namespace tunewright {
 struct EvaluationResult {
     std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
     std::vector<TuningEntry> controllers;           ///< without a method, in the order sent
+    std::vector<verdict::Finding> verdict;          ///< over all of them
 };
 
 /// Each controller is judged alone, in the order sent; a stop is seen between two of them. Without controllers the
 /// result has none. `options` are the same for all: steps, actuator, horizon, traces.
 ///
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
-/// `implement`: each is also settled for the user's own controller and judged on it.
+/// `labels`: in which verdicts speak. `implement`: each is also settled for the user's own controller and judged on it.
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const RunControl& control);
+                                        const verdict::Labels& labels, const RunControl& control);
 
 }  // namespace tunewright

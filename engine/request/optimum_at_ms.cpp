@@ -6,6 +6,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
+#include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
@@ -49,6 +50,22 @@ OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunC
     else
         answer.excess_percent = no_figure("The controller's load IAE is not finite.");
     return answer;
+}
+
+std::optional<double> best_PI_load_IAE(const TuningProblem& problem, const MethodOptions& of_pid,
+                                       const EvaluateOptions& options, const RunControl& control) {
+    if (problem.family || problem.nonlinear != nullptr || of_pid.text("objective") != "load_iae") return std::nullopt;
+    MethodOptions of_PI;
+    for (const auto& [path, value] : of_pid.values())
+        if (path != "filter/Tf_over_Td" && path != "surface") of_PI.set(path, value);
+    of_PI.set(kControllerOption, std::string("PI"));
+    const auto tuned = find_method("robust")->tune(problem, of_PI, {control.stop, nullptr, nullptr});
+    if (!tuned || tuned->partial) return std::nullopt;
+    EvaluateOptions figures_alone = options;
+    figures_alone.points = 0;
+    figures_alone.noise.reset();
+    const auto evaluation = evaluate(PlantModel(problem.plant), controller_of(*tuned), figures_alone);
+    return evaluation ? evaluation->performance.load.IAE.value : std::nullopt;
 }
 
 }  // namespace tunewright

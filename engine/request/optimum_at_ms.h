@@ -3,12 +3,14 @@
 
 #include <optional>
 
+#include <optional>
+
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/figure.h"
 #include "engine/progress.h"
 #include "engine/tuning/method/method.h"
-#include "engine/tuning/robust/robust.h"
+#include "engine/tuning/robust/front.h"
 
 namespace tunewright {
 
@@ -36,5 +38,11 @@ private:
     EvaluateOptions options_;
     RobustFront front_;
 };
+
+/// The load IAE of the robust PI within the limits of a robust PID with these options, on the same plant. Empty where
+/// that is not known at once or not comparable: for several plants, equations, another objective, or where there is no
+/// such PI.
+std::optional<double> best_PI_load_IAE(const TuningProblem& problem, const MethodOptions& of_pid,
+                                       const EvaluateOptions& options, const RunControl& control);
 
 }  // namespace tunewright

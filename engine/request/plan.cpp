@@ -1,8 +1,6 @@
 #include "engine/request/plan.h"
 
 #include <algorithm>
-#include <limits>
-#include <tuple>
 
 #include "engine/tuning/method/rule.h"
 
@@ -94,6 +92,7 @@ std::string row_title(const TuningMethod& method, const std::string& variant) {
 std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
     std::vector<PlannedRow> rows;
     for (const TuningMethod& method : method_registry()) {
+        if (!method.compared) continue;
         const auto known = known_options(given, method);
         if (!known) {
             rows.push_back({&method, {}, method.title, known.error(), {}, true});
@@ -104,7 +103,13 @@ std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
             if (contradicts(variant.options, *known)) continue;
             MethodOptions options = variant.options;
             for (const auto& [path, value] : known->values()) options.set(path, value);
-            rows.push_back({&method, std::move(options), row_title(method, variant.name), {}, {}, true});
+            rows.push_back({&method,
+                            std::move(options),
+                            row_title(method, variant.name),
+                            {},
+                            {},
+                            true,
+                            method.holds_family || known->has("Ms")});
         }
         if (rows.size() > before) continue;
         const auto controller = known->text(kControllerOption);
@@ -113,14 +118,20 @@ std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
     return rows;
 }
 
-bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms) {
-    const auto key = [&](const Evaluation& e) {
-        const auto worst_Ms = e.region ? e.region->worst_Ms : e.robustness.Ms;
-        const bool within = e.robustness.stable && worst_Ms && *worst_Ms <= rank_Ms;
-        const auto& IAE = e.performance.load.IAE;
-        return std::tuple(!within, !e.robustness.stable, IAE ? *IAE : std::numeric_limits<double>::infinity());
-    };
-    return key(a) < key(b);
+Error all_failed(const std::vector<TuningEntry>& entries) {
+    std::vector<std::pair<std::string, std::string>> reasons;  // methods, reason
+    for (const auto& entry : entries) {
+        const auto at = std::ranges::find(reasons, entry.error->message, &std::pair<std::string, std::string>::second);
+        if (at == reasons.end())
+            reasons.emplace_back(entry.method, entry.error->message);
+        else if (!(", " + at->first).ends_with(", " + entry.method))
+            at->first += ", " + entry.method;
+    }
+    Error error = *entries.front().error;
+    if (reasons.size() == 1) return error;
+    error.message = "No method gave a controller.";
+    for (const auto& [methods, reason] : reasons) error.message.append(" ").append(methods).append(": ").append(reason);
+    return error;
 }
 
 }  // namespace tunewright

@@ -1,6 +1,4 @@
-// What a request's list of methods asks for, row by row.
-// For method "all": the rows of a comparison of every method, and the order in which its entries rank.
-
+// What a request's list of methods asks for, row by row; for method "all" the rows of a comparison of every method.
 #pragma once
 
 #include <optional>
@@ -8,8 +6,8 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
+#include "engine/request/entry.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/method/options.h"
 
@@ -31,6 +29,7 @@ struct PlannedRow {
     std::optional<Error> refusal;  ///< an option that was given does not suit the method (unsupported)
     std::string where;             ///< its place in the request, "tune/2"
     bool of_all = false;
+    bool Ms_asked = true;  ///< false: the limit on Ms is a variant's, of a rule that promises nothing
 };
 
 /// In the request's order, "all" expanded. Errors: invalid_argument for an unknown method or none.
@@ -40,8 +39,7 @@ Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& re
 /// a variant that contradicts one is left out; a method without any variant left is one row with its refusal.
 std::vector<PlannedRow> comparison_rows(const MethodOptions& given);
 
-/// Whether `a` comes before `b`: stable with Ms <= rank_Ms (on the worst plant of a region) first, then stable, then
-/// the rest, each by load IAE.
-bool outranks(const Evaluation& a, const Evaluation& b, double rank_Ms);
+/// Why no entry of several has a controller; a reason that several methods share is stated once. All have an error.
+Error all_failed(const std::vector<TuningEntry>& entries);
 
 }  // namespace tunewright

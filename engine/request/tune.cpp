@@ -1,14 +1,15 @@
 #include "engine/request/tune.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "engine/evaluation/evaluate.h"
-#include "engine/number_text.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/plan.h"
+#include "engine/request/ranking.h"
+#include "engine/request/verdict/verdict.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
+#include "engine/tuning/method/setpoint.h"
 
 namespace tunewright {
 namespace {
@@ -19,17 +20,6 @@ constexpr double kRowsShare = 0.3;      // of what then remains, where optima ar
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
 
 bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
-
-std::vector<int> ranking(const std::vector<TuningEntry>& entries, double rank_Ms) {
-    std::vector<int> order;
-    for (size_t i = 0; i < entries.size(); ++i)
-        if (entries[i].evaluation) order.push_back(static_cast<int>(i));
-    std::ranges::stable_sort(order, [&](int a, int b) {
-        return outranks(*entries[static_cast<size_t>(a)].evaluation, *entries[static_cast<size_t>(b)].evaluation,
-                        rank_Ms);
-    });
-    return order;
-}
 
 // One run of tune(): what its steps share.
 class TuningRun {
@@ -42,8 +32,8 @@ private:
     std::optional<Error> find_plant();
     std::optional<Error> take_record();
     void state_problem();
-    Expected<TunedController> tuned_with(const PlannedRow& planned, const RunControl& control,
-                                         std::optional<built::Fitted>& fitted) const;
+    Expected<TunedController> tuned_with(const PlannedRow& planned, const SetpointOptions& setpoint,
+                                         const RunControl& control, std::optional<built::Fitted>& fitted) const;
     void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control);
     void add_baseline_as_built(TuningEntry& entry);
     TuningEntry entry(const PlannedRow& planned, double from, double to);
@@ -176,8 +166,8 @@ void TuningRun::state_problem() {
 }
 
 // `fitted`: the settings, where the method designs for the controller as it is built.
-Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const RunControl& control,
-                                                std::optional<built::Fitted>& fitted) const {
+Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const SetpointOptions& setpoint,
+                                                const RunControl& control, std::optional<built::Fitted>& fitted) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
@@ -185,9 +175,14 @@ Expected<TunedController> TuningRun::tuned_with(const PlannedRow& planned, const
         auto design = method.tune_as_built(*problem_, options, *request_.implement, control);
         if (!design) return design.error();
         fitted = std::move(design->fitted);
+        weigh_setpoint(*fitted, *request_.implement, problem_->linear, setpoint, design->tuned);
         return std::move(design->tuned);
     }
-    if (problem_) return method.tune(*problem_, options, control);
+    if (problem_) {
+        auto tuned = method.tune(*problem_, options, control);
+        if (tuned) weigh_setpoint(problem_->linear, setpoint, *tuned);
+        return tuned;
+    }
     if (method.tune_on_points) return method.tune_on_points(*subject_->measured(), options, control);
     return Error{ErrorKind::unsupported, "",
                  "The method " + method.id +
@@ -221,15 +216,17 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
     entry.source = planned.method->source;
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem_ || on_points.empty() ? planned.method->options : on_points, planned.options);
+    const SetpointOptions setpoint = problem_ ? wanted_setpoint(*planned.method, entry.options) : SetpointOptions{};
     const double started = now_ms();
     std::optional<built::Fitted> fitted;
-    auto tuned = tuned_with(planned, share(from, to), fitted);
+    auto tuned = tuned_with(planned, setpoint, share(from, to), fitted);
     if (!tuned) {
         entry.error = placed(tuned.error(), planned.where);
         return entry;
     }
     entry.reduced_model = tuned->reduced_model;
     entry.Ms_limit = tuned->Ms_limit;
+    if (planned.Ms_asked) entry.asked_Ms = tuned->Ms_limit;
     result_.partial = result_.partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);
@@ -238,6 +235,9 @@ TuningEntry TuningRun::entry(const PlannedRow& planned, double from, double to) 
         entry.longest_sample_time = longest_sample_time_of(*subject_, *entry.evaluation);
         warn_of_region(*entry.evaluation, entry.Ms_limit, result_.model.has_value());
         if (result_.model) warn_of_band(*entry.evaluation, result_.model->excited_band);
+        if (problem_ && !planned.of_all && !request_.implement && entry.method == "robust" &&
+            entry.options.text("controller") == "PID")
+            entry.best_PI_load_IAE = best_PI_load_IAE(*problem_, entry.options, request_.evaluate, control_);
         entry.evaluation->compute_ms = now_ms() - started;
     }
     if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
@@ -292,23 +292,6 @@ void TuningRun::keep_best(const TuningEntry& entry) {
     best_ = BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
 }
 
-// A reason that several methods share is stated once.
-Error all_failed(const std::vector<TuningEntry>& entries) {
-    std::vector<std::pair<std::string, std::string>> reasons;  // methods, reason
-    for (const auto& entry : entries) {
-        const auto at = std::ranges::find(reasons, entry.error->message, &std::pair<std::string, std::string>::second);
-        if (at == reasons.end())
-            reasons.emplace_back(entry.method, entry.error->message);
-        else if (!(", " + at->first).ends_with(", " + entry.method))
-            at->first += ", " + entry.method;
-    }
-    Error error = *entries.front().error;
-    if (reasons.size() == 1) return error;
-    error.message = "No method gave a controller.";
-    for (const auto& [methods, reason] : reasons) error.message.append(" ").append(methods).append(": ").append(reason);
-    return error;
-}
-
 // Where a rule has no derivative its PID row is its PI row once more.
 bool TuningRun::repeats(const TuningEntry& entry) const {
     const IdealPid* pid = entry.evaluation ? std::get_if<IdealPid>(&entry.evaluation->controller) : nullptr;
@@ -351,9 +334,10 @@ void TuningRun::compare_with_optima(double from) {
     }
 }
 
+// Where several designs are ranked it is by their distance from it.
 bool TuningRun::wants_optima() const {
-    const bool of_all = std::ranges::any_of(request_.tune, [](const MethodRequest& r) { return r.of_all(); });
-    return problem_ && request_.evaluate.optimum_at_Ms.value_or(of_all);
+    const bool several = request_.tune.size() > 1 || request_.tune.front().of_all();
+    return problem_ && request_.evaluate.optimum_at_Ms.value_or(several);
 }
 
 Expected<TuningResult> TuningRun::result() {
@@ -377,11 +361,16 @@ Expected<TuningResult> TuningRun::result() {
             result_.controllers.push_back(baseline());
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
-    result_.ranking = ranking(result_.controllers, request_.evaluate.rank_Ms);
+    const RankingTerms terms{request_.evaluate.rank_Ms, subject_->linear() != nullptr};
+    result_.ranking = ranked(result_.controllers, terms);
     if (result_.model && !result_.ranking.empty())
         result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
-    result_.ranking_by =
-        "load IAE among stable entries with Ms <= " + text(request_.evaluate.rank_Ms) + ", then the rest";
+    result_.ranking_by = ranking_by(result_.controllers, terms);
+    const verdict::Context context{*subject_, request_.evaluate, request_.labels,
+                                   request_.implement ? request_.implement->Ts : 0,
+                                   result_.model ? &*result_.model : nullptr};
+    verdict::judge(result_.controllers, context);
+    result_.verdict = verdict::of_all(result_.controllers, result_.ranking, context, result_.partial);
     report(1, "tune", "Done.");
     return std::move(result_);
 }

@@ -36,6 +36,7 @@ struct TuningRequest {
     std::optional<TypedSettings> baseline_settings;  ///< whose ideal twin `baseline` is
     std::optional<built::Build> implement;  ///< the user's own controller, for which entries are settled and judged
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
+    verdict::Labels labels;  ///< in which verdicts speak
 };
 
 struct TuningResult {
@@ -44,7 +45,8 @@ struct TuningResult {
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
     std::string ranking_by;
-    bool partial = false;  ///< cancelled after a feasible design was found
+    bool partial = false;                   ///< cancelled after a feasible design was found
+    std::vector<verdict::Finding> verdict;  ///< over all entries: which to take
 };
 
 /// Errors: those of identification; of the single method if all fail; invalid_argument; cancelled.

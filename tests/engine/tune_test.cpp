@@ -109,7 +109,7 @@ TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {
     EXPECT_EQ(std::get<IdealPid>(result->controllers[3].evaluation->controller).Kp, 0.5);
 }
 
-TEST(Tune, RanksByLoadIaeWithinTheMsLimitThenTheRestThenTheUnstable) {
+TEST(Tune, RanksWithinTheMsLimitThenTheRestThenTheUnstable) {
     // Ziegler-Nichols is fast but far above Ms = 2 here; the baseline does not stabilise.
     auto request =
         request_for(kPlant, {method("ziegler_nichols_step"), method("simc", {{"tau_c", 12.0}}), method("simc")});
@@ -120,11 +120,14 @@ TEST(Tune, RanksByLoadIaeWithinTheMsLimitThenTheRestThenTheUnstable) {
     EXPECT_GT(*entries[0].evaluation->robustness.Ms, 2);
     EXPECT_LT(*entries[0].evaluation->performance.load.IAE, *entries[2].evaluation->performance.load.IAE);
     EXPECT_FALSE(entries[3].evaluation->robustness.stable);
-    EXPECT_THAT(result->ranking, ElementsAre(2, 1, 0, 3));
-    EXPECT_EQ(result->ranking_by, "load IAE among stable entries with Ms <= 2, then the rest");
+    EXPECT_THAT(result->ranking, ElementsAre(1, 2, 0, 3));
+    EXPECT_EQ(
+        result->ranking_by,
+        "excess of the load IAE over the least at the same Ms, among stable entries that settle with Ms <= 2, then "
+        "the rest");
 
     request.evaluate.rank_Ms = 20;
-    EXPECT_THAT(tune(request, {})->ranking, ElementsAre(0, 2, 1, 3));
+    EXPECT_THAT(tune(request, {})->ranking, ElementsAre(0, 1, 2, 3));
 }
 
 TEST(Tune, MethodThatFailsIsAnEntryWithItsErrorAndDoesNotRank) {

@@ -29,6 +29,11 @@ std::string weighted(const IdealPid& pid, double b, double c) {
 
 void note_weights(const Comparison& it, std::vector<Note>& notes) {
     const bool derivative = it.asked.Td != 0;
+    if (it.asked.setpoint_lag > 0)
+        notes.push_back({"setpoint-filter", "The design filters the set point, 1/(1 + " +
+                                                tunewright::text(it.asked.setpoint_lag) +
+                                                " s), which the block has no setting for. Put that lag before its set "
+                                                "point, or ramp the set point over about that time."});
     const bool b_differs = !same(it.asked.b, it.realised.b);
     const bool c_differs = derivative && !same(it.asked.c, it.realised.c);
     if (!b_differs && !c_differs) return;

@@ -87,6 +87,7 @@ double PidProgram::integral_increment(double e) const {
 }
 
 double PidProgram::step(double r, double y) {
+    if (const double T = law_.gains.setpoint_lag; T > 0) r = r_f_ = (T * r_f_ + law_.Ts * r) / (T + law_.Ts);
     y = rounded(y, limits_.y_resolution);
     if (std::abs(r - y) < limits_.dead_band) y = r;
     const double y_f = filtered(y), e = r - y_f, D_before = D_;

@@ -36,6 +36,7 @@ private:
 
     SampledPid law_;
     ProgramLimits limits_;
+    double r_f_ = 0;          // the set point's filter
     double y_f_ = 0, v_ = 0;  // the measurement's filter
     double y_before_ = 0, set_before_ = 0;
     std::vector<double> past_;  // f of the samples before, the latest first

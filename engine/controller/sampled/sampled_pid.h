@@ -23,6 +23,7 @@
 //   By trapezoids, where `trapezoidal_filter` says so: y_f, and the derivative of y_f with it, are the continuous ones
 //   with s = (2/Ts)(z - 1)/(z + 1).
 //
+// The set point's filter by backward Euler: r_f,k = (T r_f,k-1 + Ts r_k)/(T + Ts) takes the place of r_k.
 // A velocity algorithm adds the increments of the same sum to what it last gave: within limits the same output.
 // Sources: Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund,
 // Advanced PID Control (2006), section 13.3. Slope and four points: the programs that use them (product/).

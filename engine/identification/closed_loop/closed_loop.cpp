@@ -16,7 +16,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMaxFitted = 20'000;  ///< samples: an instrumental fit costs several times a plain one
+constexpr int kMaxSeen = 20'000;    ///< rows
+constexpr int kMaxFitted = 10'000;  ///< samples: an instrumental fit costs several times a plain one
 
 /// r at the record's samples, dimensionless as y; empty where the record has none, or it only tracks y.
 std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record& record) {
@@ -42,10 +43,9 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
     return 2 * tracking > clean.samples() ? std::vector<double>{} : r;
 }
 
-/// Feedback shows from row to row: of a long record the beginning is looked at, and every so many rows are fitted.
+/// Feedback shows from row to row: of a long record the beginning is looked at, and means over blocks are fitted.
 CleanRecord beginning(const CleanRecord& record) {
-    return record.samples() <= kMaxFitted ? record
-                                          : first_part(record, record.t[static_cast<std::size_t>(kMaxFitted - 1)]);
+    return record.samples() <= kMaxSeen ? record : first_part(record, record.t[static_cast<std::size_t>(kMaxSeen - 1)]);
 }
 
 /// A set point that is known only by its moves; `length` is that of the part of the record in which they were seen.
@@ -199,7 +199,7 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     }
     const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
     if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
-    const CleanRecord seen = beginning(full), record = every_few(full, kMaxFitted);
+    const CleanRecord seen = beginning(full), record = condensed(full, kMaxFitted);
     const std::optional<Feedback> feedback = find_feedback(seen);
     const std::vector<double> r = set_point_at_samples(record, as_given);
     LoopRecord loop;
@@ -228,7 +228,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
         return nothing_outside(
             full, loop,
             "and moves of the set point explain too little of u (" + text(100 * loop.part->share, 2) + " %)");
-    const CleanRecord record = every_few(full, kMaxFitted);
+    const CleanRecord record = condensed(full, kMaxFitted);
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
     auto direct = refined(search_models(record, model, false, control), record, *loop.part, control.stop);
     if (control.stop.stop_requested()) return cancelled();
@@ -264,7 +264,7 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     constexpr double kLess = 0.8, kNearly = 0.95;  // what the law leaves of u over what the model leaves of y
     const double restless = restlessness(beginning(full));
     if (restless < kHardly) return;
-    const CleanRecord record = every_few(full, kMaxFitted);
+    const CleanRecord record = condensed(full, kMaxFitted);
     const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y);
     const double left = 1 - model.fit_percent / 100, unexplained = left * left;
     if (!law) return;

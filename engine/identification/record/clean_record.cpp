@@ -263,4 +263,10 @@ CleanRecord block_means(const CleanRecord& record, int most) {
     return means;
 }
 
+CleanRecord condensed(const CleanRecord& record, int most) {
+    CleanRecord means = block_means(record, most);
+    if (record.samples() > most && record.changes() > most) average_input(record, most, means);
+    return means;
+}
+
 }  // namespace tunewright

@@ -101,4 +101,8 @@ CleanRecord first_part(const CleanRecord& record, double fraction);
 /// response, it says the same, noise averaged. The input stays as it is.
 CleanRecord block_means(const CleanRecord& record, int most);
 
+/// The same, with the means of the input over as many equal stretches where it changes more often than that: a plant
+/// that is slow beside a block answers the mean as it does the moves.
+CleanRecord condensed(const CleanRecord& record, int most);
+
 }  // namespace tunewright

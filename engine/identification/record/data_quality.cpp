@@ -13,6 +13,11 @@
 namespace tunewright {
 namespace {
 
+/// "1 row", "3 rows".
+std::string counted(int count, const std::string& one) {
+    return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings = tunewright::spacings(r);
     constexpr double kFewOdd = 0.01;  // of the spacings: a row that a logger missed now and then
@@ -56,29 +61,25 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
             "The clock is coarser than the sampling: rows of one time were spread evenly until the next "
             "time.");
     } else if (done.repeated > 0) {
-        notes.push_back(std::to_string(done.repeated) + " row(s) have the time of the row above (first " +
+        notes.push_back(counted(done.repeated, "duplicate time stamp") + (done.repeated == 1 ? " (" : " (first ") +
                         row_text(done, done.first_repeated) + "): every y was used, and the last u.");
     }
     if (done.backward > 0)
-        notes.push_back(std::to_string(done.backward) +
-                        " row(s) with a time before the rows above were left out (first " +
+        notes.push_back(counted(done.backward, "row") + " with a time before the rows above left out (first " +
                         row_text(done, done.first_backward) + ").");
     if (done.early_stamps > 0)
-        notes.push_back(std::to_string(done.early_stamps) +
-                        " row(s) with a time far ahead of the rows below were left out (first " +
-                        row_text(done, done.first_early) + ").");
+        notes.push_back(counted(done.early_stamps, "row") +
+                        " with a time far ahead of the rows below left out (first " + row_text(done, done.first_early) +
+                        ").");
     if (done.without_time > 0)
-        notes.push_back(std::to_string(done.without_time) +
-                        " row(s) without a time, or before the first u, were left out.");
+        notes.push_back(counted(done.without_time, "row") + " without a time, or before the first u, left out.");
     if (done.late_moves > 0)
-        notes.push_back(std::to_string(done.late_moves) +
-                        " change(s) of u with the last sample were left out: nothing follows them.");
+        notes.push_back(counted(done.late_moves, "change") + " of u with the last sample left out: nothing follows.");
     if (done.limited_u > 0)
-        notes.push_back("u was cut to its limits in " + std::to_string(done.limited_u) +
-                        " row(s): that is what reaches the plant.");
+        notes.push_back("u was cut to its limits in " + counted(done.limited_u, "row") +
+                        ": that is what reaches the plant.");
     if (done.missing_u > 0)
-        notes.push_back("u is missing in " + std::to_string(done.missing_u) +
-                        " row(s); it was held from the row above.");
+        notes.push_back("u is missing in " + counted(done.missing_u, "row") + "; it was held from the row above.");
 }
 
 /// "line 102 (t = 2.02), line 103 (t = 2.04), ...".
@@ -94,10 +95,9 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
     const Cleaning& done = r.cleaning;
     if (done.missing_y > 0) {
         quality.missing = MissingPart{done.missing_y, done.hole_to - done.hole_from, done.hole_from};
-        quality.notes.push_back("y is missing in " + std::to_string(done.missing_y) +
-                                " row(s), the longest time without it is " + text(quality.missing->longest) +
-                                " from t = " + text(done.hole_from) +
-                                "; u of these rows was used, and y was not interpolated.");
+        quality.notes.push_back("y is missing in " + counted(done.missing_y, "row") +
+                                ", the longest time without it is " + text(quality.missing->longest) + " from t = " +
+                                text(done.hole_from) + "; u of these rows was used, and y was not interpolated.");
     }
     if (done.spikes.empty()) return;
     constexpr std::size_t kShown = 20, kInSentence = 5;
@@ -107,9 +107,9 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
     outliers.rows.resize(std::min(kShown, outliers.rows.size()));
     quality.outliers = std::move(outliers);
-    quality.notes.push_back(
-        std::to_string(done.spikes.size()) + " reading(s) of y are plainly false and were left out (" +
-        (done.from_file ? "line " : "row ") + rows + (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
+    quality.notes.push_back(counted(static_cast<int>(done.spikes.size()), "plainly false reading") +
+                            " of y left out (" + (done.from_file ? "line " : "row ") + rows +
+                            (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
 }
 
 bool on_a_level(const TwoLevels& u, double v) {
@@ -167,7 +167,7 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
     quality.quantisation = grid * r.scale.y_scale;
     constexpr double kBesideNoise = 0.5, kVisible = 1e-3;  // of the noise; of y's range
     if (grid > kBesideNoise * noise && grid > kVisible) {
-        quality.notes.push_back("y lies on a grid of " + text(quality.quantisation) + " (its range is " +
+        quality.notes.push_back("y is quantised in steps of " + text(quality.quantisation) + " (its range is " +
                                 text(r.scale.y_scale) + ").");
     }
     quality.saturation = flat_tops(r, noise, grid);

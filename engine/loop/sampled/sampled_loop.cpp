@@ -22,11 +22,6 @@ constexpr double kFarBelow = 1e-3;     // of 1/Ts: where the integral's phase is
 constexpr double kLightDamping = 0.3;  // of a plant's pole: below it a resonance shows, also folded below pi/Ts
 constexpr double kLeastWidth = 1e-6;   // of a folded resonance, relative
 
-constexpr double kLongTurn = 0.3;   // rad of z and of the dead time between neighbours of the grid: more hides a peak
-constexpr double kTurnStep = 0.15;  // rad of them between two looks there
-constexpr double kWorthRefining = 0.9;  // of the highest so far
-constexpr double kNoGain = 1e-7;        // relative: what turns can add to a peak below it is not looked for
-
 constexpr double kLargestTurn = 0.4;      // |q2 - q1| relative to the smaller: below it the argument cannot be mistaken
 constexpr double kFollowedTurn = 2;       // rad of z and of the dead time: below it no whole turn is missed
 constexpr double kBelowOne = 0.99;        // of |L| at both ends: 1 + L stays in the right half-plane
@@ -146,50 +141,6 @@ LoopGrid SampledLoop::grid() const {
     return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep)) : grid;
 }
 
-// Where S moves little from point to point, the dead time may still turn L between them, and C S with it: |1 + L| is at
-// least |1 - |L||. Looks there where that lets a peak be higher.
-void SampledLoop::raise_by_turns(const LoopGrid& grid, Peaks& peaks) const {
-    struct Stretch {
-        double left, right, S, T, CS;  // what its peaks can be at most
-    };
-    std::vector<Stretch> stretches;
-    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
-        const double left = grid.omega[i - 1], right = grid.omega[i];
-        if (turn(right - left) < kLongTurn) continue;
-        const LoopPoint &a = grid.point[i - 1], &b = grid.point[i];
-        const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
-        if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
-        const double small = std::min(gain_a, gain_b), large = std::max(gain_a, gain_b);
-        const double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
-        const auto control = [](const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 + p.L); };
-        stretches.push_back({left, right, 1 / nearest, large / nearest, std::max(control(a), control(b)) / nearest});
-    }
-    using Bound = double Stretch::*;
-    const auto raise = [&](Peak& best, Bound bound, auto&& value) {
-        std::sort(stretches.begin(), stretches.end(),
-                  [&](const Stretch& a, const Stretch& b) { return a.*bound > b.*bound; });
-        for (const Stretch& s : stretches) {
-            if (s.*bound <= best.value * (1 + kNoGain)) return;
-            const auto f = [&](double omega) { return value(at(omega)); };
-            const int looks = static_cast<int>(std::ceil(turn(s.right - s.left) / kTurnStep));
-            const double step = (s.right - s.left) / looks;
-            double before = f(s.left), here = f(s.left + step);
-            for (int k = 1; k < looks; ++k) {
-                const double omega = s.left + k * step, after = f(k + 1 < looks ? omega + step : s.right);
-                if (here > kWorthRefining * best.value && here >= before && here >= after) {
-                    const Maximum top = log_maximum(f, omega - step, {omega, here}, omega + step);
-                    if (top.value > best.value) best = {top.value, top.x};
-                }
-                before = here;
-                here = after;
-            }
-        }
-    };
-    raise(peaks.S, &Stretch::S, [](const LoopPoint& p) { return magnitude(p.S); });
-    raise(peaks.T, &Stretch::T, [](const LoopPoint& p) { return magnitude(p.T); });
-    raise(peaks.CS, &Stretch::CS, [](const LoopPoint& p) { return magnitude(p.CS); });
-}
-
 LoopPoint SampledLoop::at_zero() const {
     if (finite_at_zero()) return at(0);
     const bool integrates = plant_.plant().integrators() > 0;
@@ -198,7 +149,7 @@ LoopPoint SampledLoop::at_zero() const {
 
 Peaks SampledLoop::peaks(const LoopGrid& grid) const {
     Peaks peaks = find_interior_peaks([&](double omega) { return at(omega); }, grid);
-    raise_by_turns(grid, peaks);
+    raise_by_turns([&](double omega) { return at(omega); }, turn(1), grid, peaks);
     const LoopPoint zero = at_zero();
     const auto raise = [](Peak& peak, double value) {
         if (value >= peak.value) peak = {value, 0};

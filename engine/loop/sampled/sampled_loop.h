@@ -48,7 +48,6 @@ private:
     bool finite_at_zero() const;
     LoopGrid grid_from(double step) const;
     LoopPoint at_zero() const;  // the limit, S = 0 with an integrator
-    void raise_by_turns(const LoopGrid& grid, Peaks& peaks) const;
 
     HeldPlant plant_;
     SampledPid law_;

@@ -48,7 +48,9 @@ SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x) {
     // The integral of y - y_f follows from the filter's own equation: Tf y_f, or Tf y_f + Tf z/2 with z = Tf y_f'.
     const int integral = system.integral_state;
-    const double sum = x[Index(integral)];
+    double sum = x[Index(integral)];
+    // So does the integral of r - r_f, T r_f.
+    if (system.setpoint_state >= 0) sum += system.setpoint_lag * x[Index(system.setpoint_state)];
     switch (filter.type) {
         case FilterType::measurement_first_order: return sum - filter.Tf * x[Index(integral - 1)];
         case FilterType::measurement_second_order:

@@ -21,7 +21,8 @@ struct SteadyState {
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
 /// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated r - y_f alone:
-/// that state less the lag of the measurement filter. Differences of it are integrals of r - y. Needs integral action.
+/// that state less the lag of the measurement filter, with that of the set-point filter. Differences of it are
+/// integrals of r - y. Needs integral action.
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x);
 
 /// Integrals of |e| and t |e| so far, by trapezoids, as a measure for what is left of them.

@@ -61,6 +61,7 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
 double fastest_rate(const ResponseSystem& system, const LinearPlant& plant, const ParallelPid& controller) {
     double fastest = 0;
     for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
+    if (controller.setpoint_lag > 0) fastest = std::max(fastest, 1 / controller.setpoint_lag);
     if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
     if (!system.delayed)
         for (const auto pole : eigenvalues(system.s.F, system.s.n)) fastest = std::max(fastest, std::abs(pole));

@@ -24,28 +24,33 @@ PidLaw::PidLaw(const ParallelPid& gains, double r, std::optional<double> delta_r
             by_state_[2] = -Kd / Tf;
             break;
     }
+    if (!filters_setpoint()) return;
+    by_state_[order_++] = Kp * gains.b + (gains.filter.type == FilterType::derivative ? Kd / Tf * gains.c : 0);
 }
 
 void PidLaw::rest(double y, std::span<double> s) const {
     s[0] = 0;
-    if (order_ > 1) s[1] = gains_.filter.type == FilterType::derivative ? -y : y;
-    if (order_ > 2) s[2] = 0;
+    for (double& state : s.first(std::size_t(order_))) state = 0;
+    if (gains_.filter.type != FilterType::none) s[1] = gains_.filter.type == FilterType::derivative ? -y : y;
 }
 
 double PidLaw::command(double y, double y_slope, std::span<const double> s) const {
-    double command = gains_.Kp * gains_.b * r_ + by_y_ * y + s[0];
+    double command = by_y_ * y + s[0];
     for (int i = 1; i < order_; ++i) command += by_state_[i] * s[std::size_t(i)];
-    if (gains_.filter.type == FilterType::derivative) command += gains_.Kd / gains_.filter.Tf * gains_.c * r_;
+    if (!filters_setpoint()) {
+        command += gains_.Kp * gains_.b * r_;
+        if (gains_.filter.type == FilterType::derivative) command += gains_.Kd / gains_.filter.Tf * gains_.c * r_;
+    }
     if (pure_derivative()) command -= gains_.Kd * y_slope;
     return command;
 }
 
 void PidLaw::rates(double y, std::span<const double> s, double excess, std::span<double> ds) const {
-    const double Tf = gains_.filter.Tf;
+    const double Tf = gains_.filter.Tf, r = seen(s);
     double y_f = y;
     switch (gains_.filter.type) {
         case FilterType::none: break;
-        case FilterType::derivative: ds[1] = (gains_.c * r_ - y - s[1]) / Tf; break;
+        case FilterType::derivative: ds[1] = (gains_.c * r - y - s[1]) / Tf; break;
         case FilterType::measurement_first_order:
             y_f = s[1];
             ds[1] = (y - y_f) / Tf;
@@ -56,12 +61,14 @@ void PidLaw::rates(double y, std::span<const double> s, double excess, std::span
             ds[2] = 2 * (y - y_f - s[2]) / Tf;
             break;
     }
-    const double e = r_ - y_f;
+    if (filters_setpoint()) ds[std::size_t(order_ - 1)] = (r_ - r) / gains_.setpoint_lag;
+    const double e = r - y_f;
     ds[0] = gains_.Ki * (scaling_ ? e + scaling_->excess(e) : e) + tracking_rate_ * excess;
 }
 
 double PidLaw::rate_by_y(int i, double y) const {
     const double Tf = gains_.filter.Tf;
+    if (filters_setpoint() && i == order_ - 1) return 0;
     switch (gains_.filter.type) {
         case FilterType::none: break;
         case FilterType::derivative:
@@ -75,6 +82,7 @@ double PidLaw::rate_by_y(int i, double y) const {
 
 double PidLaw::rate_by_state(int i, int j) const {
     const double Tf = gains_.filter.Tf;
+    if (filters_setpoint() && (i == order_ - 1 || j == order_ - 1)) return rate_by_seen(i, j);
     switch (gains_.filter.type) {
         case FilterType::none: return 0;
         case FilterType::derivative: return i == 1 && j == 1 ? -1 / Tf : 0;
@@ -87,9 +95,17 @@ double PidLaw::rate_by_state(int i, int j) const {
     return 0;
 }
 
+double PidLaw::rate_by_seen(int i, int j) const {
+    if (j != order_ - 1) return 0;
+    if (i == j) return -1 / gains_.setpoint_lag;
+    if (i == 0) return gains_.Ki;
+    return i == 1 && gains_.filter.type == FilterType::derivative ? gains_.c / gains_.filter.Tf : 0;
+}
+
 double PidLaw::error_integral_to_rest(std::span<const double> s, double integral_final) const {
     // What the integral has yet to see of r - y_f, less the integral of y - y_f, which the filter's equation gives.
     double rest = (integral_final - s[0]) / gains_.Ki;
+    if (filters_setpoint()) rest += gains_.setpoint_lag * (r_ - seen(s));
     if (gains_.filter.type == FilterType::measurement_first_order) rest -= gains_.filter.Tf * (r_ - s[1]);
     if (gains_.filter.type == FilterType::measurement_second_order) rest -= gains_.filter.Tf * (r_ - s[1] - 0.5 * s[2]);
     return rest;

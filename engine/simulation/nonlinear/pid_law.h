@@ -8,11 +8,12 @@
 
 namespace tunewright {
 
-/// States s: the integral part (in units of u), then the filter's (none, x_f; y_f; y_f and Tf y_f'). The command is
+/// States s: the integral part (in units of u), then the filter's (none, x_f; y_f; y_f and Tf y_f'), then the filtered
+/// set point where it is filtered. The command is
 /// linear in y, y' and s; without `delta_r` so are the rates. y' enters only a derivative without any filter.
 class PidLaw {
 public:
-    static constexpr int kMaxStates = 3;
+    static constexpr int kMaxStates = 4;
 
     /// `delta_r`: the error that the integral sees is the nonlinear PID's. `tracking_rate`: 1/Tt of the anti-windup.
     PidLaw(const ParallelPid& gains, double r, std::optional<double> delta_r, double tracking_rate);
@@ -44,12 +45,17 @@ public:
     double error_integral_to_rest(std::span<const double> s, double integral_final) const;
 
 private:
+    double rate_by_seen(int i, int j) const;
+    bool filters_setpoint() const { return gains_.setpoint_lag > 0; }
+    /// What of the set point the law sees.
+    double seen(std::span<const double> s) const { return filters_setpoint() ? s[std::size_t(order_ - 1)] : r_; }
+
     ParallelPid gains_;
     double r_;
     std::optional<ErrorScaling> scaling_;
     double tracking_rate_;
     int order_ = 1;
-    double by_y_ = 0, by_state_[kMaxStates] = {1, 0, 0};
+    double by_y_ = 0, by_state_[kMaxStates] = {1, 0, 0, 0};
 };
 
 }  // namespace tunewright

@@ -197,7 +197,7 @@ std::string sentence(const RelayPlan& plan, const RelaySettings& settings, int s
                           : std::string("With the levels given y swings ");
         out += text(plan.amplitude / plan.hysteresis) + " hystereses to either side. ";
     } else {
-        out = "Levels and hysteresis as given; tell noise_std for a hysteresis against noise. ";
+        out = "Levels and hysteresis as given; enter the noise to get a hysteresis. ";
     }
     out += std::to_string(settling) + (settling == 1 ? " cycle" : " cycles") + " to settle and " +
            std::to_string(plan.cycles - settling) +

@@ -132,8 +132,8 @@ std::string percent(double share) { return text(100 * share) + " %"; }
 
 void judge_fit(EmulationFit& fit) {
     fit.adequate = fit.u_left <= kLeftOfU && fit.y_left <= kLeftOfY;
-    const std::string figures = "of int (u_nl - u_rest)^2 it leaves " + percent(fit.u_left) +
-                                ", of int (y_nl - y_rest)^2 " + percent(fit.y_left);
+    const std::string figures =
+        "u differs from the nonlinear controller by " + percent(fit.u_left) + " (squared), y by " + percent(fit.y_left);
     fit.sentence = fit.adequate ? "The PID follows the nonlinear controller: " + figures + "."
                                 : "No PID within the bounds can follow this nonlinear controller: " + figures +
                                       " (up to " + percent(kLeftOfU) + " and " + percent(kLeftOfY) +

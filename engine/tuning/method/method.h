@@ -85,7 +85,11 @@ struct TuningMethod {
     /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
     /// integral action, or the defaults.
     std::vector<MethodVariant> variants = {};
-    bool holds_family = false;      ///< limits hold on all of TuningProblem::family
+    bool holds_family = false;    ///< limits hold on all of TuningProblem::family
+    bool weighs_setpoint = true;  ///< its controllers have a set-point weight, which a request may choose
+    /// Percent of overshoot that the weight keeps where the options ask for nothing; empty: the source's weight stays.
+    std::function<std::optional<double>(const MethodOptions&)> overshoot = {};
+    bool compared = true;           ///< "all" runs it; else it runs by name alone
     bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
     std::function<Expected<TunedController>(const TuningProblem&, const MethodOptions&, const RunControl&)> tune;
     /// For a plant known by measured points of its frequency response; empty: the method needs a model.

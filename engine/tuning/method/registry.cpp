@@ -3,6 +3,7 @@
 #include "engine/tuning/arrieta/arrieta.h"
 #include "engine/tuning/emulation/emulation.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/model_based/gain_phase_margin.h"
 #include "engine/tuning/model_based/haalman.h"
 #include "engine/tuning/model_based/imc.h"
@@ -20,16 +21,19 @@
 #include "engine/tuning/reaction_curve/tavakoli.h"
 #include "engine/tuning/reaction_curve/ziegler_nichols_step.h"
 #include "engine/tuning/rimc/rimc.h"
-#include "engine/tuning/robust/robust.h"
+#include "engine/tuning/robust/frontier.h"
 #include "engine/tuning/ultimate/amigo_ultimate.h"
 #include "engine/tuning/ultimate/tyreus_luyben.h"
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright {
 
-const std::vector<TuningMethod>& method_registry() {
-    static const std::vector<TuningMethod> methods = {
+namespace {
+
+std::vector<TuningMethod> all_methods() {
+    return {
         robust_method(),
+        frontier_method(),
         rimc_method(),
         arrieta_ms_method(),
         arrieta_degradation_method(),
@@ -61,6 +65,20 @@ const std::vector<TuningMethod>& method_registry() {
         gain_phase_margin_method(),
         visioli_integrating_method(),
     };
+}
+
+}  // namespace
+
+const std::vector<TuningMethod>& method_registry() {
+    static const auto methods = [] {
+        std::vector<TuningMethod> all = all_methods();
+        for (TuningMethod& method : all)
+            if (method.weighs_setpoint)
+                method.options.push_back(setpoint_option(
+                    method.overshoot ? "overshoot at most 5 %, with an objective that sees the set point b = 1"
+                                     : "the weight of the source"));
+        return all;
+    }();
     return methods;
 }
 

@@ -116,6 +116,7 @@ using Solve = Expected<TunedController>(const TuningProblem&, const NpidOptions&
 TuningMethod described(const Rule& rule, Solve* solve) {
     TuningMethod method;
     method.id = rule.id;
+    method.weighs_setpoint = false;
     method.title = std::string("Nonlinear PID, ") + rule.index + " (Jin, Son)";
     method.formula =
         std::string("u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt], q = L/T; q <= 0.9: ") +

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/number_text.h"
+#include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/reaction_curve/amigo.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/verified_search.h"
@@ -73,7 +73,10 @@ void add_warnings(TunedController& result, const DesignProblem& problem, const D
                                       "): a smaller Ms or a longer filter time gives an ordinary PID."});
 }
 
-/// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
+}  // namespace
+
+namespace robust {
+
 Expected<DesignProblem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options) {
     if (tuning.linear.integrators() < 0)
         return Error{ErrorKind::unstable_plant, "",
@@ -96,7 +99,37 @@ std::optional<Error> without_optimum(const DesignProblem& problem) {
                  "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
 }
 
-}  // namespace
+OptionSet<RobustFilterOptions> filter_options() {
+    using O = RobustFilterOptions;
+    OptionSet<O> set;
+    set.number(&O::Tf, "Tf", "Filter time constant, fixed.", {.unit = "time", .exclusive_minimum = 0});
+    set.number(&O::Tf_over_Td, "Tf_over_Td", "Filter time constant as a fraction of Td.",
+               {.exclusive_minimum = 0, .maximum = 10});
+    return set;
+}
+
+Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
+                                  std::vector<LinearPlant>& others, const PlaneStart& start, CostSurface* surface,
+                                  const RunControl& control, const DesignPoint* before,
+                                  std::vector<Warning>& warnings) {
+    problem.others = others;
+    auto found = verified_search(kind, problem, start, surface, control, before);
+    for (int round = 0; found && !found->stopped && tuning.family; ++round) {
+        const auto added = worst_inside(*tuning.family, problem, found->x, control.stop);
+        if (added.empty()) break;
+        if (round == kMaxRounds) {
+            warnings.push_back(exceeded_inside(added, problem, found->x));
+            break;
+        }
+        others.insert(others.end(), added.begin(), added.end());
+        problem.others = others;
+        const DesignPoint last = found->x;
+        found = verified_search(kind, problem, start, nullptr, control, &last);
+    }
+    return found;
+}
+
+}  // namespace robust
 
 Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustOptions& options,
                                       const RunControl& control) {
@@ -113,19 +146,8 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
     const PlaneStart start =
         kind == SearchKind::fast && !with_surface ? std::nullopt : amigo_start(tuning, options.controller);
     TunedController result;
-    auto found = verified_search(kind, problem, start, with_surface ? &surface : nullptr, control, nullptr);
-    for (int round = 0; found && !found->stopped && tuning.family; ++round) {
-        const auto added = worst_inside(*tuning.family, problem, found->x, control.stop);
-        if (added.empty()) break;
-        if (round == kMaxRounds) {
-            result.warnings.push_back(exceeded_inside(added, problem, found->x));
-            break;
-        }
-        others->insert(others->end(), added.begin(), added.end());
-        problem.others = *others;
-        const DesignPoint before = found->x;
-        found = verified_search(kind, problem, start, nullptr, control, &before);
-    }
+    const auto found = search_everywhere(kind, tuning, problem, *others, start, with_surface ? &surface : nullptr,
+                                         control, nullptr, result.warnings);
     if (!found) return found.error();
     result.controller = controller_at(problem, found->x);
     result.Ms_limit = options.Ms;
@@ -170,15 +192,6 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
     return result;
 }
 
-OptionSet<RobustFilterOptions> filter_options() {
-    using O = RobustFilterOptions;
-    OptionSet<O> set;
-    set.number(&O::Tf, "Tf", "Filter time constant, fixed.", {.unit = "time", .exclusive_minimum = 0});
-    set.number(&O::Tf_over_Td, "Tf_over_Td", "Filter time constant as a fraction of Td.",
-               {.exclusive_minimum = 0, .maximum = 10});
-    return set;
-}
-
 OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     using O = RobustOptions;
     using enum Objective;
@@ -211,55 +224,7 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     return set;
 }
 
-// Distance between two limits: what matters is how far they lie above 1.
-double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
-
 }  // namespace
-
-bool RobustFront::in_order(double M, double load_IAE) const {
-    constexpr double kSame = 1 + 1e-4;
-    return std::ranges::all_of(known_, [&](const auto& item) {
-        if (!item.second) return true;
-        const double other = item.second->load_IAE;
-        return item.first < M ? load_IAE <= kSame * other : other <= kSame * load_IAE;
-    });
-}
-
-Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& control) {
-    constexpr double kNeighbour = 1;
-    if (const auto same = known_.find(M); same != known_.end()) return same->second;
-    RobustOptions limits;
-    limits.Ms = limits.Mt = M;
-    auto posed = nominal_problem(problem_, limits);
-    if (!posed) return posed.error();
-    if (auto error = without_optimum(*posed)) return *error;
-
-    const Design* nearest = nullptr;
-    double distance = kNeighbour;
-    for (const auto& [other, design] : known_) {
-        if (!design || apart(M, other) >= distance) continue;
-        nearest = &*design;
-        distance = apart(M, other);
-    }
-    std::optional<DesignPoint> before;
-    if (nearest != nullptr) {
-        const IdealPid& pid = nearest->controller;
-        before = DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
-    }
-    DesignProblem problem = *posed;
-    auto found =
-        verified_search(SearchKind::fast, problem, std::nullopt, nullptr, control, before ? &*before : nullptr);
-    if (before && (!found || !in_order(M, std::exp(found->log_cost)))) {
-        problem = *posed;
-        found = verified_search(SearchKind::fast, problem, std::nullopt, nullptr, control, nullptr);
-    }
-    Expected<Design> design =
-        found ? Expected<Design>(Design{controller_at(problem, found->x), std::exp(found->log_cost)})
-              : Expected<Design>(found.error());
-    if (found && found->stopped)
-        return Error{ErrorKind::cancelled, "", "The job was stopped before this optimum was found."};
-    return known_.emplace(M, std::move(design)).first->second;
-}
 
 TuningMethod robust_method() {
     TuningMethod method;
@@ -275,6 +240,12 @@ TuningMethod robust_method() {
     method.serve(described_options({}), tune_robust);
     method.serve_as_built(described_options({}), tune_robust_as_built);
     method.holds_family = true;
+    // An optimum for set points is one for b = 1.
+    method.overshoot = [](const MethodOptions& options) {
+        const auto objective = options.text("objective");
+        const bool sees_setpoint = objective == "setpoint_iae" || objective == "weighted";
+        return sees_setpoint ? std::nullopt : std::optional(kDefaultOvershoot);
+    };
     RobustOptions on_points;
     on_points.objective = Objective::load_ie;
     method.serve_on_points(described_options(on_points), tune_on_points);

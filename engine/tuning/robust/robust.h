@@ -2,8 +2,8 @@
 
 #pragma once
 
-#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/tuning/method/report.h"
@@ -41,28 +41,6 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
 
 TuningMethod robust_method();
 
-/// The method's default PID on one plant under several limits, Ms = Mt = M: the front of load IAE against robustness. A
-/// new point is searched from its nearest neighbour; where that breaks the front's order (more room never costs more)
-/// the whole search is made.
-class RobustFront {
-public:
-    /// `problem` must outlive this. Its family is not looked at: limits hold on the nominal plant.
-    explicit RobustFront(const TuningProblem& problem) : problem_(problem) {}
-
-    struct Design {
-        IdealPid controller;
-        double load_IAE = 0;  ///< of a unit step, to infinity; the search's own, to about 1e-4
-    };
-    /// M in (1, 4]. Errors: those of the method robust; cancelled if it was stopped before the search ended.
-    Expected<Design> at(double M, const RunControl& control);
-
-private:
-    bool in_order(double M, double load_IAE) const;
-
-    const TuningProblem& problem_;
-    std::map<double, Expected<Design>> known_;
-};
-
 /// The method's report with `surface`: the least cost over Kp; cost[i][j] belongs to Ti[i] (time) and Td[j] (time).
 /// Empty: no Kp keeps the limits.
 struct CostSurface : MethodReport {
@@ -73,6 +51,22 @@ struct CostSurface : MethodReport {
 }  // namespace tunewright
 
 namespace tunewright::robust {
+
+/// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
+Expected<DesignProblem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options);
+
+/// Why the problem has no optimum, if that is seen before any search.
+std::optional<Error> without_optimum(const DesignProblem& problem);
+
+/// verified_search() with the limits held on all of the tuning problem's family: the worst plants that are found inside
+/// it join `others`, which the problem looks at and which must outlive it.
+Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
+                                  std::vector<LinearPlant>& others,
+                                  const std::optional<std::pair<double, double>>& start, CostSurface* surface,
+                                  const RunControl& control, const DesignPoint* before, std::vector<Warning>& warnings);
+
+/// The options of the filter under the names of the contract; at most one of them is given.
+OptionSet<RobustFilterOptions> filter_options();
 
 /// The filter that the options give, if they do. Error: invalid_argument for Tf_over_Td of a PI.
 Expected<std::optional<FilterRule>> explicit_filter(const RobustFilterOptions& options, bool pid);

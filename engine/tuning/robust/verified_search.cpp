@@ -1,7 +1,9 @@
 #include "engine/tuning/robust/verified_search.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
@@ -134,6 +136,8 @@ std::string on_plants(const DesignProblem& problem) {
                                   : " on all " + std::to_string(problem.plants()) + " plants looked at";
 }
 
+constexpr std::string_view kNamesLimit = ". The smallest common limit that works is Ms = Mt = ";
+
 Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least) {
     const std::string name = problem.pid ? "PID" : "PI";
     if (!least)
@@ -156,11 +160,19 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak
             "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
                 " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
                 (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string()) +
-                ". The smallest common limit that works is Ms = Mt = " + text(workable.value_or(least->M * 1.01)) +
-                "; use that or more."};
+                std::string(kNamesLimit) + text(workable.value_or(least->M * 1.01)) + "; use that or more."};
 }
 
 }  // namespace
+
+std::optional<double> named_limit(const Error& error) {
+    const std::size_t at = error.message.find(kNamesLimit);
+    if (error.kind != ErrorKind::no_feasible_controller || at == std::string::npos) return std::nullopt;
+    const char* begin = error.message.data() + at + kNamesLimit.size();
+    double limit = 0;
+    const auto read = std::from_chars(begin, error.message.data() + error.message.size(), limit);
+    return read.ec == std::errc() ? std::optional(limit) : std::nullopt;
+}
 
 namespace {
 

@@ -17,6 +17,10 @@ namespace tunewright::robust {
 /// Where the plane searches begin, as (Ti, Td); empty: at the best point of a scan.
 using PlaneStart = std::optional<std::pair<double, double>>;
 
+/// The common limit on Ms and Mt that the sentence of a no_feasible_controller names as its cure; empty where it names
+/// none. Read back from the sentence, which is all that an error carries.
+std::optional<double> named_limit(const Error& error);
+
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
 /// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
 /// is searched; where that finds nothing, the whole search is made. `problem` receives the reference optima of a

@@ -22,6 +22,7 @@ public:
 
     double step(double r, double y, bool manual, double manual_output, const Gains& now) {
         if (r_.empty()) begin(r, y);
+        r = (law_.gains.setpoint_lag * at(r_, 0) + law_.Ts * r) / (law_.gains.setpoint_lag + law_.Ts);
         measure(r, y);
         const double P = now.Kp * (now.b * r - at(yf_, 0)), D = now.Kd * at(slope_, 0);
         const double share = now.Ki * law_.Ts * fed();

@@ -26,6 +26,23 @@ TEST(Identify, DeadTimeBetweenSamplesIsExact) {
     }
 }
 
+// 100,000 samples are fitted as means over blocks of five. The steps fall inside blocks, and the last plant's lag lasts
+// two blocks of that length: it is fitted to more.
+TEST(Identify, ThinningALongRecordChangesNoParameter) {
+    for (const double T : {2000.0, 500.0, 60.0, 10.0}) {
+        Record record =
+            simulate(even_times(100'000, 1), 0, 20, {{5003, 1}, {31'002, -1}, {67'001, 2}}, first_order(2, T, T / 7));
+        add_noise(record, 0.02, 5);
+        const IdentifiedModel model = identified(record, ModelChoice::fopdt);
+        const auto plant = plant_as<Fopdt>(model);
+        const auto& error = model.standard_errors;
+        constexpr double kSigmas = 4;
+        EXPECT_NEAR(plant.K, 2, kSigmas * error.at("K")) << T;
+        EXPECT_NEAR(plant.T, T, std::min(kSigmas * error.at("T"), 2e-3 * T)) << T;
+        EXPECT_NEAR(plant.L, T / 7, std::min(kSigmas * error.at("L"), 2e-3 * T)) << T;
+    }
+}
+
 TEST(Identify, IrregularTimesCostNoAccuracy) {
     std::vector<double> t = {0};
     std::mt19937 bits(7);

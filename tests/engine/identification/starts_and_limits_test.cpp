@@ -75,7 +75,7 @@ TEST(Records, AMoveWithTheLastRowIsNone) {
     EXPECT_EQ(model->data_quality.steps, 1);
     EXPECT_EQ(model->data_quality.kind, RecordKind::step);
     EXPECT_TRUE(model->data_quality.settled);
-    EXPECT_TRUE(noted(*model, "nothing follows them"));
+    EXPECT_TRUE(noted(*model, "1 change of u with the last sample left out"));
 }
 
 TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {

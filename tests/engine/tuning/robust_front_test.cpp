@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluate.h"
-#include "engine/tuning/robust/robust.h"
+#include "engine/tuning/robust/front.h"
 
 namespace tunewright {
 namespace {

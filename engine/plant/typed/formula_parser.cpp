@@ -1,0 +1,316 @@
+#include "engine/plant/typed/parsers.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/number_text.h"
+#include "engine/plant/expression/tokens.h"
+#include "engine/plant/typed/readings.h"
+
+namespace tunewright::typed {
+namespace {
+
+constexpr int kMaxDepth = 30;
+
+std::string order_fault() { return "the order is beyond " + std::to_string(kMaxOrder) + "."; }
+
+class FormulaParser {
+public:
+    FormulaParser(Cursor& cursor, double own_time) : cursor_(cursor), own_time_(own_time) {}
+
+    Formula read() {
+        Formula formula = sum();
+        if (!cursor_.at_end() && !cursor_.failed()) refuse_rest();
+        return formula;
+    }
+
+private:
+    struct Level {
+        explicit Level(int& depth) : depth_(depth) { ++depth_; }
+        ~Level() { --depth_; }
+        int& depth_;
+    };
+
+    void refuse_rest() {
+        const Word& word = cursor_.now();
+        if (word.text == ")" || word.text == "]" || word.text == "}")
+            return cursor_.fail(word.position, "this bracket closes nothing.");
+        if (word.text == "=") return cursor_.fail(word.position, "\"=\" stands in a formula; write the formula alone.");
+        cursor_.unexpected("an operator or the end");
+    }
+
+    Formula checked(Formula formula, int position) {
+        if (degree(formula.num) > kMaxOrder || degree(formula.den) > kMaxOrder) cursor_.fail(position, order_fault());
+        return cursor_.failed() ? Formula() : formula;
+    }
+
+    Formula sum() {
+        const Level level(depth_);
+        if (depth_ > kMaxDepth) {
+            cursor_.fail(cursor_.now().position,
+                         "brackets stand more than " + std::to_string(kMaxDepth) + " deep in one another.");
+            return {};
+        }
+        Formula left = product_of_factors();
+        while (cursor_.at("+") || cursor_.at("-")) {
+            const bool minus = cursor_.at("-");
+            const int position = cursor_.now().position;
+            cursor_.advance();
+            Formula right = product_of_factors();
+            if (cursor_.failed()) return {};
+            if (minus) right.gain = -right.gain;
+            if (std::max(degree(left.num) + degree(right.den), degree(right.num) + degree(left.den)) > kMaxOrder) {
+                cursor_.fail(position, order_fault());
+                return {};
+            }
+            auto added = typed::sum(left, right);
+            if (!added) {
+                cursor_.fail(position, added.error().message);
+                return {};
+            }
+            left = checked(*std::move(added), position);
+        }
+        return left;
+    }
+
+    bool at_dead_time() const {
+        const Word& word = cursor_.now();
+        return word.kind == Word::Kind::name && (word.text == "exp" || (word.text == "e" && power_follows()));
+    }
+    bool power_follows() const { return Cursor::is(cursor_.peek(1), "^"); }
+    bool begins_factor() const { return opens(cursor_.now()) || cursor_.at_name(); }
+
+    Formula product_of_factors() {
+        Formula left = signed_factor();
+        bool divided = false;
+        while (!cursor_.failed()) {
+            const int position = cursor_.now().position;
+            if (cursor_.skip("*")) {
+                left = product(std::move(left), signed_factor());
+                divided = false;
+            } else if (cursor_.skip("/")) {
+                const Formula right = signed_factor();
+                if (!cursor_.failed() && right.gain == 0) cursor_.fail(position, "this divides by 0.");
+                if (!cursor_.failed()) left = quotient(std::move(left), right);
+                divided = true;
+            } else if (begins_factor()) {
+                if (divided && !at_dead_time()) {
+                    cursor_.fail(position,
+                                 "what does the division before this divide by? a/b c may be a/(b c) or (a/b) c; put "
+                                 "brackets around what belongs together.");
+                    return {};
+                }
+                left = product(std::move(left), factor());
+            } else {
+                break;
+            }
+            left = checked(std::move(left), position);
+        }
+        return left;
+    }
+
+    Formula signed_factor() {
+        bool minus = false;
+        while (cursor_.at("-") || cursor_.at("+")) {
+            minus ^= cursor_.at("-");
+            cursor_.advance();
+        }
+        Formula out = factor();
+        if (minus) out.gain = -out.gain;
+        return out;
+    }
+
+    Formula factor() {
+        const int position = cursor_.now().position;
+        const Formula base = primary();
+        if (!cursor_.at("^")) return base;
+        cursor_.advance();
+        const std::optional<int> n = exponent();
+        if (!n) return {};
+        const std::size_t size = std::max(degree(base.num), degree(base.den)) * static_cast<std::size_t>(std::abs(*n));
+        if (size > kMaxOrder || (base.is_number() && base.gain == 0 && *n < 0)) {
+            cursor_.fail(position, size > kMaxOrder ? order_fault() : "this divides by 0.");
+            return {};
+        }
+        if (cursor_.at("^")) cursor_.fail(cursor_.now().position, "a power of a power needs brackets.");
+        return power(base, *n);
+    }
+
+    std::optional<int> exponent() {
+        const int position = cursor_.now().position;
+        Formula value;
+        if (opens(cursor_.now())) {
+            value = bracket();
+        } else {
+            const double sign = cursor_.skip("-") ? -1 : 1;
+            if (sign > 0) cursor_.skip("+");
+            if (!cursor_.at_number()) {
+                cursor_.unexpected("a whole number");
+                return std::nullopt;
+            }
+            value.gain = sign * read_number(cursor_, Commas::decimal);
+        }
+        if (cursor_.failed()) return std::nullopt;
+        const bool whole =
+            value.is_number() && std::abs(value.gain) <= kMaxOrder && value.gain == std::floor(value.gain);
+        if (!whole) {
+            cursor_.fail(position, "a power must be a whole number of at most 50 here (a dead time is e^(-3s)).");
+            return std::nullopt;
+        }
+        return static_cast<int>(value.gain);
+    }
+
+    Formula bracket() {
+        const Word opened = cursor_.now();
+        cursor_.open(opened);
+        cursor_.advance();
+        Formula inside = sum();
+        if (cursor_.failed()) return {};
+        if (!cursor_.at(closing(opened))) {
+            cursor_.unexpected(std::string("an operator or \"") + closing(opened) + "\"");
+            return {};
+        }
+        cursor_.close();
+        cursor_.advance();
+        return inside;
+    }
+
+    Formula primary() {
+        if (cursor_.failed()) return {};
+        if (cursor_.at_number()) return number();
+        if (opens(cursor_.now())) return bracket();
+        if (cursor_.at_name()) return name();
+        cursor_.unexpected("a number, s or a bracket");
+        return {};
+    }
+
+    Formula number() {
+        const Word word = cursor_.now();
+        const Word& next = cursor_.peek(1);
+        const std::size_t small = word.text.find_first_of("eE");
+        if (small != std::string::npos && word.text[small + 1] == '-' && next.text == "s" && !next.after_blank) {
+            cursor_.fail(word.position, word.text + "s may be " + exact_text(word.number) + " s or " +
+                                            word.text.substr(0, small) + " e^(" + word.text.substr(small + 1) +
+                                            " s); write the one that is meant.");
+            return {};
+        }
+        const double value = read_number(cursor_, Commas::decimal);
+        if (cursor_.failed()) return {};
+        const auto unit = cursor_.at_name() ? seconds_of_unit(cursor_.now().text) : std::nullopt;
+        return unit ? number_with_unit(value, *unit) : Formula{.gain = value};
+    }
+
+    // 10 min s: the unit belongs to the time that s is multiplied with.
+    Formula number_with_unit(double value, double unit) {
+        const Word word = cursor_.now();
+        cursor_.advance();
+        int times = 1;
+        if (cursor_.skip("^")) times = exponent().value_or(1);
+        const bool sign = Cursor::is(cursor_.now(), "*");
+        const Word& s = cursor_.peek(sign ? 1 : 0);
+        if (!cursor_.failed() && (s.kind != Word::Kind::name || s.text != "s" || times < 1))
+            cursor_.fail(word.position,
+                         "a unit of time stands between its number and s, as in (10 " + word.text + " s + 1).");
+        if (!cursor_.failed() && own_time_ <= 0)
+            cursor_.fail(word.position,
+                         "units.time is no unit of time that is known; write the times without " + word.text + ".");
+        if (cursor_.failed()) return {};
+        if (sign) cursor_.advance();
+        for (int i = 0; i < times; ++i) value = in_own_time(value, unit, own_time_);
+        return product(Formula{.gain = value}, factor());
+    }
+
+    Formula name() {
+        const Word word = cursor_.now();
+        const std::string spelt = lower(word.text);
+        if (word.text == "s" || word.text == "S") {
+            cursor_.advance();
+            return {.gain = 1, .num = {{1, 0}}};
+        }
+        if (at_dead_time()) return dead_time();
+        if (word.text == "\\frac") return fraction();
+        if (opens(cursor_.peek(1)) && is_matrix_call(spelt)) return read_matrix_call(cursor_);
+        refuse_name(word);
+        return {};
+    }
+
+    void refuse_name(const Word& word) {
+        const std::string name = quoted(word.text);
+        if (lower(word.text) == "ss" || lower(word.text) == "statespace")
+            return cursor_.fail(word.position,
+                                "a state space is given by its matrices: {\"type\": \"state_space\", ...}.");
+        if (word.text == "e") return cursor_.fail(word.position, "e stands for a dead time, as in e^(-3s).");
+        if (word.text == "p" || word.text == "z" || word.text == "q")
+            return cursor_.fail(word.position, name + " is no variable here; write s, in continuous time.");
+        if (seconds_of_unit(word.text))
+            return cursor_.fail(word.position, name +
+                                                   " is a unit of time: it stands behind its number, as in (10 min s "
+                                                   "+ 1).");
+        cursor_.fail(word.position, name + " is not known; a formula has numbers, s and e^(-3s). Write its value in.");
+    }
+
+    Formula fraction() {
+        cursor_.advance();
+        if (!opens(cursor_.now())) return cursor_.unexpected("\"{\""), Formula();
+        Formula top = bracket();
+        if (!opens(cursor_.now())) return cursor_.unexpected("\"{\""), Formula();
+        const int position = cursor_.now().position;
+        const Formula bottom = bracket();
+        if (!cursor_.failed() && bottom.gain == 0) cursor_.fail(position, "this divides by 0.");
+        return cursor_.failed() ? Formula() : checked(quotient(std::move(top), bottom), position);
+    }
+
+    Formula dead_time() {
+        const Word word = cursor_.now();
+        cursor_.advance();
+        if (word.text == "e") cursor_.advance();
+        Formula exponent;
+        if (opens(cursor_.now())) {
+            exponent = bracket();
+        } else if (word.text == "e") {
+            exponent = bare_exponent();
+        } else {
+            cursor_.unexpected("\"(\"");
+        }
+        if (cursor_.failed()) return {};
+        return dead_time_of(exponent, word.position);
+    }
+
+    /// -3s: what is written without a sign.
+    Formula bare_exponent() {
+        const double sign = cursor_.skip("-") ? -1 : 1;
+        if (sign > 0) cursor_.skip("+");
+        if (!cursor_.at_number() && cursor_.now().text != "s") {
+            cursor_.unexpected("an exponent such as (-3s)");
+            return {};
+        }
+        Formula out = cursor_.at_number() ? number() : Formula();
+        if (cursor_.at_name() && cursor_.now().text == "s") out = product(std::move(out), primary());
+        out.gain *= sign;
+        return out;
+    }
+
+    Formula dead_time_of(const Formula& exponent, int position) {
+        const bool proportional = exponent.L == 0 && exponent.den.empty() && exponent.num.size() == 1 &&
+                                  exponent.num[0].size() == 2 && exponent.num[0][1] == 0;
+        if (exponent.gain == 0) return {};
+        if (!proportional) {
+            cursor_.fail(position, exponent.is_number()
+                                       ? "the exponent has no s; a dead time of 3 is e^(-3s), with its brackets."
+                                       : "only a dead time can stand in an exponent, as in e^(-3s).");
+            return {};
+        }
+        return {.gain = 1, .L = -exponent.gain * exponent.num[0][0]};
+    }
+
+    Cursor& cursor_;
+    double own_time_;
+    int depth_ = 0;
+};
+
+}  // namespace
+
+Formula read_formula(Cursor& cursor, double own_time) { return FormulaParser(cursor, own_time).read(); }
+
+}  // namespace tunewright::typed

@@ -1,0 +1,151 @@
+#include "engine/plant/typed/typed_plant.h"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/number_text.h"
+#include "engine/plant/linear/factor.h"
+#include "engine/plant/typed/parsers.h"
+#include "engine/plant/typed/words.h"
+
+namespace tunewright {
+namespace {
+
+using namespace typed;
+
+// "P(s) =", "G ="; and "s = tf('s');", with which programs begin.
+void skip_name(Cursor& cursor) {
+    if (cursor.at_name() && cursor.now().text == "s" && Cursor::is(cursor.peek(1), "=")) {
+        while (!cursor.at_end() && !cursor.at(";")) cursor.advance();
+        cursor.advance();
+    }
+    if (!cursor.at_name()) return;
+    const bool of_s = Cursor::is(cursor.peek(1), "(") && cursor.peek(2).text == "s" && Cursor::is(cursor.peek(3), ")");
+    const std::size_t length = of_s ? 4 : 1;
+    const bool parameters = !of_s && is_parameter_text(cursor);
+    if (parameters || !Cursor::is(cursor.peek(length), "=")) return;
+    for (std::size_t i = 0; i <= length; ++i) cursor.advance();
+}
+
+Expected<TypedPlant> of_parameters(Cursor& cursor, double own_time) {
+    Plant plant = read_parameters(cursor, own_time);
+    if (cursor.failed()) return cursor.fault();
+    const std::vector<Error> faults = plant_faults(plant);
+    if (!faults.empty()) return Error{ErrorKind::invalid_argument, "", faults.front().message};
+    auto formula = formula_of(plant);
+    if (!formula) return formula.error();
+    return TypedPlant{std::move(plant), *std::move(formula)};
+}
+
+Expected<TypedPlant> of_formula(Cursor& cursor, double own_time) {
+    Formula formula = read_formula(cursor, own_time);
+    if (cursor.failed()) return cursor.fault();
+    auto plant = plant_of(formula);
+    if (!plant) return plant.error();
+    const std::vector<Error> faults = plant_faults(*plant);
+    if (!faults.empty()) return Error{ErrorKind::invalid_argument, "", faults.front().message};
+    return TypedPlant{*std::move(plant), std::move(formula)};
+}
+
+std::string polynomial_text(const Polynomial& p) {
+    std::string out;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        if (p[i] == 0 && p.size() > 1) continue;
+        const std::size_t power = p.size() - 1 - i;
+        out += out.empty() ? (p[i] < 0 ? "-" : "") : p[i] < 0 ? " - " : " + ";
+        const bool one = std::abs(p[i]) == 1 && power > 0;
+        if (!one) out += exact_text(std::abs(p[i]));
+        if (power > 0) out += one ? "s" : " s";
+        if (power > 1) out += "^" + std::to_string(power);
+    }
+    return out;
+}
+
+std::string delay_text(double L) { return L == 0 ? "" : L == 1 ? "e^(-s)" : "e^(-" + exact_text(L) + " s)"; }
+
+/// `top` e^(-Ls) over the factors.
+std::string quotient_text(std::string top, double L, const std::vector<Polynomial>& bottom) {
+    const std::string delay = delay_text(L);
+    std::string out = top == "1" && !delay.empty() ? delay : delay.empty() ? std::move(top) : top + " " + delay;
+    std::string below;
+    for (const Polynomial& p : bottom) {
+        if (p.size() == 1) continue;
+        const bool bare = p.size() == 2 && p[1] == 0 && p[0] == 1;
+        below += bare ? "s" : "(" + polynomial_text(p) + ")";
+    }
+    if (below.empty()) return out;
+    const bool several = below.find(")(") != std::string::npos || (below[0] == 's' && below.size() > 1);
+    return out + "/" + (several ? "(" + below + ")" : below);
+}
+
+Polynomial lag(double T) { return T == 0 ? Polynomial{1} : Polynomial{T, 1}; }
+
+std::string text_of(const Fopdt& p) { return quotient_text(exact_text(p.K), p.L, {lag(p.T)}); }
+std::string text_of(const Sopdt& p) { return quotient_text(exact_text(p.K), p.L, {lag(p.T1), lag(p.T2)}); }
+std::string text_of(const Ipdt& p) { return quotient_text(exact_text(p.K), p.L, {{1, 0}, lag(p.T)}); }
+std::string text_of(const OscillatorySopdt& p) {
+    return "K=" + exact_text(p.K) + " T=" + exact_text(p.T) + " zeta=" + exact_text(p.zeta) +
+           (p.L == 0 ? "" : " L=" + exact_text(p.L));
+}
+
+Polynomial without_leading_zeros(const std::vector<double>& coefficients) {
+    std::size_t first = 0;
+    while (first + 1 < coefficients.size() && coefficients[first] == 0) ++first;
+    return {coefficients.begin() + static_cast<std::ptrdiff_t>(first), coefficients.end()};
+}
+
+std::string text_of(const TransferFunction& p) {
+    const Polynomial num = without_leading_zeros(p.num), den = without_leading_zeros(p.den);
+    if (den.size() == 1)
+        return quotient_text(num.size() == 1 ? exact_text(num[0] / den[0]) : polynomial_text(num), p.L, {});
+    return quotient_text(num.size() == 1 ? exact_text(num[0]) : "(" + polynomial_text(num) + ")", p.L, {den});
+}
+
+std::string roots_text(const std::vector<std::complex<double>>& roots) {
+    std::string out;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        const auto r = roots[i];
+        out += " ";
+        if (r.imag() == 0) {
+            out += exact_text(r.real());
+            continue;
+        }
+        const bool pair = i + 1 < roots.size() && roots[i + 1] == std::conj(r);
+        out += exact_text(r.real()) + (pair ? "±" : r.imag() < 0 ? "-" : "+") + exact_text(std::abs(r.imag())) + "i";
+        if (pair) ++i;
+    }
+    return out;
+}
+
+std::string text_of(const Zpk& p) {
+    return (p.zeros.empty() ? "" : "zeros" + roots_text(p.zeros) + ", ") +
+           (p.poles.empty() ? "poles none" : "poles" + roots_text(p.poles)) + ", gain " + exact_text(p.K) +
+           (p.L == 0 ? "" : ", delay " + exact_text(p.L));
+}
+
+}  // namespace
+
+Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time) {
+    auto words = words_of(text);
+    if (!words) return words.error();
+    Cursor cursor(*std::move(words));
+    skip_name(cursor);
+    if (cursor.at_end())
+        return Error{ErrorKind::invalid_argument, "",
+                     "the text is empty; write a plant such as 2 e^(-3s)/(10s+1), K=2 T=10 L=3, or poles -1 -2, gain "
+                     "3."};
+    return is_parameter_text(cursor) ? of_parameters(cursor, seconds_per_time) : of_formula(cursor, seconds_per_time);
+}
+
+std::string plant_text(const Plant& plant) {
+    return std::visit(
+        [](const auto& p) -> std::string {
+            if constexpr (requires { text_of(p); })
+                return text_of(p);
+            else
+                return "";
+        },
+        plant);
+}
+
+}  // namespace tunewright

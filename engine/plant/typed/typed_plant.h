@@ -1,0 +1,36 @@
+// A linear plant from one line of text, as a person types it, and back.
+//
+//   read_plant("2 e^(-3s)/((10s+1)(2s+1))")        second order, K 2, T1 10, T2 2, L 3
+//   read_plant("K=2 T=10 min L=30 s")              first order, T 600 and L 30
+//   read_plant("zeros -1, poles -2 -3±4i, gain 5") zeros and poles
+//   read_plant("tf([2],[10 1],'InputDelay',3)")    first order
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/expected.h"
+#include "engine/plant/plant.h"
+#include "engine/plant/typed/formula.h"
+
+namespace tunewright {
+
+struct TypedPlant {
+    Plant plant;
+    typed::Formula formula;  ///< as it was written, in its own factors
+};
+
+/// `seconds_per_time`: of the unit of time in which the plant is answered, into which a unit in the text is converted;
+/// 0 where that unit is not known, which makes units in the text a fault. Numbers without a unit are taken as they are.
+///
+/// A text is read by the grammar of typed/parsers.h; a name such as "P(s) =" may
+/// stand before. Every spelling of one plant gives the same plant. Errors (invalid_argument): "position 7: <what,
+/// cure>"; a plant that is improper, not causal or 0; numbers that no plant may have; a text longer than
+/// typed::kMaxLength.
+Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time = 1);
+
+/// The shortest text that read_plant reads as this plant (as an equal one, where it is of a simpler type than it is
+/// written in). Empty for a state space, which has none. What is uncertain is left out.
+std::string plant_text(const Plant& plant);
+
+}  // namespace tunewright

@@ -1,0 +1,72 @@
+// A typed plant's text in words, each with its place; what is spelt in several ways has one spelling afterwards.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/expected.h"
+
+namespace tunewright::typed {
+
+constexpr int kMaxLength = 2000;  ///< bytes of a text
+
+struct Word {
+    enum class Kind { number, name, quoted, symbol, end };
+    Kind kind = Kind::end;
+    std::string text;          ///< one spelling: - * / ^ +- ( ) [ ] , ; = : for symbols, Greek letters spelt out
+    double number = 0;         ///< of a number
+    int position = 1;          ///< of its first character, from 1
+    bool after_blank = false;  ///< white space stands before it
+};
+
+/// The words of the text; the last is of kind `end`. Minus signs and dots of every alphabet, ** and superscripts are
+/// what they mean: s² is s ^ ( 2 ). Errors: too long, no UTF-8, a character or number that means nothing here.
+Expected<std::vector<Word>> words_of(std::string_view text);
+
+/// invalid_argument with "position 7: <what>".
+Error fault_at(int position, const std::string& what);
+
+/// Where a reader of words is, and the first fault, after which nothing more is read: every look then finds the end.
+class Cursor {
+public:
+    explicit Cursor(std::vector<Word> words) : words_(std::move(words)) {}
+
+    const Word& now() const { return peek(0); }
+    const Word& peek(std::size_t ahead) const;
+    void advance() { at_ += at_ + 1 < words_.size() ? 1 : 0; }
+
+    bool at(std::string_view symbol) const { return is(now(), symbol); }
+    static bool is(const Word& word, std::string_view symbol) {
+        return word.kind == Word::Kind::symbol && word.text == symbol;
+    }
+    bool at_end() const { return now().kind == Word::Kind::end; }
+    bool at_number() const { return now().kind == Word::Kind::number; }
+    bool at_name() const { return now().kind == Word::Kind::name; }
+    bool skip(std::string_view symbol);
+    /// The opening brackets that are open, so that an end inside one can name it.
+    void open(const Word& bracket) { opened_.push_back(bracket.position); }
+    void close() { opened_.pop_back(); }
+
+    void fail(int position, const std::string& what);
+    /// The word that is now where `wanted` belongs; an end inside a bracket is that bracket's fault.
+    void unexpected(const std::string& wanted);
+    bool failed() const { return fault_.has_value(); }
+    const Error& fault() const { return *fault_; }
+
+private:
+    std::vector<Word> words_;
+    std::size_t at_ = 0;
+    std::vector<int> opened_;
+    std::optional<Error> fault_;
+};
+
+/// A bracket of any kind that opens, and the one that closes it.
+bool opens(const Word& word);
+const char* closing(const Word& bracket);
+
+/// The word in lower case: "InputDelay" and "FOPDT" are spelt in many ways.
+std::string lower(std::string_view name);
+
+}  // namespace tunewright::typed

@@ -1,0 +1,177 @@
+#include "engine/request/verdict/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tunewright::verdict {
+namespace {
+
+using Found = std::optional<Finding>;
+
+constexpr double kRounding = 1e-6;
+constexpr double kOscillatoryMt = 2;    // the set-point response rings: as a second-order loop with zeta 0.26
+constexpr double kPoorFitPercent = 70;  // below it a model does not explain its record
+
+Found unstable(const Case& c) {
+    if (c.evaluation.robustness.stable) return {};
+    return Draft("unstable", Level::bad)
+        .say(c.is_today() ? "Today's settings are unstable on this plant."
+                          : "This loop is unstable: do not enter these settings.");
+}
+
+Found unstable_as_built(const Case& c) {
+    if (!c.built() || c.robustness().stable || !c.evaluation.robustness.stable) return {};
+    return Draft("unstable-as-built", Level::bad).say("Unstable on your controller as it is built.");
+}
+
+Found unstable_member(const Case& c) {
+    const auto& region = c.evaluation.region;
+    if (!region || (region->worst_Ms && region->stable_fraction >= 1)) return {};
+    if (c.context.model != nullptr)
+        return Draft("model-too-uncertain", Level::bad)
+            .say(
+                "The model is too uncertain for these settings: unstable on a part of what the record leaves "
+                "possible.");
+    return Draft("unstable-member", Level::bad).say("Unstable on a part of what the plant may be.");
+}
+
+/// With a horizon the responses may only have been cut off.
+Found not_settling(const Case& c) {
+    const Performance& p = c.evaluation.performance;
+    if (!c.evaluation.robustness.stable || c.context.subject.measured() != nullptr) return {};
+    if (c.warned_of("left-domain"))
+        return Draft("not-settling", Level::bad).say("A response leaves what the equations describe.");
+    const bool at_rest = p.setpoint.settling_time && p.load.recovery_time && !c.warned_of("does-not-settle");
+    if (at_rest || !c.has_integral()) return {};
+    if (c.context.options.horizon)
+        return Draft("short-horizon", Level::warning)
+            .say("The responses are not at rest at the end of the time asked for.");
+    return Draft("not-settling", Level::bad).say("The response does not settle.");
+}
+
+Found too_sharp(const Case& c) {
+    const auto worst = c.worst_Ms();
+    if (!worst || worst->value <= kTooSharpMs * (1 + kRounding)) return {};
+    return Draft("too-sharp", Level::bad)
+        .say("Too sharp for a plant that changes: Ms ")
+        .number("Ms", worst->value)
+        .say(worst->where + ".");
+}
+
+Found above_limit(const Case& c) {
+    const Limits limits = c.limits();
+    const auto worst = c.worst_Ms(), Mt = c.worst_Mt();
+    const auto broken = [](const char* name, const PlacedPeak& peak, double limit) -> Finding {
+        return Draft("above-limit", Level::warning)
+            .say(std::string("Above the limit that was asked for: ") + name + " ")
+            .number(name, peak.value)
+            .say(peak.where + " instead of ")
+            .number(std::string(name) + "_limit", limit)
+            .say(".");
+    };
+    const auto beyond = [](const PlacedPeak& peak, double limit) {
+        return peak.value > limit * (1 + (peak.where.ends_with("plant") ? kHeldOnWorst : kReached));
+    };
+    if (worst && limits.Ms && beyond(*worst, *limits.Ms)) return broken("Ms", *worst, *limits.Ms);
+    if (Mt && limits.Mt && beyond(*Mt, *limits.Mt)) return broken("Mt", *Mt, *limits.Mt);
+    return {};
+}
+
+Found little_margin(const Case& c) {
+    const auto worst = c.worst_Ms();
+    if (!worst || worst->value <= kLittleMarginMs * (1 + kRounding) || worst->value > kTooSharpMs * (1 + kRounding))
+        return {};
+    return Draft("little-margin", Level::warning)
+        .say("Fast, with little margin left: Ms ")
+        .number("Ms", worst->value)
+        .say(worst->where + ".");
+}
+
+Found oscillatory(const Case& c) {
+    const auto Mt = c.worst_Mt();
+    if (!Mt || Mt->value <= kOscillatoryMt * (1 + kRounding)) return {};
+    return Draft("oscillatory", Level::warning)
+        .say("It oscillates before it settles: Mt ")
+        .number("Mt", Mt->value)
+        .say(Mt->where + ".");
+}
+
+Found doubtful_model(const Case& c) {
+    if (c.context.model == nullptr || c.context.model->fit_percent >= kPoorFitPercent) return {};
+    return Draft("doubtful-model", Level::warning)
+        .say("A doubtful model to tune on: it explains ")
+        .number("fit_percent", c.context.model->fit_percent, "%")
+        .say(" of the record's movement.");
+}
+
+Found restless_as_built(const Case& c) {
+    if (!c.built() || !c.robustness().stable || c.context.options.horizon || !c.has_integral()) return {};
+    const Performance& p = c.performance();
+    if (p.setpoint.settling_time && p.load.recovery_time) return {};
+    return Draft("restless-as-built", Level::warning)
+        .say("On your controller as it is built the response does not come to rest.");
+}
+
+Found not_as_built(const Case& c) {
+    if (!c.warned_of("not-as-built")) return {};
+    return Draft("not-as-built", Level::warning)
+        .say("Not known on your controller as it is built; only the ideal loop is.");
+}
+
+Found no_integral(const Case& c) {
+    if (!c.evaluation.robustness.stable || c.has_integral()) return {};
+    return Draft("no-integral", Level::warning).say("Without integral action a load leaves a lasting error.");
+}
+
+Found margin_unknown(const Case& c) {
+    const bool known = c.robustness().Ms.has_value() && c.evaluation.robustness.Ms.has_value();
+    if (known || !c.robustness().stable) return {};
+    return Draft("margin-unknown", Level::warning).say("Stable; margin unknown.");
+}
+
+Finding robust(const Case& c) {
+    if (c.is_today()) return Draft("robust", Level::good).say("Today's settings are robust.");
+    const auto active = active_limits(c);
+    if (active.empty()) return Draft("robust", Level::good).say("Robust.");
+    return Draft("robust", Level::good)
+        .say(active.front().name == "Mks" ? "Robust, limited by the noise gain you asked for."
+                                          : "Robust, limited by the margin you asked for.");
+}
+
+}  // namespace
+
+std::vector<Finding> heads(const Case& c) {
+    std::vector<Finding> found;
+    for (const auto& head :
+         {unstable, unstable_as_built, unstable_member, not_settling, too_sharp, above_limit, little_margin,
+          doubtful_model, oscillatory, restless_as_built, not_as_built, no_integral, margin_unknown})
+        if (auto finding = head(c)) found.push_back(std::move(*finding));
+    if (found.empty()) found.push_back(robust(c));
+    std::ranges::stable_sort(found, [](const Finding& a, const Finding& b) { return a.level > b.level; });
+    return found;
+}
+
+std::vector<Finding> no_controller(const Error& error) {
+    const bool limits = error.kind == ErrorKind::no_feasible_controller;
+    return {Draft("no-controller", Level::bad)
+                .say(limits ? "No controller meets these limits." : "This method has no answer here."),
+            Draft("reason", Level::note).say(error.message)};
+}
+
+std::vector<ActiveLimit> active_limits(const Case& c) {
+    const Limits limits = c.limits();
+    const Robustness& r = c.robustness();
+    const auto reached = [](const std::optional<double>& value, const std::optional<double>& limit) {
+        return value && limit && std::abs(*value / *limit - 1) <= kReached;
+    };
+    std::vector<ActiveLimit> active;
+    if (reached(r.Ms, limits.Ms)) active.push_back({"Ms", *r.Ms, r.omega_Ms, ""});
+    if (reached(r.Mt, limits.Mt)) active.push_back({"Mt", *r.Mt, r.omega_Mt, ""});
+    if (reached(r.Mks, limits.Mks)) active.push_back({"Mks", *r.Mks, {}, ""});
+    const auto& region = c.evaluation.region;
+    if (active.empty() && region && reached(region->worst_Ms, limits.Ms))
+        active.push_back({"Ms", *region->worst_Ms, {}, " on the worst plant"});
+    return active;
+}
+
+}  // namespace tunewright::verdict

@@ -1,0 +1,69 @@
+#include "engine/request/verdict/findings.h"
+
+#include <algorithm>
+
+namespace tunewright::verdict {
+
+namespace {
+
+constexpr const char* kAsBuilt = " on your controller as it is built";
+
+std::optional<double> above(std::optional<double> value, double floor) {
+    return value && *value > floor ? value : std::nullopt;
+}
+
+void keep_larger(std::optional<PlacedPeak>& largest, const Figure& value, const char* where) {
+    if (value && (!largest || *value > largest->value)) largest = PlacedPeak{*value, where};
+}
+
+}  // namespace
+
+const Performance& performance_of(const TuningEntry& entry) {
+    return entry.as_built ? entry.as_built->loop.performance : entry.evaluation->performance;
+}
+
+const Robustness& Case::robustness() const {
+    return entry.as_built ? entry.as_built->loop.robustness : evaluation.robustness;
+}
+
+const Performance& Case::performance() const { return performance_of(entry); }
+
+bool Case::has_integral() const { return gains(evaluation.controller).Ki != 0; }
+
+bool Case::warned_of(const std::string& code) const {
+    return std::ranges::any_of(evaluation.warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+Limits Case::limits() const {
+    return {above(entry.Ms_limit, 1), above(entry.options.number("Mt"), 1), above(entry.options.number("Mks"), 0)};
+}
+
+std::optional<PlacedPeak> Case::worst_Ms() const {
+    std::optional<PlacedPeak> largest;
+    keep_larger(largest, evaluation.robustness.Ms, "");
+    if (built()) keep_larger(largest, robustness().Ms, kAsBuilt);
+    if (evaluation.region) keep_larger(largest, evaluation.region->worst_Ms, " on the worst plant");
+    return largest;
+}
+
+std::optional<PlacedPeak> Case::worst_Mt() const {
+    std::optional<PlacedPeak> largest;
+    keep_larger(largest, evaluation.robustness.Mt, "");
+    if (built()) keep_larger(largest, robustness().Mt, kAsBuilt);
+    return largest;
+}
+
+std::string printed_unit(const std::string& unit) { return unit == "degC" ? "°C" : unit == "degF" ? "°F" : unit; }
+
+std::string product_unit(const std::string& a, const std::string& b) {
+    const std::string first = printed_unit(a), second = printed_unit(b);
+    return first.empty() || second.empty() ? first + second : first + " " + second;
+}
+
+std::string quotient_unit(const std::string& top, const std::string& bottom) {
+    const std::string over = printed_unit(top), under = printed_unit(bottom);
+    if (over == under) return "";
+    return (over.empty() ? "1" : over) + (under.empty() ? "" : "/" + under);
+}
+
+}  // namespace tunewright::verdict

@@ -1,0 +1,112 @@
+#include "engine/request/verdict/findings.h"
+
+#include <algorithm>
+
+namespace tunewright::verdict {
+namespace {
+
+constexpr double kAsGoodAsToday = 0.95;  // of today's load IAE: less is worth a change
+
+bool is_baseline(const TuningEntry& entry) { return entry.method == "baseline"; }
+
+const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
+    for (const TuningEntry& entry : entries)
+        if (is_baseline(entry) && entry.evaluation) return &entry;
+    return nullptr;
+}
+
+std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* today, const Context& context) {
+    if (!entry.evaluation) return entry.error ? no_controller(*entry.error) : std::vector<Finding>{};
+    const Case c{entry, &entry == today ? nullptr : today, context};
+    std::vector<Finding> verdict = heads(c);
+    const auto add = [&](Found found) {
+        if (found) verdict.push_back(std::move(*found));
+    };
+    if (!c.evaluation.robustness.stable) {
+        for (const auto& finding : {all_members, dead_time_rules}) add(finding(c));
+        return verdict;
+    }
+    const auto after_heads = static_cast<std::ptrdiff_t>(verdict.size());
+    if (!c.robustness().stable) {
+        for (const auto& finding : {as_built, sample_time, all_members}) add(finding(c));
+        return verdict;
+    }
+    for (const auto& finding :
+         {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error, as_built, at_its_limits,
+          movement, noise, sample_time, overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
+        add(finding(c));
+    std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
+        return (a.level >= Level::warning) > (b.level >= Level::warning);
+    });
+    return verdict;
+}
+
+Level level_of(const TuningEntry& entry) { return entry.verdict.front().level; }
+
+/// The best by level, and then by rank; -1 where none may be entered.
+int choice(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking) {
+    int best = -1;
+    for (const int index : ranking) {
+        const TuningEntry& entry = entries[static_cast<std::size_t>(index)];
+        if (is_baseline(entry) || !entry.evaluation || level_of(entry) == Level::bad) continue;
+        if (best < 0 || level_of(entry) < level_of(entries[static_cast<std::size_t>(best)])) best = index;
+    }
+    return best;
+}
+
+std::string name_of(const TuningEntry& entry, int index) {
+    return entry.title.empty() ? "controller " + std::to_string(index + 1) : entry.title;
+}
+
+Finding none_to_take(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking) {
+    const auto designs = std::ranges::count_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
+    if (designs == 1 && !ranking.empty()) {
+        const auto own = std::ranges::find_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
+        return Draft("none", Level::bad).say(own->verdict.front().text);
+    }
+    return Draft("none", Level::bad).say("None of these controllers should be entered.");
+}
+
+/// Today's settings are kept where nothing is gained by a change and they are as safe.
+bool keeps_today(const TuningEntry& best, const TuningEntry* today) {
+    if (today == nullptr || today->verdict.empty() || level_of(*today) > level_of(best)) return false;
+    const Figure &IAE = performance_of(best).load.IAE, &before = performance_of(*today).load.IAE;
+    return IAE && before && *IAE > kAsGoodAsToday * *before;
+}
+
+}  // namespace
+
+void judge(std::vector<TuningEntry>& entries, const Context& context) {
+    const TuningEntry* today = todays(entries);
+    for (TuningEntry& entry : entries) entry.verdict = verdict_on(entry, today, context);
+}
+
+std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking,
+                            const Context& context, bool partial) {
+    if (entries.empty()) return {};
+    std::vector<Finding> verdict;
+    const int index = choice(entries, ranking);
+    const TuningEntry* today = todays(entries);
+    if (index < 0) {
+        verdict.push_back(none_to_take(entries, ranking));
+    } else {
+        const TuningEntry& best = entries[static_cast<std::size_t>(index)];
+        const bool keep = keeps_today(best, today);
+        const std::string words = best.verdict.front().text;
+        if (keep)
+            verdict.push_back(Draft("keep-today", Level::good)
+                                  .say("No controller here is better for loads: keep today's settings.")
+                                  .figure("entry", index));
+        else
+            verdict.push_back(Finding{"take", level_of(best), "Take " + name_of(best, index) + ". " + words,
+                                      best.verdict.front().figures});
+        verdict.front().figures["entry"] = index;
+        const Case c{best, today, context};
+        if (auto error = load_error(c)) verdict.push_back(std::move(*error));
+    }
+    if (partial)
+        verdict.push_back(Draft("stopped-early", Level::note).say("Stopped early: this is the best found until then."));
+    return verdict;
+}
+
+}  // namespace tunewright::verdict

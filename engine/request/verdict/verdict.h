@@ -1,0 +1,32 @@
+// The verdict on each entry and on the whole answer.
+#pragma once
+
+#include <vector>
+
+#include "engine/evaluation/evaluation.h"
+#include "engine/identification/identify.h"
+#include "engine/plant/subject.h"
+#include "engine/request/entry.h"
+#include "engine/request/verdict/finding.h"
+
+namespace tunewright::verdict {
+
+/// What is the same for all entries of an answer.
+struct Context {
+    const Subject& subject;
+    const EvaluateOptions& options;
+    Labels labels;
+    double sample_time = 0;                  ///< of the user's controller; 0: continuous or not known
+    const IdentifiedModel* model = nullptr;  ///< of a record
+};
+
+/// Writes every entry's verdict. The first finding says what the loop is, and its level is the entry's; what belongs to
+/// it follows by severity and then in the order in which an engineer reads a loop.
+void judge(std::vector<TuningEntry>& entries, const Context& context);
+
+/// Over all entries, which have their verdicts: which to take, against today's. `ranking`: indices of entries, best
+/// first; those left out are not taken. `partial`: somebody stopped the search. Empty without entries.
+std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking,
+                            const Context& context, bool partial);
+
+}  // namespace tunewright::verdict

@@ -1,0 +1,289 @@
+#include "engine/tuning/method/setpoint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/loop/loop.h"
+#include "engine/loop/stability.h"
+#include "engine/number_text.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/linear/linear_response.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kTolerance = 1e-5, kSettled = 1e-6;  // of the responses that the choice is made on
+constexpr double kSameInstant = 1e-12;
+constexpr double kSpare = 2e-3;            // percentage points of overshoot, for the figures' own error
+constexpr double kDigits = 1e4;            // b is answered to four decimals
+constexpr int kLongestFilter = 24;         // doublings of the first filter tried
+constexpr double kFirstFilter = 1.0 / 64;  // of the integral of the error
+constexpr int kHalvings = 40;
+
+/// The responses to a unit step with b = 0, and what b = 1 adds, on the same instants.
+class StepResponses {
+public:
+    StepResponses(const LinearPlant& plant, const IdealPid& pid) {
+        ResponseOptions options;
+        options.tolerance = kTolerance;
+        options.settled = kSettled;
+        IdealPid with = pid;
+        with.setpoint_lag = 0;
+        with.b = 1;
+        StepResponse one = simulate_linear(plant, to_parallel(with), {1, 0}, options);
+        with.b = 0;
+        options.repeat = &one.schedule;
+        zero_ = simulate_linear(plant, to_parallel(with), {1, 0}, options);
+        align(one.nodes, zero_.nodes);
+        usable_ = one.settles && one.nodes.size() == zero_.nodes.size();
+        if (!usable_) return;
+        IE_of_one_ = one.error_integral_final;
+        added_ = std::move(one.nodes);
+        for (std::size_t i = 0; i < added_.size(); ++i) {
+            added_[i].y -= zero_.nodes[i].y;
+            added_[i].y_slope -= zero_.nodes[i].y_slope;
+            added_[i].error_integral -= zero_.nodes[i].error_integral;
+        }
+    }
+
+    bool usable() const { return usable_; }
+
+    /// In percent, below 0 where y stays below the set point.
+    double overshoot(double b) const { return excess(weighted(b)); }
+    double IAE(double b) const {
+        std::optional<double> integral;
+        if (zero_.error_integral_final && IE_of_one_)
+            integral = *zero_.error_integral_final + b * (*IE_of_one_ - *zero_.error_integral_final);
+        return integral_of_absolute_error(weighted(b), 1, integral);
+    }
+    /// With b = 0 behind a filter.
+    double overshoot_filtered(double T) const { return excess(filtered(T)); }
+    double time() const { return std::abs(zero_.error_integral_final.value_or(1)); }
+
+private:
+    /// Instants nearer than the times' rounding are one.
+    static bool jumps_after(const std::vector<ResponseNode>& nodes, std::size_t i) {
+        return i + 1 < nodes.size() && nodes[i + 1].t - nodes[i].t <= kSameInstant * nodes[i + 1].t;
+    }
+
+    /// Where only one of two runs over the same steps has a jump, the other's node there is doubled.
+    static void align(std::vector<ResponseNode>& a, std::vector<ResponseNode>& b) {
+        std::vector<ResponseNode> both_a, both_b;
+        std::size_t i = 0, j = 0;
+        while (i < a.size() && j < b.size()) {
+            both_a.push_back(a[i]);
+            both_b.push_back(b[j]);
+            const bool a_jumps = jumps_after(a, i), b_jumps = jumps_after(b, j);
+            if (a_jumps || !b_jumps) ++i;
+            if (b_jumps || !a_jumps) ++j;
+        }
+        a = std::move(both_a);
+        b = std::move(both_b);
+    }
+
+    static double excess(const std::vector<ResponseNode>& nodes) { return 100 * (extremes_of_y(nodes).max - 1); }
+
+    std::vector<ResponseNode> weighted(double b) const {
+        std::vector<ResponseNode> nodes = zero_.nodes;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            nodes[i].y += b * added_[i].y;
+            nodes[i].y_slope += b * added_[i].y_slope;
+            nodes[i].error_integral += b * added_[i].error_integral;
+        }
+        return nodes;
+    }
+
+    /// T z' = y - z, exact for the cubic y between nodes: z = p - T p' + T^2 p'' - T^3 p''' plus an exponential.
+    std::vector<ResponseNode> filtered(double T) const {
+        std::vector<ResponseNode> nodes = zero_.nodes;
+        double z = 0;
+        nodes.front().y = nodes.front().y_slope = 0;
+        for (std::size_t i = 1; i < nodes.size(); ++i) {
+            const ResponseNode &a = zero_.nodes[i - 1], &b = zero_.nodes[i];
+            const double h = b.t - a.t;
+            if (!jumps_after(zero_.nodes, i - 1)) {
+                const double slope = (b.y - a.y) / h;
+                const double curve = (3 * slope - 2 * a.y_slope - b.y_slope) / h,
+                             twist = (a.y_slope + b.y_slope - 2 * slope) / (h * h);
+                const auto particular = [&](double s) {
+                    const double p = a.y + s * (a.y_slope + s * (curve + s * twist)),
+                                 p1 = a.y_slope + s * (2 * curve + s * 3 * twist), p2 = 2 * curve + s * 6 * twist;
+                    return p - T * (p1 - T * (p2 - T * 6 * twist));
+                };
+                z = particular(h) + (z - particular(0)) * std::exp(-h / T);
+            }
+            nodes[i].y = z;
+            nodes[i].y_slope = (b.y - z) / T;
+        }
+        return nodes;
+    }
+
+    StepResponse zero_;
+    std::vector<ResponseNode> added_;
+    std::optional<double> IE_of_one_;
+    bool usable_ = false;
+};
+
+/// Where a convex function on [0, 1] is least, by golden sections.
+template <class F>
+double least(const F& f) {
+    constexpr double kGolden = 1 / std::numbers::phi;
+    constexpr int kSections = 26;  // leave 4e-6 of the interval
+    double low = 0, high = 1, a = 1 - kGolden, b = kGolden, fa = f(a), fb = f(b);
+    for (int i = 0; i < kSections; ++i) {
+        if (fa <= fb) {
+            high = b;
+            b = a;
+            fb = fa;
+            a = high - kGolden * (high - low);
+            fa = f(a);
+        } else {
+            low = a;
+            a = b;
+            fa = fb;
+            b = low + kGolden * (high - low);
+            fb = f(b);
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+/// The last x from `good` towards `bad` at which `keeps` holds.
+template <class F>
+double border(double good, double bad, const F& keeps) {
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (good + bad);
+        (keeps(middle) ? good : bad) = middle;
+    }
+    return good;
+}
+
+double down(double b) { return std::floor(b * kDigits) / kDigits; }
+
+/// The shortest filter that keeps the limit, with b = 0; empty: none that was looked at does.
+std::optional<double> shortest_filter(const StepResponses& responses, double limit) {
+    const auto keeps = [&](double T) { return responses.overshoot_filtered(T) <= limit; };
+    double T = kFirstFilter * responses.time();
+    if (keeps(T)) return T;
+    for (int i = 0; i < kLongestFilter; ++i, T *= 2)
+        if (keeps(2 * T)) return border(2 * T, T, keeps);
+    return std::nullopt;
+}
+
+std::vector<Warning> keep_overshoot(const StepResponses& responses, double asked, IdealPid& pid) {
+    const double limit = std::max(asked - kSpare, kSpare);
+    const auto overshoot = [&](double b) { return responses.overshoot(b); };
+    const auto keeps = [&](double b) { return overshoot(b) <= limit; };
+    pid.setpoint_lag = 0;
+    pid.b = 1;
+    if (keeps(1)) return {};
+    const double best = keeps(0) ? 0 : least(overshoot);
+    if (keeps(best)) {
+        const double b = border(best, 1, keeps);
+        pid.b = keeps(down(b)) ? down(b) : b;
+        return {};
+    }
+    pid.b = 0;
+    if (const auto T = shortest_filter(responses, limit)) {
+        pid.setpoint_lag = *T;
+        return {};
+    }
+    return {{"overshoot-not-held", "No set-point weight or filter keeps the overshoot of a set-point step within " +
+                                       text(asked) + " %. With b = 0 it is " + text(overshoot(0)) +
+                                       " %; raise the set point slowly instead of in a step."}};
+}
+
+std::vector<Warning> left(const std::string& reason) {
+    return {{"setpoint-left", "The set-point weight is left as it is: " + reason}};
+}
+
+}  // namespace
+
+std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOptions& options, IdealPid& pid) {
+    if (options.weight) {
+        pid.b = *options.weight;
+        return {};
+    }
+    if (!options.given()) return {};
+    if (!pid.has_integral()) return left("without integral action the output does not reach the set point.");
+    const auto loop = Loop::make(plant, to_parallel(pid));
+    if (!loop || !count_unstable_poles(*loop).stable()) return left("the loop is not stable.");
+    const StepResponses responses(plant, pid);
+    if (!responses.usable()) return left("the response does not settle.");
+    if (options.overshoot) return keep_overshoot(responses, *options.overshoot, pid);
+    pid.setpoint_lag = 0;
+    pid.b = std::round(least([&](double b) { return responses.IAE(b); }) * kDigits) / kDigits;
+    return {};
+}
+
+OptionDescription setpoint_option(const std::string& by_default) {
+    OptionDescription weight{.name = "weight",
+                             .type = OptionType::number,
+                             .sentence = "Set-point weight b of the proportional part.",
+                             .minimum = 0,
+                             .maximum = 1};
+    OptionDescription overshoot{
+        .name = "overshoot",
+        .type = OptionType::number,
+        .sentence =
+            "Largest overshoot of a set-point step. The largest b that keeps it, else b = 0 with "
+            "a set-point filter.",
+        .unit = "%",
+        .minimum = 0,
+        .maximum = 100};
+    OptionDescription best{.name = "best",
+                           .type = OptionType::choice,
+                           .sentence = "iae: the b with the least IAE of a set-point step.",
+                           .choices = {"iae"}};
+    std::string sentence =
+        "What the set point does: weight, overshoot or best. It leaves the loop and its response to loads alone. ";
+    sentence += "Default: " + by_default + ".";
+    return {.name = kSetpointOption,
+            .type = OptionType::object,
+            .sentence = sentence,
+            .fields = {weight, overshoot, best},
+            .at_most_fields = 1};
+}
+
+SetpointOptions setpoint_options(const MethodOptions& given) {
+    const std::string place = std::string(kSetpointOption) + "/";
+    return {given.number(place + "weight"), given.number(place + "overshoot"), given.text(place + "best").has_value()};
+}
+
+SetpointOptions wanted_setpoint(const TuningMethod& method, MethodOptions& given) {
+    if (!method.weighs_setpoint) return {};
+    SetpointOptions wanted = setpoint_options(given);
+    if (wanted.given() || !method.overshoot) return wanted;
+    wanted.overshoot = method.overshoot(given);
+    if (wanted.overshoot) given.set(std::string(kSetpointOption) + "/overshoot", *wanted.overshoot);
+    return wanted;
+}
+
+void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, TunedController& tuned) {
+    const auto remarks = choose_setpoint(plant, options, tuned.controller);
+    tuned.warnings.insert(tuned.warnings.end(), remarks.begin(), remarks.end());
+}
+
+void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+                    const SetpointOptions& options, TunedController& tuned) {
+    if (!options.given()) return;
+    IdealPid wished = fitted.controller;
+    TunedController twin;
+    twin.controller = built::continuous(wished);
+    weigh_setpoint(plant, options, twin);
+    wished.b = twin.controller.b;
+    wished.setpoint_lag = twin.controller.setpoint_lag;
+    auto again = built::fit(build, wished);
+    if (!again) return;
+    IdealPid loop = again->controller;
+    loop.b = fitted.controller.b;
+    loop.setpoint_lag = fitted.controller.setpoint_lag;
+    if (loop != fitted.controller) return;
+    fitted = std::move(*again);
+    tuned.controller = built::continuous(fitted.controller);
+    tuned.warnings.insert(tuned.warnings.end(), twin.warnings.begin(), twin.warnings.end());
+}
+
+}  // namespace tunewright

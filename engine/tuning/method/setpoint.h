@@ -1,0 +1,57 @@
+// The set point's share in a design: its weight b, or a filter, chosen for the response to a set-point step. Neither
+// touches the loop: the response to loads, Ms and Mt stay what they were.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/tuning/method/method.h"
+#include "engine/warning.h"
+
+namespace tunewright {
+
+/// What a request may ask for; at most one of the three.
+struct SetpointOptions {
+    std::optional<double> weight = {};     ///< b itself, 0 to 1
+    std::optional<double> overshoot = {};  ///< largest allowed, percent of the step, 0 to 100
+    bool best_IAE = false;                 ///< the b with the least IAE
+
+    bool given() const { return weight || overshoot || best_IAE; }
+};
+
+/// The name of the option beside a method's own.
+inline constexpr const char* kSetpointOption = "setpoint";
+
+/// Largest overshoot, in percent, of the method robust where the request says nothing.
+inline constexpr double kDefaultOvershoot = 5;
+
+/// Its description, for every method whose controllers have weights; `by_default` is what they have unless asked.
+OptionDescription setpoint_option(const std::string& by_default);
+
+SetpointOptions setpoint_options(const MethodOptions& given);
+
+/// What `given` asks for, else what the method does by itself; the choice made joins `given`. Nothing for methods whose
+/// controllers have no weight.
+SetpointOptions wanted_setpoint(const TuningMethod& method, MethodOptions& given);
+
+/// Gives `pid` the weight b that the options ask for, on a unit step without limits of u:
+/// - overshoot: the largest b in [0, 1] that keeps it; where b = 0 overshoots still, b = 0 with the shortest
+///   set-point filter that keeps it, or the longest looked at, with a warning. The response is affine in b, so its
+///   largest value is convex in b and the b that keep a limit form an interval.
+/// - best_IAE: the IAE is convex in b for the same reason.
+/// Weights need integral action and a stable loop; else the controller is left and a warning says so.
+/// Source: Astrom and Hagglund, Advanced PID Control (2006), section 5.3.
+std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOptions& options, IdealPid& pid);
+
+/// The same of a method's answer; its remarks join the answer's.
+void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, TunedController& tuned);
+
+/// The same of a design for a controller as it is built: `fitted` is settled again with the weight, where it has one
+/// and nothing else of it moves. `tuned` is its twin.
+void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+                    const SetpointOptions& options, TunedController& tuned);
+
+}  // namespace tunewright

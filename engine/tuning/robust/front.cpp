@@ -1,0 +1,87 @@
+#include "engine/tuning/robust/front.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/verified_search.h"
+
+namespace tunewright {
+
+using namespace robust;
+
+namespace {
+
+constexpr double kNeighbour = 1;  // how far apart() a start may be
+
+// Distance between two limits: what matters is how far they lie above 1.
+double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
+
+}  // namespace
+
+RobustFront::RobustFront(const TuningProblem& problem) : RobustFront(problem, Terms{}) {}
+
+RobustFront::RobustFront(const TuningProblem& problem, Terms terms) : problem_(problem), terms_(std::move(terms)) {}
+
+bool RobustFront::in_order(double M, double load_IAE) const {
+    constexpr double kSame = 1 + 1e-4;
+    return std::ranges::all_of(known_, [&](const auto& item) {
+        if (!item.second) return true;
+        const double other = item.second->load_IAE;
+        return item.first < M ? load_IAE <= kSame * other : other <= kSame * load_IAE;
+    });
+}
+
+std::optional<DesignPoint> RobustFront::neighbour(double M) const {
+    const Design* nearest = nullptr;
+    double distance = kNeighbour;
+    for (const auto& [other, design] : known_) {
+        if (!design || apart(M, other) >= distance) continue;
+        nearest = &*design;
+        distance = apart(M, other);
+    }
+    if (nearest == nullptr) return std::nullopt;
+    const IdealPid& pid = nearest->controller;
+    return DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), pid.Td > 0 ? std::log(pid.Td) : 0};
+}
+
+Expected<Found> RobustFront::searched(const RobustOptions& limits, const DesignPoint* before, const RunControl& control,
+                                      Design& design) {
+    auto posed = nominal_problem(problem_, limits);
+    if (!posed) return posed.error();
+    if (!others_)
+        others_ = terms_.on_family ? other_members(problem_, first_sign)
+                                   : Expected<std::vector<LinearPlant>>(std::vector<LinearPlant>{});
+    if (!*others_) return others_->error();
+    std::vector<LinearPlant>& others = **others_;
+    posed->others = others;
+    if (auto error = without_optimum(*posed)) return *error;
+    design.warnings.clear();
+    auto found = terms_.on_family ? search_everywhere(SearchKind::fast, problem_, *posed, others, std::nullopt, nullptr,
+                                                      control, before, design.warnings)
+                                  : verified_search(SearchKind::fast, *posed, std::nullopt, nullptr, control, before);
+    if (found) {
+        design.controller = controller_at(*posed, found->x);
+        design.load_IAE = std::exp(found->log_cost);
+    }
+    return found;
+}
+
+Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& control) {
+    if (const auto same = known_.find(M); same != known_.end()) return same->second;
+    RobustOptions limits = terms_.options;
+    limits.Ms = M;
+    limits.Mt = terms_.Mt.value_or(M);
+    Design design;
+    const auto before = neighbour(M);
+    auto found = searched(limits, before ? &*before : nullptr, control, design);
+    if (before && (!found || !in_order(M, design.load_IAE))) found = searched(limits, nullptr, control, design);
+    if (found && found->stopped)
+        return Error{ErrorKind::cancelled, "", "The job was stopped before this optimum was found."};
+    if (!found && found.error().kind == ErrorKind::cancelled) return found.error();
+    return known_.emplace(M, found ? Expected<Design>(std::move(design)) : Expected<Design>(found.error()))
+        .first->second;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,175 @@
+// The order of a comparison: nothing that oscillates or breaks a limit above what holds, and no reward for sharpness.
+#include "engine/request/ranking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/request/tune.h"
+#include "tests/engine/plant/nonlinear_plants.h"
+#include "tests/engine/plant/subject_of.h"
+
+namespace tunewright {
+namespace {
+
+using testing::HasSubstr;
+
+MethodRequest method(const std::string& id, std::optional<double> Ms = {}) {
+    MethodRequest request{.method = id, .options = {}};
+    if (Ms) request.options.set("Ms", *Ms);
+    if (Ms && id == "robust") request.options.set("Mt", *Ms);
+    return request;
+}
+
+TuningRequest request_for(const PlantModel& plant, std::vector<MethodRequest> methods) {
+    TuningRequest request;
+    request.subject = test::subject_of(plant);
+    request.tune = std::move(methods);
+    request.evaluate.points = 0;
+    return request;
+}
+
+const TuningEntry& at_rank(const TuningResult& result, std::size_t rank) {
+    return result.controllers[static_cast<std::size_t>(result.ranking.at(rank))];
+}
+
+bool comes_to_rest(const Evaluation& evaluation) {
+    const Performance& does = evaluation.performance;
+    return does.setpoint.settling_time && does.load.recovery_time && does.setpoint.IAE && does.load.IAE;
+}
+
+// The figures of the answer alone, without its `standing`.
+bool holds(const TuningEntry& entry, double rank_Ms) {
+    const Evaluation& evaluation = *entry.evaluation;
+    const Figure& Ms = evaluation.region ? evaluation.region->worst_Ms : evaluation.robustness.Ms;
+    return evaluation.robustness.stable && comes_to_rest(evaluation) && Ms && *Ms <= 1.0001 * rank_Ms &&
+           (!entry.asked_Ms || *Ms <= 1.01 * *entry.asked_Ms);
+}
+
+void expect_order(const TuningResult& result, double rank_Ms) {
+    bool held = true;
+    double excess = -std::numeric_limits<double>::infinity();
+    for (std::size_t rank = 0; rank < result.ranking.size(); ++rank) {
+        const TuningEntry& entry = at_rank(result, rank);
+        SCOPED_TRACE(entry.title);
+        ASSERT_TRUE(entry.standing);
+        const bool holds_here = holds(entry, rank_Ms) && entry.standing->within;
+        EXPECT_EQ(entry.standing->holds(), holds_here) << entry.standing->why;
+        EXPECT_LE(holds_here, held) << "stands below one that does not hold";
+        held = held && holds_here;
+        if (!holds_here || !entry.standing->excess_percent) continue;
+        EXPECT_GE(*entry.standing->excess_percent, excess);
+        excess = *entry.standing->excess_percent;
+    }
+}
+
+TEST(Ranking, SharpRowsDoNotOutrankTheOptimum) {
+    auto result = tune(request_for(Fopdt{.K = 2, .T = 10, .L = 3}, {{.method = "all", .options = {}}}), {});
+    ASSERT_TRUE(result);
+    EXPECT_EQ(at_rank(*result, 0).title, "Robust optimum (PID)");
+    EXPECT_THAT(result->ranking_by, HasSubstr("excess of the load IAE over the least at the same Ms"));
+    expect_order(*result, 2);
+    // By load IAE alone it was behind eight rows of Ms up to 2.
+    int lower = 0;
+    const double IAE = *at_rank(*result, 0).evaluation->performance.load.IAE;
+    for (const TuningEntry& entry : result->controllers)
+        lower += entry.evaluation && holds(entry, 2) && *entry.evaluation->performance.load.IAE < IAE;
+    EXPECT_GT(lower, 5);
+}
+
+TEST(Ranking, OnANonlinearPlantTheEquationsDecideWhatSettles) {
+    // pH: a set-point step of 0.5 throws the sharper loops into a limit cycle, though their linearisation is calm.
+    const NonlinearPlant pH{.states = {{"x", -3.16}},
+                            .parameters = {{"V", 20.0}, {"Fa", 4.0}, {"Ca", 100.0}, {"Cb", 1000.0}, {"Kw", 0.01}},
+                            .equations = {{"x", "(Fb*(Cb - x) - Fa*(Ca + x))/V"}},
+                            .input = {.name = "Fb", .nominal = 0.386, .min = 0.0, .max = 1.0},
+                            .output = "6 - log(sqrt(x^2/4 + Kw) - x/2)/log(10)",
+                            .L = 0.2};
+    auto request = request_for(pH, {method("simc"), method("ziegler_nichols_ultimate"), method("robust"),
+                                    method("tyreus_luyben"), method("amigo"), method("lambda")});
+    request.evaluate.setpoint_step = 0.5;
+    request.evaluate.load_step = 0.01;
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result);
+    expect_order(*result, 2);
+    EXPECT_TRUE(at_rank(*result, 0).standing->holds());
+    const TuningEntry& simc = result->controllers[0];
+    ASSERT_TRUE(simc.standing);
+    EXPECT_LT(*simc.evaluation->robustness.Ms, 2);
+    EXPECT_GT(*simc.evaluation->performance.setpoint.overshoot_percent, 100);
+    EXPECT_FALSE(simc.standing->settles);
+    EXPECT_THAT(simc.standing->why, HasSubstr("2 % of the set point"));
+}
+
+TEST(Ranking, TodaysSettingsAreHeldToTheLimitThatWasAskedOfTheDesign) {
+    auto request = request_for(Fopdt{.K = 2, .T = 10, .L = 3}, {method("robust", 1.4)});
+    request.baseline = IdealPid{.Kp = 1.5, .Ti = 8, .Td = 1, .filter = {FilterType::measurement_second_order, 0.1}};
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result);
+    const TuningEntry& today = result->controllers[1];
+    ASSERT_LT(*today.evaluation->performance.load.IAE, *result->controllers[0].evaluation->performance.load.IAE);
+    ASSERT_LT(*today.evaluation->robustness.Ms, 2);
+    EXPECT_THAT(result->ranking, testing::ElementsAre(0, 1));
+    EXPECT_FALSE(today.standing->within);
+    EXPECT_FALSE(today.standing->excess_percent) << "one design needs no second search";
+    EXPECT_EQ(result->ranking_by, "load IAE, among stable entries that settle with Ms <= 2, then the rest");
+}
+
+TEST(Ranking, ARowWithoutAnOptimumIsComparedAtTheNearestMs) {
+    // Without dead time rules reach Ms = 1, where no optimum lies.
+    const auto result =
+        tune(request_for(Fopdt{.K = 1, .T = 5, .L = 0}, {method("lambda"), method("imc"), method("robust", 1.4)}), {});
+    ASSERT_TRUE(result) << result.error().message;
+    for (const TuningEntry& entry : result->controllers) {
+        if (entry.evaluation) {
+            EXPECT_TRUE(entry.standing->excess_percent) << entry.title;
+        }
+    }
+    expect_order(*result, 2);
+}
+
+class AnyPlant {
+public:
+    explicit AnyPlant(unsigned seed) : random_(seed) {}
+
+    PlantModel next() {
+        const double K = log_uniform(0.1, 10), T = log_uniform(1, 30), L = log_uniform(0.1, 30);
+        switch (std::uniform_int_distribution<int>(0, 6)(random_)) {
+            case 0: return Fopdt{.K = K, .T = T, .L = L};
+            case 1: return Sopdt{.K = K, .T1 = T, .T2 = log_uniform(1, 30), .L = L};
+            case 2: return Ipdt{.K = K, .L = L};
+            case 3: return Fopdt{.K = -K, .T = -T, .L = T * log_uniform(0.02, 0.5)};
+            case 4: return TransferFunction{.num = {-L, 1}, .den = {T * T, 2 * T, 1}, .L = L};
+            case 5: return Fopdt{.K = K, .T = T, .L = L, .uncertainty = {.K = FactorRange{0.7, log_uniform(1.1, 1.8)}}};
+            default: return TransferFunction{.num = {K}, .den = {T * T, 0.4 * T, 1}, .L = L};
+        }
+    }
+    double log_uniform(double low, double high) {
+        return std::exp(std::uniform_real_distribution<double>(std::log(low), std::log(high))(random_));
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+TEST(Ranking, NoRowThatDoesNotHoldStandsAboveOneThatDoes) {
+    AnyPlant any(17);
+    for (int i = 0; i < 40; ++i) {
+        SCOPED_TRACE(i);
+        auto request =
+            request_for(any.next(), {method("robust", any.log_uniform(1.15, 2.2)), method("arrieta_ms", 1.6),
+                                     method("simc"), method("amigo"), method("ziegler_nichols_step"),
+                                     method("ziegler_nichols_ultimate"), method("cohen_coon"), method("lambda")});
+        request.baseline = IdealPid{.Kp = any.log_uniform(0.03, 10), .Ti = any.log_uniform(1, 100)};
+        request.evaluate.rank_Ms = any.log_uniform(1.2, 3);
+        if (i % 3 == 0) request.evaluate.horizon = any.log_uniform(50, 500);
+        if (i % 4 == 0) request.evaluate.actuator = ActuatorLimits{-2, 2};
+        const auto result = tune(request, {});
+        if (result) expect_order(*result, request.evaluate.rank_Ms);
+    }
+}
+
+}  // namespace
+}  // namespace tunewright

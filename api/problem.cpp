@@ -5,6 +5,8 @@
 
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "engine/number_text.h"
+#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright::api {
 namespace {
@@ -52,6 +54,8 @@ Problem to_problem(const Error& error) {
         problem.title = row.title;
     }
     if (error.kind == ErrorKind::invalid_argument) problem.type = "invalid-request";
+    if (const auto limit = robust::named_limit(error))
+        problem.cure = Cure{"Use Ms = Mt = " + text(*limit), {{"Ms", *limit}, {"Mt", *limit}}};
     if (!error.where.empty()) problem.errors.push_back({to_pointer(error.where), error.message});
     return problem;
 }
@@ -92,6 +96,21 @@ static void write_record(const RecordSamples& samples, Writer& out) {
     out.end_object();
 }
 
+static void write_cure(const Cure& cure, Writer& out) {
+    out.key("cure");
+    out.begin_object();
+    out.key("text");
+    out.text(cure.text);
+    out.key("options");
+    out.begin_object();
+    for (const auto& [name, value] : cure.options) {
+        out.key(name);
+        out.number(value);
+    }
+    out.end_object();
+    out.end_object();
+}
+
 std::string to_json(const Problem& problem) {
     Writer out;
     out.begin_object();
@@ -120,6 +139,7 @@ std::string to_json(const Problem& problem) {
         }
         out.end_array();
     }
+    if (problem.cure) write_cure(*problem.cure, out);
     if (problem.record) write_record(*problem.record, out);
     out.end_object();
     return out.take();

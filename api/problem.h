@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
@@ -22,6 +23,12 @@ struct RecordSamples {
     std::vector<double> r = {};  ///< empty: the record has none
 };
 
+/// What would make the request possible: options of its method, for a program to send it again with.
+struct Cure {
+    std::string text;  ///< what a button that does it says, e.g. "Use Ms = Mt = 1.603"
+    std::vector<std::pair<std::string, double>> options;
+};
+
 struct Problem {
     int status = 500;
     std::string type = "about:blank";  ///< names the cause, e.g. "invalid-request", "no-feasible-controller"
@@ -30,6 +37,7 @@ struct Problem {
     std::vector<FieldError> errors;
     std::string instance;                      ///< optional
     std::optional<RecordSamples> record = {};  ///< of a record that was read, but not identified
+    std::optional<Cure> cure = {};             ///< where the detail names values
 };
 
 /// The one table from the engine's error kinds to status, type and title.

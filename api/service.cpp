@@ -1,14 +1,22 @@
 #include "api/service.h"
 
+#include <algorithm>
+
 #include "api/contract/controller.h"
+#include "api/contract/plant/typed.h"
+#include "api/contract/preview.h"
 #include "api/contract/record.h"
 #include "api/contract/relay.h"
+#include "api/contract/reports/frontier.h"
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
 #include "api/describe/body.h"
 #include "api/json/digest.h"
 #include "api/json/json.h"
+#include "api/outline.h"
+#include "engine/number_text.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::api {
 namespace {
@@ -17,13 +25,31 @@ Answer refusal(const Problem& problem) { return {problem.status, to_json(problem
 
 JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
 
+/// Seconds that nothing names, and a plant that takes more than a day: the times may be milliseconds.
+void ask_for_unit(IdentifiedModel& model) {
+    constexpr double kDay = 86400;
+    const auto plant = LinearPlant::make(model.plant);
+    if (!plant || plant->time_scale() <= kDay) return;
+    model.warnings.insert(
+        model.warnings.begin(),
+        {"time-unit-doubtful", "The plant comes out slower than a day: its lags and dead time add up to " +
+                                   tunewright::text(plant->time_scale() / kDay, 3) +
+                                   " days, because the times were taken as seconds; nothing in the "
+                                   "file names their unit. If they are milliseconds, choose ms as "
+                                   "the unit of the times."});
+}
+
 // What reading the CSV has found belongs to the data's quality too.
-void add_reading(const ReadRecord& read, DataQuality& quality) {
+void add_reading(const ReadRecord& read, IdentifiedModel& model) {
+    DataQuality& quality = model.data_quality;
+    if (!read.time_unit_known) ask_for_unit(model);
+    if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
     if (read.dropped > 0)
         quality.notes.push_back(std::to_string(read.dropped) +
-                                " line(s) of the csv without a time, or with neither u nor y, were left out.");
+                                " line(s) of the csv that cannot be read, or without a time, or with neither u nor y, "
+                                "were left out.");
 }
 
 // What is answered only where it was asked for.
@@ -40,7 +66,7 @@ Answer identified(const ReadRecord& read, const IdentifyQuestion& question, cons
         problem.record = samples_of(read.record, question.traces ? kPlotRows : kExcerptRows);
         return refusal(problem);
     }
-    add_reading(read, model->data_quality);
+    add_reading(read, *model);
     leave_out_traces(question, *model);
     Writer out;
     identify_answer_contract().write({std::move(*model)}, out);
@@ -54,16 +80,35 @@ Problem timeout_too_long(double timeout_s, const JobLimits& limits) {
     return *reader.problem();
 }
 
-/// `text` spells the request that is kept.
+/// Whether a plant is given as a text, alone or among several.
+bool has_typed_plant(const Json& request) {
+    const auto plant = request.find("plant");
+    if (plant == request.end()) return false;
+    if (plant->is_string()) return true;
+    const auto several = plant->is_object() ? plant->find("plants") : plant->end();
+    return plant->is_object() && several != plant->end() && several->is_array() &&
+           std::any_of(several->begin(), several->end(), [](const Json& one) { return one.is_string(); });
+}
+
+Json plant_json(const PlantModel& plant) {
+    Writer out;
+    plant_model_contract().write(plant, out);
+    return Json::parse(out.view());
+}
+
+/// `text` spells the request that is kept. A typed plant is kept as what it means: whoever reads the job finds a plant,
+/// and every spelling of it is the same request.
 template <class Spelling>
-std::variant<PreparedJob, Problem> prepared(const Json& value, const JobLimits& limits, const Spelling& text) {
+std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits, const Spelling& text) {
     auto decoded = decode(value, job_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
     auto& request = std::get<JobRequest>(decoded);
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
-    PreparedJob job{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s, text(),
-                    sha256_hex(canonical(value))};
+    const bool typed = has_typed_plant(value);
+    if (typed) value["plant"] = plant_json(*request.plant);
+    PreparedJob job{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s,
+                    typed ? value.dump() : text(), sha256_hex(canonical(value))};
     job.request = std::make_shared<const JobRequest>(std::move(request));
     return job;
 }
@@ -113,8 +158,10 @@ std::string method_label(const JobRequest& request) {
 /// The answer to a request whose hash is known.
 JobOutcome computed(JobRequest request, std::string_view hash, const RunControl& control) {
     const std::string method = method_label(request);
-    const ReadRecord read{{}, request.read.dropped, request.read.notes};
+    const ReadRecord read{
+        {}, request.read.dropped, request.read.notes, request.read.unread, request.read.time_unit_known};
     const std::optional<Units> units = request.units;
+    const Outline outline(request);
     const IdentifyQuestion question = request.identify;
     auto result = tune(to_engine(std::move(request)), control);
     if (!result) {
@@ -124,19 +171,20 @@ JobOutcome computed(JobRequest request, std::string_view hash, const RunControl&
         return outcome;
     }
     if (result->model) {
-        add_reading(read, result->model->data_quality);
+        add_reading(read, *result->model);
         leave_out_traces(question, *result->model);
     }
+    std::string line = outline.of(*result);
     const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
     Writer out;
     result_contract().write({std::move(*result), units, std::string(hash)}, out);
-    return {status, out.take(), {}, method};
+    return {status, out.take(), {}, method, std::move(line)};
 }
 
 }  // namespace
 
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
-    const auto parsed = parse(body);
+    auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
     return prepared(std::get<Json>(parsed), limits, [&] { return compact(body); });
 }
@@ -194,10 +242,35 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
-    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, request.build, control);
+    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, request.build,
+                                     labels_of(request.units), control);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);
+    return {200, out.take()};
+}
+
+Answer design_call(std::string_view body, const RunControl& control) {
+    auto decoded = read_body(body, design_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    auto result = tune(to_engine(std::get<DesignRequest>(std::move(decoded))), control);
+    if (!result) return refusal(to_problem(result.error()));
+    // Nobody keeps half a search that was stopped.
+    if (result->partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));
+    Writer out;
+    design_answer_contract().write(*result, out);
+    return {200, out.take()};
+}
+
+Answer frontier_call(std::string_view body, const RunControl& control) {
+    const auto decoded = read_body(body, frontier_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<FrontierRequest>(decoded);
+
+    const auto curve = frontier(*request.subject, frontier_options().read(request.options), control);
+    if (!curve) return refusal(to_problem(curve.error()));
+    Writer out;
+    frontier_contract().write(*curve, out);
     return {200, out.take()};
 }
 
@@ -207,6 +280,36 @@ Answer identify_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<IdentifyRequest>(decoded);
 
     return identified(request.read, request.identify, control);
+}
+
+Answer parse_plant_call(std::string_view body) {
+    const auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return refusal(*problem);
+    const Json& value = std::get<Json>(parsed);
+    auto decoded = decode(value, plant_question_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) {
+        const bool unfinished = value.is_object() && value.contains("unfinished") && value["unfinished"] == true;
+        if (!unfinished) return refusal(*problem);
+        decoded = PlantQuestion{.fault = problem->detail};
+    }
+    Writer out;
+    plant_answer_contract().write(std::get<PlantQuestion>(decoded), out);
+    return {200, out.take()};
+}
+
+Answer preview_call(std::string_view body) {
+    const auto decoded = read_body(body, preview_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<PreviewRequest>(decoded);
+    Writer out;
+    preview_answer_contract().write(preview_csv(*request.csv, csv_options(request)), out);
+    return {200, out.take()};
+}
+
+Answer preview_file(std::string_view bytes) {
+    Writer out;
+    preview_answer_contract().write(preview_csv(bytes, csv_options({})), out);
+    return {200, out.take()};
 }
 
 Answer relay_call(std::string_view body, const RunControl& control) {

@@ -32,9 +32,10 @@ struct StoredRequest {
 struct JobOutcome {
     enum class Status { succeeded, failed, cancelled };
     Status status = Status::failed;
-    std::string result_json;  ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
-    std::string error_json;   ///< problem object of failed; else empty
-    std::string method = {};  ///< the method asked for; "several" of more than one; "none" of a request with none
+    std::string result_json;        ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
+    std::string error_json;         ///< problem object of failed; else empty
+    std::string method = {};        ///< the method asked for; "several" of more than one; "none" of a request with none
+    std::string outline_json = {};  ///< of a result: what a list shows of it (JobOutline in the document)
 };
 
 /// Status and body of a synchronous call; the media type is problem+json from 400 on.
@@ -60,10 +61,19 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
 JobOutcome run_job(const PreparedJob& job, const RunControl& control);
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control);
 
+/// What a list shows of a job that has failed, from its problem's text.
+std::string error_outline(const std::string& problem_json);
+
 std::string progress_json(const Progress& progress);
 
 Answer evaluate_call(std::string_view body, const RunControl& control);  ///< POST /v1/evaluate
+Answer design_call(std::string_view body, const RunControl& control);    ///< POST /v1/design
+Answer frontier_call(std::string_view body, const RunControl& control);  ///< POST /v1/frontier
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
+
+/// POST /v1/records/preview: of JSON, and of the file itself, in any encoding.
+Answer preview_call(std::string_view body);
+Answer preview_file(std::string_view bytes);
 
 /// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
 struct CsvRequest {
@@ -75,6 +85,7 @@ struct CsvRequest {
 
 /// The same for a CSV file as it is, in any encoding, without a request around it.
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
+Answer parse_plant_call(std::string_view body);                       ///< POST /v1/plants/parse
 Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
 
 std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for

@@ -12,73 +12,6 @@
 namespace tunewright::api {
 namespace {
 
-constexpr const char* kNoResult =
-    "This is no result with controllers. Give what `tune` or a succeeded job has answered.";
-
-Problem not_found(std::string sentence) { return {404, "not-found", "Not Found", std::move(sentence), {}, {}}; }
-
-/// What the source says: `entry` lies in `result`.
-struct Found {
-    Json result, request;
-    std::size_t index = 0;
-    const Json& entry() const { return result.at("controllers").at(index); }
-};
-
-std::string count_of(const Json& controllers) {
-    if (controllers.size() == 1) return "the result has one, number 0.";
-    return "the result has " + std::to_string(controllers.size()) + ", numbers 0 to " +
-           std::to_string(controllers.size() - 1) + ".";
-}
-
-// The best where none is named.
-std::variant<std::size_t, Problem> index_of(const Json& result, const std::string& index) {
-    const Json& controllers = result.at("controllers");
-    std::size_t number = 0;
-    if (index.empty()) {
-        const Json ranking = result.value("ranking", Json::array());
-        if (!ranking.empty() && ranking.front().is_number_unsigned()) number = ranking.front().get<std::size_t>();
-    } else {
-        const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), number);
-        if (error != std::errc() || end != index.data() + index.size()) number = controllers.size();
-    }
-    if (number < controllers.size()) return number;
-    std::string storage;
-    return not_found("There is no controller " + std::string(utf8_text(index.substr(0, 20), storage)) + "; " +
-                     count_of(controllers));
-}
-
-/// A result alone, or a job with its request.
-std::optional<Problem> read_source(const CodeSource& source, Found& found) {
-    for (const auto& [text, value] :
-         {std::pair{source.result, &found.result}, std::pair{source.request, &found.request}}) {
-        if (value == &found.request && text.empty()) continue;
-        auto parsed = parse(text);
-        if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
-        *value = std::move(std::get<Json>(parsed));
-    }
-    if (found.result.is_object() && found.result.contains("result")) {
-        if (found.request.is_null()) found.request = found.result.value("request", Json());
-        found.result = Json(found.result["result"]);
-    }
-    const bool holds = found.result.is_object() && found.result.contains("controllers") &&
-                       found.result["controllers"].is_array() && !found.result["controllers"].empty();
-    if (!holds) return not_found(kNoResult);
-    return std::nullopt;
-}
-
-std::optional<Problem> find_entry(const std::string& index, Found& found) {
-    const auto number = index_of(found.result, index);
-    if (const auto* problem = std::get_if<Problem>(&number)) return *problem;
-    found.index = std::get<std::size_t>(number);
-    const Json& entry = found.entry();
-    if (entry.is_object() && entry.contains("controller")) return std::nullopt;
-    const std::string method = entry.is_object() ? entry.value("method", "") : "";
-    const Json::json_pointer detail("/error/detail");
-    return not_found("Number " + std::to_string(found.index) + (method.empty() ? "" : " (" + method + ")") +
-                     " has no controller: " +
-                     (entry.contains(detail) ? entry.at(detail).get<std::string>() : "the method found none."));
-}
-
 /// Words that spell numbers become numbers; what the contract does not take stays as it was typed, for its sentence.
 void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) {
     Json given = Json::object();
@@ -163,7 +96,7 @@ Controller controller_of(const Json& entry, Reader& reader) {
     return controller;
 }
 
-std::variant<ControllerCode, Problem> written(const Found& found, const CodeQuestion& question,
+std::variant<ControllerCode, Problem> written(const ChosenEntry& found, const CodeQuestion& question,
                                               const Controller& controller, double unit) {
     SampledPid law{.gains = gains(controller),
                    .integral = question.integral,
@@ -188,12 +121,12 @@ std::variant<ControllerCode, Problem> written(const Found& found, const CodeQues
 
 }  // namespace
 
-std::variant<ControllerCode, Problem> controller_code(const CodeSource& source, const std::string& index,
+std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words) {
     try {
-        Found found;
-        if (auto problem = read_source(source, found)) return *std::move(problem);
-        if (auto problem = find_entry(index, found)) return *std::move(problem);
+        auto chosen = choose_entry(source, index);
+        if (auto* problem = std::get_if<Problem>(&chosen)) return std::move(*problem);
+        const auto& found = std::get<ChosenEntry>(chosen);
         Reader reader;
         CodeQuestion question;
         read_words(words, question, reader);
@@ -202,7 +135,7 @@ std::variant<ControllerCode, Problem> controller_code(const CodeSource& source, 
         if (auto problem = reader.problem()) return *std::move(problem);
         return written(found, question, controller, unit);
     } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
-        return not_found(kNoResult);
+        return not_a_result();
     }
 }
 

@@ -7,15 +7,10 @@
 #include <variant>
 #include <vector>
 
+#include "api/chosen_entry.h"
 #include "api/problem.h"
 
 namespace tunewright::api {
-
-/// Where the controller comes from, as JSON text.
-struct CodeSource {
-    std::string_view result;        ///< a result, or a whole job as the service shows it, with its request
-    std::string_view request = {};  ///< its request where it is known; "": what only that tells is left out
-};
 
 /// Parameters as they were typed, by name.
 using CodeWords = std::vector<std::pair<std::string, std::string>>;
@@ -27,7 +22,7 @@ struct ControllerCode {
 /// The controller number `index` (a decimal, from 0; "": the best of the result's ranking). Problems: 400 not JSON; 404
 /// no result, no such controller, or an entry without one; 422 parameters with every fault, a time unit that has no
 /// seconds, no sample time to propose.
-std::variant<ControllerCode, Problem> controller_code(const CodeSource& source, const std::string& index,
+std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words);
 
 }  // namespace tunewright::api

@@ -114,8 +114,40 @@ Description<Form>& with_filter_and_action(Description<Form>& description) {
             {.answer_only = true});
 }
 
+// As sent and answered: {"T": 4}.
+struct SetpointFilter {
+    double T = 0;
+};
+
+const Description<SetpointFilter>& setpoint_filter_contract() {
+    static const auto description = [] {
+        Description<SetpointFilter> d("SetpointFilter", "First-order lag of the set point: r_f = r/(1 + s T).");
+        d.field("T", &SetpointFilter::T, number({.exclusive_minimum = 0}), "Its time constant, > 0.",
+                {.required = true, .unit = "time"});
+        return d;
+    }();
+    return description;
+}
+
+template <class Form>
+void add_setpoint_filter(Description<Form>& description) {
+    description.field(
+        "setpoint_filter",
+        [](const Json& value, Form& pid, Reader& reader) {
+            if (value.is_null()) return;
+            SetpointFilter filter;
+            setpoint_filter_contract().read(value, filter, reader);
+            pid.setpoint_lag = filter.T;
+        },
+        [](const Form& pid, Writer& out) { setpoint_filter_contract().write({pid.setpoint_lag}, out); },
+        [](SchemaBook& book) { return setpoint_filter_contract().schema(book); },
+        "What the set point passes before the controller sees it; left out: nothing.", {},
+        [](const Form& pid) { return pid.setpoint_lag == 0; });
+}
+
 template <class Form>
 Description<Form>& with_weights(Description<Form>& description) {
+    add_setpoint_filter(description);
     description.field("b", &Form::b, number(), "Set-point weight of the proportional part.")
         .field("c", &Form::c, number(),
                "Set-point weight of the derivative part; different from 0 only with a derivative filter.");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "api/csv/time_stamp.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -61,6 +62,8 @@ Codec<std::array<double, 2>> limits() {
             }};
 }
 
+}  // namespace
+
 const Description<ColumnChoices>& columns_contract() {
     static const auto description = [] {
         Description<ColumnChoices> d("Columns",
@@ -74,6 +77,20 @@ const Description<ColumnChoices>& columns_contract() {
     }();
     return description;
 }
+
+Codec<std::string> file_time_unit() {
+    Codec<std::string> codec = text(20);
+    codec.read = [](const Json& value, std::string& target, Reader& reader) {
+        if (value.is_string() && seconds_per(value.get_ref<const std::string&>())) {
+            target = value.get<std::string>();
+            return;
+        }
+        reader.fault(reader.name() + " is " + shown(value) + "; it must be a unit of time: us, ms, s, min, h or d.");
+    };
+    return codec;
+}
+
+namespace {
 
 void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.from && record.to && *record.to <= *record.from)
@@ -89,6 +106,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
         return;
     }
     if (record.columns) reader.fault_at("columns", "columns belongs to csv, which is missing.");
+    if (record.time_unit) reader.fault_at("time_unit", "time_unit belongs to csv, which is missing.");
     if (!record.u || !record.y) {
         for (const auto& [name, given] : {std::pair{"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
             if (!given)
@@ -164,7 +182,8 @@ const Description<Units>& units_contract() {
         d.field("time", &Units::time, maybe(text(kLongest)),
                 "Unit of every time of the request and the result; s if not given.")
             .field("u", &Units::u, maybe(text(kLongest)), "Unit of the controller output.")
-            .field("y", &Units::y, maybe(text(kLongest)), "Unit of the measurement.");
+            .field("y", &Units::y, maybe(text(kLongest)), "Unit of the measurement.")
+            .check([](const Json&, Units& units, Reader& reader) { reader.set_time_unit(units.time_or_default()); });
         return d;
     }();
     return description;
@@ -191,6 +210,9 @@ const Description<GivenRecord>& record_contract() {
                    "numbers "
                    "or stamps, with or without headings and units. A blank u is held, a line without y counts for u.")
             .field("columns", &GivenRecord::columns, maybe(object(columns_contract())), "Columns of the csv.")
+            .field(
+                "time_unit", &GivenRecord::time_unit, maybe(file_time_unit()),
+                "Unit of the times in the csv, where the file does not say or says it wrongly: us, ms, s, min, h, d.")
             .field("kind", &GivenRecord::kind,
                    choice<RecordKind>({{"auto", RecordKind::automatic},
                                        {"step", RecordKind::step},
@@ -255,6 +277,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     CsvOptions options;
     options.columns = given.columns.value_or(ColumnChoices{});
     options.time_unit = units.time_or_default();
+    options.file_time_unit = given.time_unit.value_or("");
     options.time_unit_given = units.time.has_value();
     options.dt = given.dt;
     options.unit_u = units.u.value_or("");
@@ -279,6 +302,8 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.r = std::move(record.r);
     out.record.line = std::move(record.lines);
     out.dropped = record.dropped;
+    out.unread = std::move(record.unread);
+    out.time_unit_known = record.time_unit_known;
     out.notes = std::move(record.notes);
     choose_part(given, out, reader);
     return out;

@@ -4,6 +4,7 @@
 #include "api/csv/record.h"
 #include "api/describe/description.h"
 #include "engine/identification/identify.h"
+#include "engine/request/verdict/finding.h"
 
 namespace tunewright::api {
 
@@ -16,12 +17,19 @@ struct Units {
     std::string time_or_default() const { return time.value_or("s"); }
 };
 
+/// In which sentences of an answer speak.
+inline verdict::Labels labels_of(const std::optional<Units>& units) {
+    if (!units) return {};
+    return {units->time_or_default(), units->u.value_or(""), units->y.value_or("")};
+}
+
 /// A record as sent.
 struct GivenRecord {
     std::optional<std::vector<double>> t, u, y, r;
     std::optional<double> dt;
     std::optional<std::string> csv;
     std::optional<ColumnChoices> columns;
+    std::optional<std::string> time_unit;  ///< of the csv's times
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;
     std::optional<std::array<double, 2>> u_limits;
@@ -38,8 +46,12 @@ struct ReadRecord {
     Record record;
     int dropped = 0;
     std::vector<std::string> notes;
+    std::string unread = {};      ///< as in CsvRecord
+    bool time_unit_known = true;  ///< else the file does not say in which unit its times are, nor does the request
 };
 
+const Description<ColumnChoices>& columns_contract();
+Codec<std::string> file_time_unit();  ///< one that times can be converted from
 const Description<Units>& units_contract();
 const Description<GivenRecord>& record_contract();
 const Description<IdentifyQuestion>& identify_contract();

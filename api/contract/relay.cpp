@@ -1,6 +1,6 @@
 #include "api/contract/relay.h"
 
-#include "api/contract/plant/plant.h"
+#include "api/contract/plant/typed.h"
 #include "api/contract/result/evaluation.h"
 #include "api/describe/codec.h"
 #include "engine/plant/linear/linear_plant.h"
@@ -130,7 +130,7 @@ const Description<RelayRecord>& relay_record_contract() {
 
 const Description<RelayPlan>& relay_plan_contract() {
     static const auto description = [] {
-        Description<RelayPlan> d("RelayPlan", "A relay test worth making on this plant.");
+        Description<RelayPlan> d("RelayPlan", "The relay test recommended on this plant.");
         d.field("u_plus", &RelayPlan::u_plus, only_answered(number()), "Upper level.", {.unit = "u"})
             .field("u_minus", &RelayPlan::u_minus, only_answered(number()), "Lower level.", {.unit = "u"})
             .field("hysteresis", &RelayPlan::hysteresis, only_answered(number()),
@@ -158,7 +158,7 @@ const Description<RelayRequest>& relay_request_contract() {
         Description<RelayRequest> d("RelayRequest", "A plant and the relay test to simulate on it.");
         d.field("name", &RelayRequest::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
             .field("units", &RelayRequest::units, maybe(object(units_contract())), "Labels of the units.")
-            .field("plant", &RelayRequest::plant, maybe(one_of(plant_contract())), "The plant.", {.required = true})
+            .field("plant", &RelayRequest::plant, maybe(plant_or_text()), "The plant.", {.required = true})
             .field("relay", &RelayRequest::relay, object(relay_settings_contract()), "The relay and the record.")
             .check(check_relay)
             .example({{"plant", {{"type", "fopdt"}, {"K", 1}, {"T", 10}, {"L", 2}}},
@@ -176,7 +176,7 @@ const Description<RelayExperiment>& relay_answer_contract() {
                    "The steady oscillation without noise, as a fixed point; Au, phi_u and shift are the plant's own.")
             .field("reversed", &RelayExperiment::reversed, only_answered(boolean()),
                    "The relay acts on -y, because the plant's gain is negative.")
-            .field("plan", &RelayExperiment::plan, answer(relay_plan_contract()), "A test worth making.")
+            .field("plan", &RelayExperiment::plan, answer(relay_plan_contract()), "The recommended test.")
             .field("warnings", &RelayExperiment::warnings, list_of(answer(warning_contract())), "Remarks.");
         return d;
     }();

@@ -2,14 +2,13 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
-#include "api/contract/plant/plant.h"
+#include "api/contract/plant/typed.h"
 #include "api/contract/product/product.h"
 #include "engine/evaluation/evaluate.h"
 
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxNameLength = 200;
 constexpr int kMaxPoints = 20'000;
 
 Codec<int> points() {
@@ -78,14 +77,6 @@ const Description<NoiseOptions>& noise_contract() {
         return d;
     }();
     return description;
-}
-
-// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
-std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader) {
-    auto made = Subject::make(plant);
-    if (auto* subject = std::get_if<Subject>(&made)) return std::move(*subject);
-    for (const Error& fault : std::get<std::vector<Error>>(made)) reader.fault_below(fault.where, 0, fault.message);
-    return std::nullopt;
 }
 
 // Whether every plant forms a loop with the controller, at which the reader stands.
@@ -180,13 +171,38 @@ void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
     }
 }
 
+// What a job and a design know beside the plant and the methods.
 template <class Request>
-void add_labels(Description<Request>& d) {
-    d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
-        .field("units", &Request::units, maybe(object(units_contract())), "Labels of the units, echoed.");
+void add_judged(Description<Request>& d) {
+    d.field(
+         "baseline", [](const Json& value, Request& request, Reader& reader) { read_baseline(value, request, reader); },
+         [](const Request& request, Writer& out) { write_baseline(request, out); }, baseline_schema,
+         "Today's settings, answered as the last entry: a controller, or a product with its settings as typed.", {},
+         [](const Request& request) { return !request.baseline && !request.baseline_settings; })
+        .field("implement", &Request::implement, maybe(object(implement_contract())),
+               "The user's own controller, for which entries are settled and judged.")
+        .field("evaluate", &Request::evaluate, object(evaluate_options_contract()), "What is simulated and answered.");
+}
+
+Codec<std::vector<MethodRequest>> one_method() {
+    auto codec = list_of(method_request(), 1, 1);
+    codec.read = [list = codec.read](const Json& value, std::vector<MethodRequest>& target, Reader& reader) {
+        const std::size_t before = reader.count();
+        list(value, target, reader);
+        if (reader.clean_since(before) && target.front().of_all())
+            reader.fault("tune asks for every method; a design is made by one. Post a job for all of them.");
+    };
+    return codec;
 }
 
 }  // namespace
+
+std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader) {
+    auto made = Subject::make(plant);
+    if (auto* subject = std::get_if<Subject>(&made)) return std::move(*subject);
+    for (const Error& fault : std::get<std::vector<Error>>(made)) reader.fault_below(fault.where, 0, fault.message);
+    return std::nullopt;
+}
 
 const Description<EvaluateOptions>& evaluate_options_contract() {
     static const auto description = [] {
@@ -232,7 +248,7 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                 "Entries above these limits rank last.")
             .field("optimum_at_Ms", &EvaluateOptions::optimum_at_Ms, maybe(boolean()),
                    "Whether each entry is compared with the robust PID of the least load IAE at the same Ms. Default: "
-                   "true with the method all, else false.");
+                   "true where a job compares several methods, else false.");
         return d;
     }();
     return description;
@@ -244,25 +260,18 @@ const Description<JobRequest>& job_contract() {
                                   "A plant or a recorded test, and how its controllers are to be found and judged.");
         add_labels(d);
         constexpr double kLongest = 3600;
-        d.field("plant", &JobRequest::plant, maybe(one_of(plant_model_contract())),
+        d.field("plant", &JobRequest::plant, maybe(plant_model_or_text()),
                 "The plant; exactly one of plant and record.")
             .field("record", &JobRequest::record, maybe(object(record_contract())),
                    "The recorded test; exactly one of plant and record.")
             .field("identify", &JobRequest::identify, object(identify_contract()), "How the record becomes a model.")
             .field("tune", &JobRequest::tune, tune_list(),
-                   "The methods, one entry of the answer each; \"all\": every one.")
-            .field(
-                "baseline", read_baseline, write_baseline, baseline_schema,
-                "Today's settings, answered as the last entry: a controller, or a product with its settings as typed.",
-                {}, [](const JobRequest& request) { return !request.baseline && !request.baseline_settings; })
-            .field("implement", &JobRequest::implement, maybe(object(implement_contract())),
-                   "The user's own controller, for which entries are settled and judged.")
-            .field("evaluate", &JobRequest::evaluate, object(evaluate_options_contract()),
-                   "What is simulated and answered.")
-            .field("uncertainty", &JobRequest::uncertainty,
-                   choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
-                   "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
-                   "design on the model alone breaks a limit there, both are answered, the one that holds it first.")
+                   "The methods, one entry of the answer each; \"all\": every one.");
+        add_judged(d);
+        d.field("uncertainty", &JobRequest::uncertainty,
+                choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
+                "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
+                "design on the model alone breaks a limit there, both are answered, the one that holds it first.")
             .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .check_presence(check_source)
@@ -277,13 +286,32 @@ const Description<JobRequest>& job_contract() {
     return description;
 }
 
+const Description<DesignRequest>& design_request_contract() {
+    static const auto description = [] {
+        using D = DesignRequest;
+        Description<D> d("DesignRequest", "A plant and the one method that designs for it.");
+        add_labels(d);
+        d.field("plant", &D::plant, maybe(plant_model_or_text()), "The plant.", {.required = true})
+            .field("tune", &D::tune, one_method(), "The method with its options, alone in its list.");
+        add_judged(d);
+        d.field(
+             "start", &D::start, maybe(one_of(controller_contract())),
+             "A design nearby, such as the last answer: a hint. The whole search is made, so no answer depends on it.")
+            .check([](const Json& value, D& request, Reader& reader) { check_implement(value, request, reader); })
+            .check([](const Json& value, D& request, Reader& reader) { check_job(value, request, reader); })
+            .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
+                      {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.6}, {"Mt", 1.6}}})}});
+        return d;
+    }();
+    return description;
+}
+
 const Description<EvaluateRequest>& evaluate_request_contract() {
     constexpr std::size_t kMaxControllers = 50;
     static const auto description = [] {
         Description<EvaluateRequest> d("EvaluateRequest", "A plant and controllers for it.");
         add_labels(d);
-        d.field("plant", &EvaluateRequest::plant, maybe(one_of(plant_model_contract())), "The plant.",
-                {.required = true})
+        d.field("plant", &EvaluateRequest::plant, maybe(plant_model_or_text()), "The plant.", {.required = true})
             .field("controllers", &EvaluateRequest::controllers,
                    list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
@@ -324,6 +352,7 @@ TuningRequest to_engine(JobRequest request) {
     if (request.baseline_settings)
         out.baseline_settings = {*request.baseline_build, request.baseline_settings->settings};
     out.evaluate = request.evaluate;
+    out.labels = labels_of(request.units);
     out.identified_region = request.uncertainty == "identified" ? IdentifiedRegion::held
                             : request.uncertainty == "none"     ? IdentifiedRegion::unused
                                                                 : IdentifiedRegion::where_needed;

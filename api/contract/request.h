@@ -2,7 +2,9 @@
 #pragma once
 
 #include "api/contract/built/built.h"
+#include "api/contract/plant/plant.h"
 #include "api/contract/record.h"
+#include "api/describe/description.h"
 #include "engine/request/tune.h"
 
 namespace tunewright::api {
@@ -26,6 +28,11 @@ struct JobRequest {
     std::optional<built::Build> baseline_build;  ///< of `baseline_settings`
 };
 
+/// One method on a plant, answered while the client waits.
+struct DesignRequest : JobRequest {
+    std::optional<Controller> start;  ///< a design nearby; a hint
+};
+
 struct EvaluateRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
@@ -47,10 +54,22 @@ struct IdentifyRequest {
 
 /// Their checks include what the engine says about plant and controllers at once.
 const Description<JobRequest>& job_contract();
+const Description<DesignRequest>& design_request_contract();
 const Description<EvaluateRequest>& evaluate_request_contract();
 const Description<IdentifyRequest>& identify_request_contract();
 
 const Description<EvaluateOptions>& evaluate_options_contract();
+
+/// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
+std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader);
+
+/// The members that every request may carry.
+template <class Request>
+void add_labels(Description<Request>& d) {
+    constexpr std::size_t kMaxNameLength = 200;
+    d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
+        .field("units", &Request::units, maybe(object(units_contract())), "Labels of the units, echoed.");
+}
 
 TuningRequest to_engine(JobRequest request);
 

@@ -16,6 +16,9 @@ namespace {
 constexpr std::size_t kMaxFaults = 10;
 constexpr double kLargest = 1e30;  // as in every number of the contract
 
+// Lines that cannot be read are left out where they are this rare: a total at the end, half a line of a serial port.
+constexpr std::size_t kEnoughRows = 20, kRare = 50;
+
 class RecordReader {
 public:
     RecordReader(std::string_view text, const CsvOptions& options)
@@ -79,6 +82,7 @@ private:
     }
 
     void read_lines() {
+        skip_head();
         spacing_ = spacing();
         std::optional<TimeColumn> times;
         if (columns_.at[kTimeRole])
@@ -99,8 +103,40 @@ private:
                                         " samples; thin it out: a few thousand identify as well.");
             }
         }
+        if (unread_ > 0 && (record_.t.size() < kEnoughRows || (unread_ - 1) * kRare >= record_.t.size()))
+            return void(faults_ = std::move(unread_faults_));
+        record_.dropped += static_cast<int>(unread_);
+        record_.time_unit_known = options_.dt || columns_.spacing || !times || times->unit_known();
         hold_reference();
         write_notes(times);
+    }
+
+    void skip(int line, std::string reason) {
+        if (record_.skipped.size() < kMostSkips) record_.skipped.push_back({line, std::move(reason)});
+    }
+
+    // The lines before the first row that are not its headings.
+    void skip_head() {
+        std::size_t at = 0;
+        for (int number = 1; number < layout_.data_line; ++number) {
+            const auto line = next_line(text_, at);
+            if (!line) return;
+            const std::string_view content = trimmed(*line);
+            if (content.empty() || number == layout_.heading_line || layout_.pairs) continue;
+            const bool below = layout_.heading_line > 0 && number > layout_.heading_line;
+            skip(number, is_comment(content) ? "a comment"
+                         : below             ? "units or descriptions, no numbers"
+                                             : "above the headings");
+        }
+    }
+
+    // A line that does not belong to the table, for `reason`. Many of them are no accident.
+    void unread(const CsvLine& line, std::string reason, const std::string& cure) {
+        ++unread_;
+        const std::string sentence = "Line " + std::to_string(line.number) + reason;
+        if (unread_faults_.size() < kMaxFaults) unread_faults_.push_back({"csv", sentence + cure});
+        reason.erase(0, reason.find_first_not_of(", "));
+        skip(line.number, std::move(reason));
     }
 
     // A set point that is written where it changes holds until the next one; the first one holds from the beginning.
@@ -131,9 +167,10 @@ private:
     }
 
     void report_width(const CsvLine& line) {
-        fault("csv", "Line " + std::to_string(line.number) + " has " + std::to_string(line.cells.size()) +
-                         " cells and the first line " + std::to_string(layout_.width) +
-                         ". Numbers with a decimal comma need ; or tab as separator, or quotes.");
+        unread(line,
+               " has " + std::to_string(line.cells.size()) + " cells and the first line " +
+                   std::to_string(layout_.width) + ".",
+               " Numbers with a decimal comma need ; or tab as separator, or quotes.");
     }
 
     std::string_view cell(const CsvLine& line, std::size_t column) const {
@@ -146,7 +183,7 @@ private:
             const std::string_view text = cell(line, *columns_.at[kTimeRole]);
             if (is_missing(text)) {
                 ++record_.dropped;
-                return;
+                return skip(line.number, "no time");
             }
             const std::string_view clock = columns_.clock ? cell(line, *columns_.clock) : std::string_view();
             if (!times->read(text, clock, line.number, t)) return report_cell(line, kTimeRole, text, times->stamps());
@@ -156,7 +193,7 @@ private:
         if (columns_.at[kReferenceRole]) r = read_reference(line);
         if (std::isnan(u) && std::isnan(y)) {
             ++record_.dropped;
-            return;
+            return skip(line.number, "neither u nor y");
         }
         if (std::abs(t) > kLargest) return report_size(line, kTimeRole);
         record_.t.push_back(t);
@@ -210,10 +247,14 @@ private:
 
     void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
-        fault("csv", "Line " + std::to_string(line.number) + ", column " + column_name(role) + ": " + quoted(text) +
-                         " is not " + (stamps ? "a time stamp like the first." : "a number.") +
-                         (other_separator ? " The line is not separated like the others."
-                                          : " Mend the line, or leave the cell blank to drop it."));
+        const std::string reason = ", column " + column_name(role) + ": " + quoted(text) + " is not " +
+                                   (stamps ? "a time stamp like the first." : "a number.");
+        const char* cure = other_separator ? " The line is not separated like the others."
+                                           : " Mend the line, or leave the cell blank to drop it.";
+        // ON and OFF among numbers mean something, which is not known.
+        if (role == kInputRole && switch_word(text))
+            return fault("csv", "Line " + std::to_string(line.number) + reason + cure);
+        unread(line, reason, cure);
     }
 
     void report_size(const CsvLine& line, Role role) {
@@ -231,16 +272,15 @@ private:
                                        ". The gain is per switch, not per unit of power.");
     }
 
-    void note_unit(Role role, const std::string& given, const char* name) {
+    void note_unit(Role role, const std::string& given) {
         const std::size_t column = *columns_.at[role];
         std::string unit = column < layout_.headings.size() ? split_heading(layout_.headings[column]).unit : "";
         if (unit.empty() && !layout_.below.empty()) unit = std::string(cell(layout_.below.front(), column));
         if (unit.empty()) unit = profiles_[column].suffix;
         if (unit.empty() || unit == given) return;
-        record_.notes.push_back(role_name(role) + " is in " + quoted(unit) + " by the file" +
-                                (given.empty() ? "."
-                                               : ", and units." + std::string(name) + " is " + quoted(given) +
-                                                     ": the numbers are used as they are."));
+        record_.notes.push_back(
+            role_name(role) + " is in " + quoted(unit) + " by the file" +
+            (given.empty() ? "." : ", and " + quoted(given) + " was given: the numbers are used as they are."));
     }
 
     void write_notes(std::optional<TimeColumn>& times) {
@@ -263,9 +303,14 @@ private:
         if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
         note_switch();
         if (layout_.sign == DecimalSign::comma) notes.emplace_back("Numbers have a decimal comma.");
+        if (unread_ > 0) {
+            const std::string& first = unread_faults_.front().message;
+            record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +
+                             (unread_ == 1 ? "was" : "were") + " left out: " + first.substr(0, first.find(". ")) + ".";
+        }
         if (!missing_word_.empty()) notes.push_back(quoted(missing_word_) + " and the like are read as no value.");
-        note_unit(kInputRole, options_.unit_u, "u");
-        note_unit(kOutputRole, options_.unit_y, "y");
+        note_unit(kInputRole, options_.unit_u);
+        note_unit(kOutputRole, options_.unit_y);
     }
 
     std::string_view text_;
@@ -273,7 +318,8 @@ private:
     CsvLayout layout_;
     std::vector<ColumnProfile> profiles_;
     FoundColumns columns_;
-    std::size_t index_ = 0;
+    std::size_t index_ = 0, unread_ = 0;
+    std::vector<CsvFault> unread_faults_;
     double spacing_ = 1;
     std::string missing_word_, low_word_, high_word_;
     CsvRecord record_;

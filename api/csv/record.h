@@ -21,18 +21,30 @@ struct CsvOptions {
     std::string time_unit = "s";  ///< of the answer
     bool time_unit_given =
         false;  ///< false: the unit in the time heading is believed and converted from only if it is not s
+    std::string file_time_unit = {};       ///< of the file's times, whatever it says; "" where it is to be believed
     std::optional<double> dt;              ///< spacing for files without a time column, in time_unit
     std::string unit_u = {}, unit_y = {};  ///< as the user names them; "" if not
     std::size_t most_samples = 2'000'000;
+};
+
+/// A line that is no row.
+struct CsvSkip {
+    int line = 0;
+    std::string reason;
 };
 
 struct CsvRecord {
     std::vector<double> t, u, y;     ///< u and y are NaN where a cell is blank, "Bad", ...; never both
     std::vector<double> r;           ///< set point, a number in each sample; empty: the file has none
     std::vector<int> lines;          ///< of each sample in the file, from 1
-    int dropped = 0;                 ///< lines left out: without a time, or with neither u nor y
+    int dropped = 0;                 ///< lines left out: unreadable, without a time, or with neither u nor y
+    std::string unread;              ///< a sentence about the lines that could not be read; "" if there are none
+    std::vector<CsvSkip> skipped;    ///< the first kMostSkips of them, and what stands above the rows
+    bool time_unit_known = true;     ///< by the file or by the options; else the times are taken to be in time_unit
     std::vector<std::string> notes;  ///< what was found by itself, one sentence each
 };
+
+inline constexpr std::size_t kMostSkips = 100;
 
 /// `where` is "csv" or "columns/t", ...
 struct CsvFault {
@@ -44,7 +56,8 @@ struct CsvFault {
 /// as numbers or stamps (time_stamp.h), columns as chosen, or found (columns.h). Times become `time_unit`: stamps
 /// since the first one; numbers from the unit of their heading. Times that count milliseconds or less since 1970, and
 /// spreadsheets' days under a heading such as "Date", are known by their size. A clock set back by an hour, and one
-/// without a date that passes midnight, go on. At most ten faults, each with its line.
+/// without a date that passes midnight, go on. Where at most one line in fifty cannot be read (a total at the end, half
+/// a line of a serial port), it is left out (`unread`); else there are at most ten faults, each with its line.
 std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view bytes, const CsvOptions& options);
 
 }  // namespace tunewright::api

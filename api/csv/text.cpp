@@ -95,16 +95,25 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
+std::string encoding_of(std::string_view bytes) {
+    const bool little = bytes.substr(0, 2) == "\xFF\xFE", big = bytes.substr(0, 2) == "\xFE\xFF";
+    if (big || (!little && zeros_at(bytes, 0))) return "utf-16be";
+    if (little || zeros_at(bytes, 1)) return "utf-16le";
+    if (is_utf8(bytes)) return "utf-8";
+    const bool beyond = std::any_of(bytes.begin(), bytes.end(), [](char c) {
+        const auto byte = static_cast<unsigned char>(c);
+        return byte >= 0x80 && byte < 0xA0;
+    });
+    return beyond ? "windows-1252" : "iso-8859-1";
+}
+
 std::string_view utf8_text(std::string_view bytes, std::string& storage) {
     if (bytes.substr(0, 3) == "\xEF\xBB\xBF") bytes.remove_prefix(3);
-    const bool little = bytes.substr(0, 2) == "\xFF\xFE", big = bytes.substr(0, 2) == "\xFE\xFF";
-    if (little || big || zeros_at(bytes, 0) || zeros_at(bytes, 1)) {
-        storage = from_utf16(bytes.substr(little || big ? 2 : 0), big || (!little && zeros_at(bytes, 0)));
-        return storage;
-    }
-    if (is_utf8(bytes)) return bytes;
-    storage = from_windows(bytes);
-    return storage;
+    const std::string encoding = encoding_of(bytes);
+    if (encoding == "utf-8") return bytes;
+    if (encoding.substr(0, 6) != "utf-16") return storage = from_windows(bytes);
+    const bool marked = bytes.substr(0, 2) == "\xFF\xFE" || bytes.substr(0, 2) == "\xFE\xFF";
+    return storage = from_utf16(bytes.substr(marked ? 2 : 0), encoding == "utf-16be");
 }
 
 std::optional<std::string_view> next_line(std::string_view text, std::size_t& at) {

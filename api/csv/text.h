@@ -14,6 +14,10 @@ namespace tunewright::api {
 /// outlive the result.
 std::string_view utf8_text(std::string_view bytes, std::string& storage);
 
+/// How the bytes are read by that, as a name that browsers' decoders know: "utf-8", "utf-16le", "utf-16be",
+/// "windows-1252", or "iso-8859-1" where none of its letters is beyond Latin-1's.
+std::string encoding_of(std::string_view bytes);
+
 /// Whether every byte belongs to a valid UTF-8 sequence (RFC 3629): overlong forms, surrogates and what lies above
 /// U+10FFFF are not valid.
 bool is_utf8(std::string_view text);

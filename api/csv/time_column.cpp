@@ -21,7 +21,7 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Fou
     }
     const auto answer = seconds_per(options.time_unit);
     if (!answer) {
-        faults.push_back({"csv", "The times are time stamps, and units.time is " + quoted(options.time_unit) +
+        faults.push_back({"csv", "The times are time stamps, and the unit of time is " + quoted(options.time_unit) +
                                      "; it must be a unit that they can be converted to: ms, s, min, h or d."});
         return;
     }
@@ -104,8 +104,8 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
 void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                            const ColumnProfile& profile, const CsvOptions& options) {
     const std::size_t column = *columns.at[kTimeRole];
-    std::string unit;
-    if (column < layout.headings.size()) unit = split_heading(layout.headings[column]).unit;
+    std::string unit = options.file_time_unit;
+    if (unit.empty() && column < layout.headings.size()) unit = split_heading(layout.headings[column]).unit;
     for (const CsvLine& below : layout.below) {
         if (!seconds_per(unit) && column < below.cells.size()) unit = std::string(below.cells[column]);
         if (!seconds_per(unit) && unit.size() > 2 && (unit.front() == '[' || unit.front() == '('))
@@ -127,15 +127,15 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
         }
     }
     const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
-    if (!given && !options.time_unit_given) note_unknown_unit(profile, options);
+    unit_known_ = given.has_value() || options.time_unit_given;
+    if (!unit_known_) note_unknown_unit(profile, options);
     if (!given || !answer) return;
     if (by_size)
         notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
                          ", by their size; they are taken from the first one on.");
     if (*given == *answer) return;
     factor_ = *given / *answer;
-    notes_.push_back("Times are converted from " + unit + " to " + options.time_unit +
-                     (options.time_unit_given ? "." : "; set units.time to keep them."));
+    notes_.push_back("Times are converted from " + unit + " to " + options.time_unit + ".");
 }
 
 // A number of milliseconds is read as seconds where nothing names its unit; a usual spacing of seconds is no reason to
@@ -144,8 +144,7 @@ void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOption
     constexpr double kUsual = 5;
     if (profile.changes < 1 || !profile.rises || profile.least_step < kUsual) return;
     notes_.push_back("The file names no unit of time: the times are read as " + options.time_unit + ", " +
-                     tunewright::text(profile.least_step) +
-                     " or more apart. Name the column time_ms, or set units.time, if they are others.");
+                     tunewright::text(profile.least_step) + " or more apart. Choose their unit if it is another.");
 }
 
 std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {

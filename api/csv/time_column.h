@@ -23,6 +23,8 @@ public:
     bool read(std::string_view cell, std::string_view clock, int line, double& time);
 
     bool stamps() const { return stamps_; }
+    /// The file, or the one who asks, says in which unit its times are.
+    bool unit_known() const { return stamps_ || unit_known_; }
     std::vector<std::string> take_notes() { return std::move(notes_); }
 
 private:
@@ -40,7 +42,7 @@ private:
     DecimalSign sign_;
     std::string suffix_;
     double factor_ = 1;
-    bool from_zero_ = false;
+    bool from_zero_ = false, unit_known_ = false;
     double set_back_ = 0;
     std::optional<double> first_, last_;
     std::vector<std::string> notes_;

@@ -40,6 +40,10 @@ public:
     /// Whether nothing was found at or below the member `name` of this place.
     bool clean_at(std::string_view name) const;
 
+    /// The label of the request's unit of time, once its units are read: texts may hold times in units of their own.
+    const std::string& time_unit() const { return time_unit_; }
+    void set_time_unit(std::string label) { time_unit_ = std::move(label); }
+
     std::size_t count() const { return count_; }
     bool clean_since(std::size_t count) const { return count_ == count; }
 
@@ -54,6 +58,7 @@ private:
     std::vector<Segment> path_;
     std::vector<FieldError> faults_;
     std::size_t count_ = 0;
+    std::string time_unit_ = "s";
 };
 
 /// The value as a sentence quotes it: its JSON, cut after 40 characters.

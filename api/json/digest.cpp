@@ -21,13 +21,18 @@ Sha256::Sha256() : context_(EVP_MD_CTX_new()) { must(EVP_DigestInit_ex(context_.
 
 void Sha256::update(std::string_view piece) { must(EVP_DigestUpdate(context_.get(), piece.data(), piece.size())); }
 
-std::string Sha256::hex() const {
+std::string Sha256::bytes() const {
     const Sha256 copy;
     must(EVP_MD_CTX_copy_ex(copy.context_.get(), context_.get()));
     std::array<unsigned char, 32> digest{};
     must(EVP_DigestFinal_ex(copy.context_.get(), digest.data(), nullptr));
+    return {digest.begin(), digest.end()};
+}
+
+std::string Sha256::hex() const {
     std::string out;
-    for (const unsigned char byte : digest) {
+    for (const char c : bytes()) {
+        const auto byte = static_cast<unsigned char>(c);
         out += "0123456789abcdef"[byte >> 4];
         out += "0123456789abcdef"[byte & 15];
     }
@@ -38,6 +43,21 @@ std::string sha256_hex(std::string_view text) {
     Sha256 digest;
     digest.update(text);
     return digest.hex();
+}
+
+std::string base64(std::string_view bytes) {
+    std::string out(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+    const int length =
+        EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()),
+                        reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+    out.resize(static_cast<std::size_t>(length));
+    return out;
+}
+
+std::string sha256_base64(std::string_view text) {
+    Sha256 digest;
+    digest.update(text);
+    return base64(digest.bytes());
 }
 
 }  // namespace tunewright::api

@@ -16,6 +16,8 @@ public:
     void update(std::string_view piece);
     /// 64 hexadecimal digits of all pieces together.
     std::string hex() const;
+    /// Its 32 bytes.
+    std::string bytes() const;
 
 private:
     struct Free {
@@ -26,5 +28,9 @@ private:
 
 /// 64 hexadecimal digits.
 std::string sha256_hex(std::string_view text);
+
+/// Base64 with padding (RFC 4648, section 4): of any bytes, and of the digest, as policies of pages name a stylesheet.
+std::string base64(std::string_view bytes);
+std::string sha256_base64(std::string_view text);
 
 }  // namespace tunewright::api

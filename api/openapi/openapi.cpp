@@ -1,5 +1,8 @@
+#include "api/contract/plant/typed.h"
+#include "api/contract/preview.h"
 #include "api/contract/product/product.h"
 #include "api/contract/relay.h"
+#include "api/contract/reports/frontier.h"
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
@@ -40,10 +43,18 @@ std::string openapi_json() {
         SchemaBook book;
         job_contract().schema(book);
         result_contract().schema(book);
+        design_request_contract().schema(book);
+        design_answer_contract().schema(book);
+        frontier_request_contract().schema(book);
+        frontier_contract().schema(book);
         evaluate_request_contract().schema(book);
         evaluate_answer_contract().schema(book);
         identify_request_contract().schema(book);
         identify_answer_contract().schema(book);
+        plant_question_contract().schema(book);
+        plant_answer_contract().schema(book);
+        preview_request_contract().schema(book);
+        preview_answer_contract().schema(book);
         relay_request_contract().schema(book);
         relay_answer_contract().schema(book);
         product_summary_contract().schema(book);

@@ -228,12 +228,13 @@ std::string first_fault(const std::string& text, const CsvOptions& options = {})
 TEST(Csv, SeveralTagsAreNotGuessedAmong) {
     const std::string fault = first_fault("Time,TIC101.PV,TIC102.PV,TIC101.OP\n0,1,2,3\n1,2,3,4\n");
     EXPECT_THAT(fault, HasSubstr("columns/y: Several columns may be y (the measurement): \"TIC101.PV\" and "
-                                 "\"TIC102.PV\". Name one in columns.y."));
+                                 "\"TIC102.PV\". Choose one."));
 }
 
 TEST(Csv, TwoMovingColumnsAreNotGuessedBetween) {
     EXPECT_THAT(first_fault("Time,A,B\n0,1,2\n1,2,3\n2,3.5,3.1\n3,3.6,3.4\n"),
-                HasSubstr("No heading is plainly u (the controller output); name it in columns.u. The headings are"));
+                HasSubstr("No column is plainly u, the controller output. Choose its heading, or its number from 1. "
+                          "The headings are"));
 }
 
 TEST(Csv, OneLineATagIsRefusedWithTheCure) {
@@ -265,7 +266,7 @@ TEST(Csv, UnitsOfHeadingsAreTold) {
     const auto& record = std::get<CsvRecord>(out);
     EXPECT_THAT(record.notes, Contains("u is in \"%\" by the file."));
     EXPECT_THAT(record.notes,
-                Contains("y is in \"degC\" by the file, and units.y is \"K\": the numbers are used as they are."));
+                Contains("y is in \"degC\" by the file, and \"K\" was given: the numbers are used as they are."));
 }
 
 TEST(Csv, WhatWasAssumedAboutTimesIsTold) {

@@ -46,7 +46,7 @@ TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
     moving.replace(moving.find("temp=199.5"), 10, "temp=199.7");
     EXPECT_THAT(faults_of(moving),
                 HasSubstr("columns/u: Several columns may be u (the controller output): \"heater_bed.pwm\" and "
-                          "\"extruder.pwm\". Name one in columns.u."));
+                          "\"extruder.pwm\". Choose one."));
     CsvOptions options;
     options.columns.y = "heater_bed.temp";
     const auto chosen = std::get<CsvRecord>(read_csv_record(moving, options));
@@ -79,7 +79,7 @@ TEST(Csv, ALogOfSentencesIsRefusedByItsFirstLine) {
 
 TEST(Csv, ALogWithoutTimesAsksForTheirSpacing) {
     EXPECT_THAT(faults_of(written("T:{y},PWM:{u}")),
-                HasSubstr("columns/t: No heading is plainly t (time); name it in columns.t, or give dt."));
+                HasSubstr("columns/t: No time column found. Choose one or enter the sampling time."));
 }
 
 TEST(Csv, ASetPointIsNeitherUNorY) {
@@ -88,9 +88,9 @@ TEST(Csv, ASetPointIsNeitherUNorY) {
           "TIC101.SP", "targetTemp", "T_set", "temp target", "rpm_ref", "SV", "desired speed", "pv_sp"}) {
         SCOPED_TRACE(name);
         EXPECT_THAT(faults_of("time," + std::string(name) + ",temp\n" + written("{t},{u},{y}")),
-                    HasSubstr("columns/u: No heading is plainly u"));
+                    HasSubstr("columns/u: No column is plainly u"));
         EXPECT_THAT(faults_of("time," + std::string(name) + ",valve\n" + written("{t},{y},{u}")),
-                    HasSubstr("columns/y: No heading is plainly y"));
+                    HasSubstr("columns/y: No column is plainly y"));
         const auto read = read_csv_record("time," + std::string(name) + ",pv,op\n" + written("{t},7,{y},{u}"), {});
         ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
         EXPECT_EQ(std::get<CsvRecord>(read).r, std::vector<double>(kSamples, 7));

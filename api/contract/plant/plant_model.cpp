@@ -1,4 +1,4 @@
-#include "api/contract/plant/plant.h"
+#include "api/contract/plant/typed.h"
 
 #include "api/describe/description.h"
 #include "engine/plant/nonlinear/nonlinear_plant.h"
@@ -149,7 +149,7 @@ const Description<PlantSet>& plant_set() {
     static const auto description = [] {
         Description<PlantSet> d("PlantSet", "Plants that one controller must serve: limits hold on all of them.");
         d.tag("type", "set")
-            .field("plants", &PlantSet::plants, list_of(one_of(plant_contract()), 1, kMaxPlants),
+            .field("plants", &PlantSet::plants, list_of(plant_or_text(), 1, kMaxPlants),
                    "Linear plants; the first is nominal: the objective and all figures are its own.",
                    {.required = true})
             .example({{"type", "set"},

@@ -60,6 +60,31 @@ const Description<OptimumAtMs>& optimum_contract() {
     return description;
 }
 
+const Description<Standing>& standing_contract() {
+    static const auto description = [] {
+        using S = Standing;
+        Description<S> d("Standing", "How an entry stands among the others: what ranking goes by.");
+        d.field("settles", &S::settles, boolean(),
+                "Stable, and both responses come to rest where they should; on a nonlinear plant its own responses.")
+            .field("Ms", &S::Ms, figure(),
+                   "Of the loop as it will run: on the worst plant that it must serve, in the user's own controller.")
+            .field("within", &S::within, boolean(),
+                   "The limit on Ms that was asked of this entry holds; true where none was.")
+            .field(
+                "excess_percent", &S::excess_percent, figure(),
+                "How far the load IAE lies above the least that a PID reaches on the linear plant at the same Ms, or "
+                "at the nearest Ms where there is an optimum; of a nonlinear plant its own load IAE.",
+                {.unit = "%"})
+            .field(
+                "why", {}, [](const S& standing, Writer& out) { out.text(standing.why); }, words().schema,
+                "Why it stands behind those that hold; left out where it holds.", {},
+                [](const S& standing) { return standing.holds(); })
+            .why_null("The loop is unstable, here or on some plant that it must serve.");
+        return d;
+    }();
+    return description;
+}
+
 const Description<OperatingPoint>& operating_point_contract() {
     static const auto description = [] {
         Description<OperatingPoint> d("OperatingPoint",
@@ -100,6 +125,9 @@ void add_operating_point(Description<Answer>& d, std::function<const OperatingPo
             [](SchemaBook& book) { return plant_contract().schema(book); },
             "Of a nonlinear plant: the linearisation there, on which methods and robustness rest.", {}, none);
 }
+
+constexpr const char* kWhichToTake =
+    "Over all entries: which to take, against today's settings; the most important first.";
 
 Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
 
@@ -157,6 +185,30 @@ void add_as_built(Description<TuningEntry>& d) {
             "With implement: the loop as the user's controller computes it.", {}, none);
 }
 
+const Description<verdict::Finding>& finding_contract() {
+    static const auto description = [] {
+        using F = verdict::Finding;
+        using enum verdict::Level;
+        Description<F> d("Finding",
+                         "A conclusion from the figures of this answer, as an engineer would say it: a code for "
+                         "programs, a sentence for people. docs/verdicts.md lists them.");
+        d.field("code", &F::code, words(), "Stable, in kebab-case.")
+            .field("level", &F::level,
+                   only_answered(
+                       choice<verdict::Level>({{"good", good}, {"note", note}, {"warning", warning}, {"bad", bad}})),
+                   "bad: what it belongs to is not to be used as it stands.")
+            .field("text", &F::text, words(),
+                   "One or two sentences in the request's units; numbers with three significant digits.")
+            .field("figures", &F::figures,
+                   numbers_by_name("Every number of the text under its name, in full precision."),
+                   "The numbers that the sentence is about.");
+        return d;
+    }();
+    return description;
+}
+
+Codec<std::vector<verdict::Finding>> findings() { return list_of(answer(finding_contract())); }
+
 const Description<TuningEntry>& entry_contract() {
     static const auto description = [] {
         Description<TuningEntry> d("Entry", "One controller with everything known about it, or why there is none.");
@@ -168,6 +220,9 @@ const Description<TuningEntry>& entry_contract() {
             },
             "Limits hold over the record's 95 % confidence region; left out where they hold on the model alone.", {},
             [](const TuningEntry& entry) { return !entry.over_region; });
+        d.field("verdict", &TuningEntry::verdict, findings(),
+                "What the figures mean, the most important first. The first finding says what the loop is; its level "
+                "is the entry's.");
         evaluation_field(d, "warnings", &Evaluation::warnings, list_of(answer(warning_contract())), "Remarks.");
         d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))),
                 "The simpler model that the rule used.");
@@ -192,7 +247,9 @@ const Description<TuningEntry>& entry_contract() {
         add_as_built(d);
         add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
-                "Beside the least load IAE that a PID reaches at the same Ms, where asked for.");
+                "Beside the least load IAE that a PID reaches at the same Ms, where asked for.")
+            .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())),
+                   "How it stands among the others; not of controllers that were sent.");
         add_reports(d, true);
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
@@ -222,6 +279,9 @@ const Description<ResultAnswer>& result_contract() {
                  list_of(answer(entry_contract())).write(a.result.controllers, out);
              },
              list_of(answer(entry_contract())).schema, "One entry a method, in the order asked for; the baseline last.")
+            .field(
+                "verdict", {}, [](const ResultAnswer& a, Writer& out) { findings().write(a.result.verdict, out); },
+                findings().schema, kWhichToTake)
             .field(
                 "ranking", {},
                 [](const ResultAnswer& a, Writer& out) {
@@ -255,12 +315,25 @@ const Description<ResultAnswer>& result_contract() {
     return description;
 }
 
+const Description<TuningResult>& design_answer_contract() {
+    static const auto description = [] {
+        using R = TuningResult;
+        Description<R> d("DesignAnswer", "The method's entry, and the baseline's behind it.");
+        add_operating_point<R>(d, [](const R& a) { return pointer(a.operating_point); });
+        d.field("controllers", &R::controllers, list_of(answer(entry_contract())), "One or two entries.")
+            .field("verdict", &R::verdict, findings(), kWhichToTake);
+        return d;
+    }();
+    return description;
+}
+
 const Description<EvaluationResult>& evaluate_answer_contract() {
     static const auto description = [] {
         Description<EvaluationResult> d("EvaluateAnswer", "The controllers in the order sent.");
         add_operating_point<EvaluationResult>(d, [](const EvaluationResult& a) { return pointer(a.operating_point); });
         d.field("controllers", &EvaluationResult::controllers, list_of(answer(entry_contract())),
-                "One entry a controller.");
+                "One entry a controller.")
+            .field("verdict", &EvaluationResult::verdict, findings(), kWhichToTake);
         return d;
     }();
     return description;

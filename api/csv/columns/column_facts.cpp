@@ -39,6 +39,8 @@ bool ColumnFacts::may_be_time(std::size_t column) const {
     constexpr int kFew = 3;
     if (p.stamps == 0 && !holds_numbers(column)) return false;
     if (is_spacing(heading) && p.changes == 0 && p.numbers != 2) return false;
+    // "S:40" of a serial log is a set point rather than seconds.
+    if (heading.name == "s" && p.numbers >= kFew && !p.rises) return false;
     if (heading.name != "t" || p.stamps > 0) return true;
     if (!heading.unit.empty()) return seconds_per(heading.unit).has_value();
     if (p.numbers < kFew) return true;

@@ -68,7 +68,7 @@ std::optional<NamedPair> data_set(const ColumnFacts& facts) {
     for (const DataSet& set : sets) {
         if (&set == &taken) continue;
         pair.note = "The file holds a second pair, " + facts.shown(*set.u) + " and " + facts.shown(*set.y) +
-                    "; columns.u and columns.y choose it.";
+                    "; choose its columns to use that one.";
     }
     return pair;
 }
@@ -94,8 +94,8 @@ std::variant<std::monostate, NamedPair, std::string> input_beside_output(const C
     if (facts.held(*output, *input)) return NamedPair{*output, *input, levels, moves};
     if (facts.held(*input, *output)) return NamedPair{*input, *output, levels, moves};
     return facts.shown(*input) + " and " + facts.shown(*output) +
-           " may be the plant's or the controller's, and the numbers do not show which. Name u in columns.u and y in "
-           "columns.y.";
+           " may be the plant's or the controller's, and the numbers do not show which. Choose the column of u, the "
+           "controller output, and that of y, the measurement.";
 }
 
 }  // namespace tunewright::api

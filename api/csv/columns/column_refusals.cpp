@@ -56,25 +56,22 @@ CsvFault column_fault(Role role, std::string message) { return {"columns/" + rol
 
 CsvFault several_columns(const ColumnFacts& facts, Role role, const std::vector<std::size_t>& columns) {
     return column_fault(role, "Several columns may be " + role_name(role) + " (" + role_meaning(role) +
-                                  "): " + facts.shown(columns) + ". Name one in columns." + role_name(role) + ".");
+                                  "): " + facts.shown(columns) + ". Choose one.");
 }
 
 CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y) {
     return column_fault(kOutputRole, facts.shown(u) + " and " + facts.shown(y) +
-                                         " do not belong together by their names. Name u in columns.u and y in "
-                                         "columns.y.");
+                                         " do not belong together by their names. Choose the column of u, the "
+                                         "controller output, and that of y, the measurement.");
 }
 
 CsvFault missing_column(const ColumnFacts& facts, Role role) {
-    const std::string name = role_name(role);
-    if (facts.layout().headings.empty()) {
-        return column_fault(role, "The csv has no headings, so " + name + " (" + role_meaning(role) +
-                                      ") cannot be found; give its column number from 1 in columns." + name +
-                                      (role == kTimeRole ? ", or dt." : "."));
-    }
-    return column_fault(role, "No heading is plainly " + name + " (" + role_meaning(role) + "); name it in columns." +
-                                  name + (role == kTimeRole ? ", or give dt" : "") + ". The headings are " +
-                                  facts.headings_listed() + ".");
+    const std::string said = facts.layout().headings.empty() ? "The file has no headings."
+                                                             : "The headings are " + facts.headings_listed() + ".";
+    if (role == kTimeRole)
+        return column_fault(role, "No time column found. Choose one or enter the sampling time. " + said);
+    return column_fault(role, "No column is plainly " + role_name(role) + ", " + role_meaning(role) +
+                                  ". Choose its heading, or its number from 1. " + said);
 }
 
 CsvFault equal_columns(Role role, Role other) {

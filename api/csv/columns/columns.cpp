@@ -221,7 +221,7 @@ private:
         if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
         if (r.best.empty()) return;
         found_.notes.push_back("Several columns may be the set point: " + facts_.shown(r.best) +
-                               "; none is read. Name one in columns.r.");
+                               "; none is read. Choose one if it matters.");
     }
 
     // "cmd" is what was sent to the plant, where nothing else is.
@@ -294,7 +294,8 @@ private:
             std::erase(roles, kInputRole);
         }
         if (roles.size() == 1 && free.size() == 1 &&
-            (roles.front() != kTimeRole || (!layout_.headings.empty() && facts_.mostly_one_way(free.front()))))
+            (roles.front() != kTimeRole ||
+             (!layout_.headings.empty() && profiles_[free.front()].changes > 0 && facts_.mostly_one_way(free.front()))))
             return take(roles.front(), free.front(), " (the only column left)");
         if (roles.size() != 2 || free.size() != 2 || roles.front() == kTimeRole) return;
         for (const auto& [u, y] : {std::pair{free[0], free[1]}, std::pair{free[1], free[0]}}) {

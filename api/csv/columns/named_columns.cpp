@@ -111,7 +111,7 @@ std::string rivals(const ColumnFacts& facts, Role role, const NameFits& fits) {
     const std::string why = role == kOutputRole && is_measured(facts.heading(fits.best.front()))
                                 ? ", as the measured one; it may also be "
                                 : "; it may also be ";
-    return why + facts.shown(moving) + ", which columns." + role_name(role) + " chooses";
+    return why + facts.shown(moving) + ", if you choose " + (moving.size() == 1 ? "it" : "one of them");
 }
 
 }  // namespace tunewright::api

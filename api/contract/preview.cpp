@@ -1,0 +1,119 @@
+#include "api/contract/preview.h"
+
+#include "api/contract/record.h"
+
+namespace tunewright::api {
+namespace {
+
+Codec<int> count() { return only_answered(integer(0, std::numeric_limits<int>::max())); }
+Codec<double> value() { return only_answered(number()); }
+
+const Description<CsvSkip>& skip_contract() {
+    static const auto description = [] {
+        Description<CsvSkip> d("SkippedLine", "A line of the file that is no row.");
+        d.field("line", &CsvSkip::line, count(), "Its number, from 1.")
+            .field("reason", &CsvSkip::reason, words(), "Why.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<CsvFault>& reading_problem_contract() {
+    static const auto description = [] {
+        Description<CsvFault> d("ReadingProblem", "Why the record cannot be read yet.");
+        d.field("pointer", &CsvFault::where, words(), "The member of a record that cures it: columns/t, csv.")
+            .field("detail", &CsvFault::message, words(), "The sentence.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<PreviewColumn>& preview_column_contract() {
+    static const auto description = [] {
+        using C = PreviewColumn;
+        Description<C> d("PreviewColumn", "A column of the file.");
+        d.field("heading", &C::heading, words(), "As written; empty where the file has none.")
+            .field("guess", &C::guess, words(), "t, u, y, r, or - for none: what a record is read with.")
+            .field("confidence", &C::confidence, value(),
+                   "1: chosen, or so named; 0.9: a tag that ends so; 0.7: a name that holds it; 0.5: by what it holds.")
+            .field("unit", &C::unit, words(), "As the file writes it; empty where it does not.")
+            .field("first", &C::first, words(), "The first cell that is not blank, as written.")
+            .field("min", &C::min, only_answered(maybe(number())), "Least number; missing where there is none.")
+            .field("max", &C::max, only_answered(maybe(number())), "Largest number.")
+            .field("thumbnail", &C::thumbnail, trace(),
+                   "At most 240 numbers: all of them, or the least and the largest of equal stretches, in turn.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<PreviewTime>& preview_time_contract() {
+    static const auto description = [] {
+        using T = PreviewTime;
+        Description<T> d("PreviewTime", "The times of the rows.");
+        d.field("unit", &T::unit, words(), "Unit of these times.")
+            .field("assumed", &T::assumed, only_answered(boolean()), "Nothing in the file says that it is the unit.")
+            .field("from", &T::from, value(), "First.", {.unit = "time"})
+            .field("to", &T::to, value(), "Last.", {.unit = "time"})
+            .field("dt", &T::dt, value(), "Usual spacing.", {.unit = "time"})
+            .field("gaps", &T::gaps, count(), "Spacings of more than five times that.")
+            .field("duplicates", &T::duplicates, count(), "Rows with the time of the row above.");
+        return d;
+    }();
+    return description;
+}
+
+void check_preview(const Json&, PreviewRequest& request, Reader& reader) {
+    if (!request.csv) reader.fault_at("csv", "csv is missing; it is the text of the file.");
+}
+
+}  // namespace
+
+const Description<PreviewRequest>& preview_request_contract() {
+    static const auto description = [] {
+        using R = PreviewRequest;
+        Description<R> d("PreviewRequest", "A file of a recorded test, and what is chosen of it.");
+        d.field("csv", &R::csv, maybe(text(kMaxCsvLength)), "The text of the file.", {.required = true})
+            .field("columns", &R::columns, maybe(object(columns_contract())), "Columns, where they are chosen.")
+            .field("dt", &R::dt, maybe(number({.exclusive_minimum = 0})), "Sampling time, where there are no times.")
+            .field("time_unit", &R::time_unit, maybe(file_time_unit()),
+                   "Unit of the file's times, where it does not say or says it wrongly.")
+            .check(check_preview)
+            .example({{"csv", "t,u,y\n0,0,20\n1,5,20\n2,5,21\n"}});
+        return d;
+    }();
+    return description;
+}
+
+const Description<CsvPreview>& preview_answer_contract() {
+    static const auto description = [] {
+        using P = CsvPreview;
+        Description<P> d("PreviewAnswer", "What the file is read as.");
+        d.field("columns", &P::columns, list_of(answer(preview_column_contract())), "In the order of the file.")
+            .field("rows", &P::rows, count(), "Lines of data.")
+            .field("separator", &P::separator, words(),
+                   "The sign itself, tab, blanks, or pairs: lines name each value.")
+            .field("decimal", &P::decimal, words(), "Decimal sign of the numbers.")
+            .field("encoding", &P::encoding, words(),
+                   "utf-8, utf-16le, utf-16be, windows-1252 or iso-8859-1; of JSON always utf-8.")
+            .field("time", &P::time, maybe(answer(preview_time_contract())), "Missing where the record cannot be read.")
+            .field("skipped", &P::skipped, list_of(answer(skip_contract())), "Lines that are no rows, the first 100.")
+            .field("skipped_lines", &P::skipped_lines, count(), "Lines of data that do not count.")
+            .field("notes", &P::notes, list_of(words()), "What was found by itself, a sentence each.")
+            .field("problems", &P::problems, list_of(answer(reading_problem_contract())),
+                   "What keeps the record from being read; none: it can be identified as it is.");
+        return d;
+    }();
+    return description;
+}
+
+CsvOptions csv_options(const PreviewRequest& request) {
+    CsvOptions options;
+    options.columns = request.columns.value_or(ColumnChoices{});
+    options.file_time_unit = request.time_unit.value_or("");
+    options.dt = request.dt;
+    options.most_samples = kMaxSamples;
+    return options;
+}
+
+}  // namespace tunewright::api

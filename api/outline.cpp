@@ -1,0 +1,109 @@
+#include "api/outline.h"
+
+#include <algorithm>
+
+#include "api/contract/plant/plant.h"
+#include "api/json/json.h"
+#include "api/json/writer.h"
+#include "api/service.h"
+
+namespace tunewright::api {
+namespace {
+
+/// A longer plant is named by its type alone.
+constexpr std::size_t kLongestPlant = 300;
+constexpr std::size_t kLongestError = 400;
+
+template <class Contract, class Value>
+std::string short_plant(const Contract& contract, const Value& plant) {
+    Writer out;
+    contract.write(plant, out);
+    std::string text = out.take();
+    if (text.size() <= kLongestPlant) return text;
+    return Json{{"type", Json::parse(text).at("type")}}.dump();
+}
+
+bool is_todays(const TuningEntry& entry) { return entry.method == "baseline"; }
+
+/// The best one that was tuned; null where there is none.
+const TuningEntry* first_ranked(const TuningResult& result) {
+    for (const int index : result.ranking) {
+        const TuningEntry& entry = result.controllers.at(static_cast<std::size_t>(index));
+        if (!is_todays(entry) && entry.evaluation) return &entry;
+    }
+    return nullptr;
+}
+
+void write_figures(const Evaluation& evaluation, Writer& out) {
+    out.key("Ms");
+    evaluation.robustness.Ms ? out.number(*evaluation.robustness.Ms) : out.null();
+    out.key("load_IAE");
+    evaluation.performance.load.IAE ? out.number(*evaluation.performance.load.IAE) : out.null();
+}
+
+void write_best(const TuningEntry& best, Writer& out) {
+    out.key("method");
+    out.text(best.method);
+    write_figures(*best.evaluation, out);
+    if (best.evaluation->region) {
+        out.key("worst_Ms");
+        best.evaluation->region->worst_Ms ? out.number(*best.evaluation->region->worst_Ms) : out.null();
+    }
+    if (best.optimum_at_Ms) {
+        out.key("excess_percent");
+        best.optimum_at_Ms->excess_percent ? out.number(*best.optimum_at_Ms->excess_percent) : out.null();
+    }
+}
+
+}  // namespace
+
+Outline::Outline(const JobRequest& request) {
+    if (request.units) {
+        Writer out;
+        units_contract().write(*request.units, out);
+        units_ = out.take();
+    }
+    if (request.plant) plant_ = short_plant(plant_model_contract(), *request.plant);
+}
+
+std::string Outline::of(const TuningResult& result) const {
+    Writer out;
+    out.begin_object();
+    out.key("plant");
+    out.raw(result.model ? short_plant(plant_contract(), result.model->plant) : plant_);
+    if (result.model) {
+        out.key("record");
+        out.boolean(true);
+    }
+    if (!units_.empty()) {
+        out.key("units");
+        out.raw(units_);
+    }
+    out.key("entries");
+    out.integer(std::ranges::count_if(result.controllers, [](const TuningEntry& entry) { return !is_todays(entry); }));
+    if (const TuningEntry* best = first_ranked(result)) write_best(*best, out);
+    const auto today = std::ranges::find_if(result.controllers, is_todays);
+    if (today != result.controllers.end() && today->evaluation) {
+        out.key("today");
+        out.begin_object();
+        write_figures(*today->evaluation, out);
+        out.end_object();
+    }
+    out.end_object();
+    return out.take();
+}
+
+std::string error_outline(const std::string& problem_json) {
+    const Json problem = Json::parse(problem_json, nullptr, false);
+    std::string detail = problem.is_object() ? problem.value("detail", "") : "";
+    if (problem.is_object() && problem.contains("errors") && problem["errors"].size() == 1)
+        detail = problem["errors"][0].value("detail", detail);
+    if (detail.size() > kLongestError) {
+        detail.resize(kLongestError);
+        while (!detail.empty() && (static_cast<unsigned char>(detail.back()) & 0x80U) != 0) detail.pop_back();
+        detail += "...";
+    }
+    return Json{{"error", detail}}.dump();
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,165 @@
+// Responses before and after, the Nyquist curve and the sensitivities, as drawings.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "api/report/figures.h"
+#include "api/report/plot.h"
+
+namespace tunewright::api {
+namespace {
+
+std::vector<double> numbers_at(const Place& place) {
+    std::vector<double> out;
+    for (const Json& value : place.value())
+        out.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    return out;
+}
+
+struct Source {
+    std::string name;
+    Line line;
+    Place place;
+};
+
+/// Whose traces are drawn.
+std::vector<Source> sources_of(const ReportSubject& s) {
+    std::vector<Source> out = {{"Proposal", Line::proposal, s.entry}};
+    if (s.entry.at("implemented").at("responses").exists())
+        out.push_back({"As built", Line::built, s.entry.at("implemented")});
+    if (s.today) out.push_back({"Today", Line::today, *s.today});
+    return out;
+}
+
+/// y or u of a response; of a linear model's too where the plant is nonlinear.
+void add_responses(Plot& plot, const ReportSubject& s, const char* step, const char* signal) {
+    for (const Source& source : sources_of(s)) {
+        const Place response = source.place.at("responses").at(step);
+        if (!response.at(signal).exists()) continue;
+        plot.traces.push_back({.name = source.name,
+                               .line = source.line,
+                               .x = numbers_at(response.at("t")),
+                               .y = numbers_at(response.at(signal))});
+    }
+    const Place linear = s.entry.at("linear").at("responses").at(step);
+    if (linear.at(signal).exists())
+        plot.traces.push_back({.name = "Linear model",
+                               .line = Line::second,
+                               .x = numbers_at(linear.at("t")),
+                               .y = numbers_at(linear.at(signal))});
+}
+
+/// To the longest horizon; the request's limits of u where it has them.
+Html response(const ReportSubject& s, const char* title, const char* step, const char* signal,
+              const std::string& unit) {
+    Plot plot{.title = title, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
+    add_responses(plot, s, step, signal);
+    const Place actuator = s.request.at("evaluate").at("actuator");
+    if (*signal == 'u' && actuator.exists())
+        for (const char* end : {"min", "max"})
+            if (actuator.at(end).value().is_number())
+                plot.limits.emplace_back(std::string(end) + " of u", actuator.at(end).value().get<double>());
+    return drawn(plot);
+}
+
+double limit_of(const ReportSubject& s, const char* name) {
+    const Json& value = s.entry.at("options").at(name).value();
+    return value.is_number() ? value.get<double>() : 0;
+}
+
+/// Far beyond the crossover a dead time turns round and round the origin; that part decides nothing and would print as
+/// a blot.
+void cut_turns(Trace& trace, const Place& entry) {
+    constexpr double kBeyond = 10;
+    const Json& crossover = entry.at("robustness").at("gain_crossover").value();
+    const std::vector<double> omega = numbers_at(entry.at("frequency").at("omega"));
+    if (!crossover.is_number() || omega.size() != trace.x.size()) return;
+    const double most = kBeyond * crossover.get<double>();
+    const auto end = std::upper_bound(omega.begin(), omega.end(), most) - omega.begin();
+    trace.x.resize(static_cast<std::size_t>(end));
+    trace.y.resize(static_cast<std::size_t>(end));
+}
+
+Html nyquist(const ReportSubject& s) {
+    Plot plot{.title = "Nyquist curve of L", .x_label = "Re", .y_label = "Im", .traces = {}};
+    for (const Source& source : sources_of(s)) {
+        const Place L = source.place.at("frequency").at("L");
+        if (!L.at("re").exists()) continue;
+        plot.traces.push_back(
+            {.name = source.name, .line = source.line, .x = numbers_at(L.at("re")), .y = numbers_at(L.at("im"))});
+        cut_turns(plot.traces.back(), source.place);
+    }
+    const double Ms = limit_of(s, "Ms"), Mt = limit_of(s, "Mt");
+    if (Ms > 1) plot.circles.push_back({"Ms " + number_text(Ms), -1, 0, 1 / Ms});
+    if (Mt > 1) plot.circles.push_back({"Mt " + number_text(Mt), -Mt * Mt / (Mt * Mt - 1), 0, Mt / (Mt * Mt - 1)});
+    // The point -1 and what is around it decide; the curve's ends lie where they like.
+    plot.equal = true;
+    plot.x_range = {-2.6, 1.2};
+    plot.y_range = {-1.8, 1.0};
+    return drawn(plot);
+}
+
+/// From where L is large to where it is small: two decades on both sides of the gain crossover, or all.
+std::optional<std::pair<double, double>> band(const ReportSubject& s) {
+    const Json& crossover = s.entry.at("robustness").at("gain_crossover").value();
+    const std::vector<double> omega = numbers_at(s.entry.at("frequency").at("omega"));
+    if (omega.size() < 2 || !(omega.front() > 0)) return std::nullopt;
+    if (!crossover.is_number()) return std::pair{omega.front(), omega.back()};
+    const double middle = crossover.get<double>(), low = std::max(omega.front(), middle / 100),
+                 high = std::min(omega.back(), middle * 100);
+    return low < high ? std::pair{low, high} : std::pair{omega.front(), omega.back()};
+}
+
+Html sensitivities(const ReportSubject& s) {
+    Plot plot{.title = "Sensitivities", .x_label = "ω (rad/" + s.time + ")", .y_label = "|S|, |T|", .traces = {}};
+    plot.log_x = true;
+    plot.x_range = band(s);
+    if (!plot.x_range) return {};
+    double top = 1;
+    for (const auto& [member, name, line] :
+         {std::tuple{"S_abs", "|S|", Line::proposal}, std::tuple{"T_abs", "|T|", Line::built}}) {
+        const Place frequency = s.entry.at("frequency");
+        plot.traces.push_back({.name = name,
+                               .line = line,
+                               .x = numbers_at(frequency.at("omega")),
+                               .y = numbers_at(frequency.at(member))});
+        for (const double value : plot.traces.back().y) top = std::isfinite(value) ? std::max(top, value) : top;
+    }
+    if (s.today && s.today->at("frequency").at("S_abs").exists()) {
+        const Place frequency = s.today->at("frequency");
+        plot.traces.push_back({.name = "|S| today",
+                               .line = Line::today,
+                               .x = numbers_at(frequency.at("omega")),
+                               .y = numbers_at(frequency.at("S_abs"))});
+        for (const double value : plot.traces.back().y) top = std::isfinite(value) ? std::max(top, value) : top;
+    }
+    constexpr double kHighest = 6;
+    for (const char* name : {"Ms", "Mt"})
+        if (limit_of(s, name) > 1)
+            plot.limits.emplace_back(name + (" " + number_text(limit_of(s, name))), limit_of(s, name));
+    plot.y_range = {0, std::min(kHighest, 1.1 * top)};
+    return drawn(plot);
+}
+
+}  // namespace
+
+Html responses_section(const ReportSubject& s) {
+    const Html figures =
+        response(s, "Set-point step: y", "setpoint", "y", s.y) + response(s, "Load step: y", "load", "y", s.y) +
+        response(s, "Set-point step: u", "setpoint", "u", s.u) + response(s, "Load step: u", "load", "u", s.u);
+    if (figures.empty())
+        return section("Responses", element("p",
+                                            "The result has no traces: its request asked for none (evaluate.points), "
+                                            "or the loop has none."));
+    Html note;
+    if (s.today && !s.today->at("responses").at("load").exists())
+        note = element("p", "Today's settings have no response to be drawn; see the figures.");
+    return section("Responses", element("div", figures, {{"class", "figures"}}) + note);
+}
+
+Html robustness_section(const ReportSubject& s) {
+    const Html figures = nyquist(s) + sensitivities(s);
+    return figures.empty() ? figures : section("Robustness", element("div", figures, {{"class", "figures"}}));
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,44 @@
+// A plot for print, as SVG: what is told apart by colour is told apart by dashes too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/report/html.h"
+
+namespace tunewright::api {
+
+enum class Line { proposal, today, built, setpoint, limit, second };
+
+struct Trace {
+    std::string name;  ///< in the legend; "" for none
+    Line line = Line::proposal;
+    std::vector<double> x, y;  ///< a value that is not finite interrupts the line
+};
+
+struct Circle {
+    std::string name;
+    double x = 0, y = 0, r = 0;
+};
+
+struct Plot {
+    std::string title, x_label, y_label;
+    std::vector<Trace> traces;
+    std::vector<Circle> circles = {};
+    std::vector<std::pair<std::string, double>> limits = {};  ///< name and height of lines from side to side
+    bool log_x = false;
+    bool equal = false;                                                   ///< a unit is as long on both axes
+    std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< else what the traces need
+};
+
+/// A <figure> with the drawing and its legend. Empty where no trace has two finite points.
+Html drawn(const Plot& plot);
+
+/// Multiples of 1, 2 or 5 times a power of ten within the range, about `count` of them.
+std::vector<double> ticks(double low, double high, int count);
+/// 1, 2, 5 of each decade within the range, or whole decades only where they are many. 0 < low < high.
+std::vector<double> log_ticks(double low, double high);
+
+}  // namespace tunewright::api

@@ -1,0 +1,33 @@
+// GET /v1/jobs/{id}/report.html and `tunewright report`: one controller of a result as a page to print, sign and keep.
+//
+//   const auto page = report_html({job.result, job.request}, "", {.job = job.id, .date = "2024-05-01T12:00:00Z"});
+//   if (const auto* text = std::get_if<std::string>(&page)) ...
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "api/chosen_entry.h"
+#include "api/problem.h"
+
+namespace tunewright::api {
+
+/// What a report says beside the result: each may be "", and what a whole job in the source says then counts.
+struct ReportWords {
+    std::string job;     ///< id
+    std::string name;    ///< of the job
+    std::string date;    ///< "2024-05-01T12:00:00Z"
+    std::string origin;  ///< where the service answers, "http://host:8080"
+};
+
+/// HTML without scripts, well formed as XML. `index`: number of the controller in the result; "" for the first of the
+/// ranking that is not today's. 404 where there is no such controller, or it has none; 400 and 422 for texts that are
+/// no JSON.
+std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
+                                               const ReportWords& words);
+
+/// The content security policy under which the report is shown: nothing but the stylesheet inside it, by its hash.
+std::string report_policy();
+
+}  // namespace tunewright::api

@@ -1,0 +1,61 @@
+// The whole request, so that it can be run again.
+#include "api/json/digest.h"
+#include "api/report/figures.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::size_t kMostPrinted = 12'000;  ///< bytes; a longer request prints with its long values cut
+constexpr std::size_t kMostItems = 20, kMostText = 400;
+
+/// Long lists and texts cut, with what was left out in words.
+Json shortened(const Json& value) {
+    if (value.is_string() && value.get_ref<const std::string&>().size() > kMostText) {
+        std::string text = value.get<std::string>();
+        const std::size_t all = text.size();
+        std::size_t end = kMostText;
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+        return text.substr(0, end) + "... (" + std::to_string(all) + " bytes)";
+    }
+    if (value.is_array()) {
+        Json out = Json::array();
+        for (std::size_t i = 0; i < std::min(value.size(), kMostItems); ++i) out.push_back(shortened(value[i]));
+        if (value.size() > kMostItems) out.push_back("... (" + std::to_string(value.size()) + " in all)");
+        return out;
+    }
+    if (!value.is_object()) return value;
+    Json out = Json::object();
+    for (const auto& [name, member] : value.items()) out[name] = shortened(member);
+    return out;
+}
+
+/// For a POSIX shell.
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
+    return out + "'";
+}
+
+}  // namespace
+
+Html request_section(const Json& request, const std::string& origin) {
+    if (!request.is_object()) return {};
+    const std::string whole = request.dump();
+    const bool printed = whole.size() <= kMostPrinted;
+    const std::string call = "curl -sS " + quoted((origin.empty() ? "http://127.0.0.1:8080" : origin) + "/v1/jobs") +
+                             " -H 'Content-Type: application/json' -H 'Prefer: wait=60' -d ";
+    Html out =
+        element("p", "Whoever sends this again gets the same settings.") +
+        element("p",
+                element("a", "Take out the request as a file",
+                        {{"download", "request.json"}, {"href", "data:application/json;base64," + base64(whole)}}),
+                {{"class", "screen"}});
+    if (!printed)
+        out += element("p", "It is long: lists and texts are cut here, and whole in the file, which this page holds.");
+    out += element("pre", (printed ? request : shortened(request)).dump(2), {{"id", "request"}});
+    out += element("h3", "As one command") +
+           element("pre", call + (printed ? quoted(whole) : "@request.json"), {{"id", "command"}});
+    return element("section", element("h2", "Request") + out, {{"class", "request"}});
+}
+
+}  // namespace tunewright::api

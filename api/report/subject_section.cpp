@@ -1,0 +1,185 @@
+// What is controlled: the plant, or the record with the model that was found in it.
+#include "api/contract/plant/plant.h"
+#include "api/report/figures.h"
+#include "api/report/plot.h"
+
+namespace tunewright::api {
+namespace {
+
+/// The formula of a linear plant; nothing of another.
+Html formula(const Json& plant) {
+    Reader reader;
+    Plant read;
+    plant_contract().read(plant, read, reader);
+    if (reader.problem()) return {};
+    return element("div", Html::trusted(mathml(read)), {{"class", "formula"}});
+}
+
+std::string plain(const Json& value) {
+    return value.is_string()   ? value.get<std::string>()
+           : value.is_number() ? number_text(value.get<double>(), 6)
+                               : value.dump();
+}
+
+/// "K 0.8 to 1.2, L 0.9 to 1.2 times the value"
+Html uncertainty_of(const Json& plant) {
+    if (!plant.is_object() || !plant.contains("uncertainty")) return {};
+    std::string words;
+    for (const auto& [name, range] : plant["uncertainty"].items())
+        if (range.is_array() && range.size() == 2)
+            words += (words.empty() ? "" : ", ") + name + " " + plain(range[0]) + " to " + plain(range[1]);
+    return element("p", "Uncertain, as factors of the values: " + words + ".");
+}
+
+Html equations_of(const Json& plant) {
+    std::vector<Html> lines;
+    const auto each = [&](const char* member, const auto& write) {
+        if (plant.contains(member) && plant[member].is_object())
+            for (const auto& [name, value] : plant[member].items())
+                lines.push_back(element("code", write(name, plain(value))));
+    };
+    each("equations", [](const std::string& name, const std::string& text) { return "d" + name + "/dt = " + text; });
+    lines.push_back(element("code", "y = " + plain(plant.value("output", Json("")))));
+    each("parameters", [](const std::string& name, const std::string& text) { return name + " = " + text; });
+    if (plant.contains("input")) lines.push_back("Input: " + plant["input"].dump());
+    if (plant.contains("L")) lines.push_back("Dead time: " + plain(plant["L"]));
+    return element("p", "Differential equations:") + list(lines);
+}
+
+Html points_of(const Json& plant) {
+    const Json& omega = plant["omega"];
+    if (!omega.is_array() || omega.empty()) return {};
+    return element("p", "Measured points of the frequency response: " + std::to_string(omega.size()) + ", from " +
+                            plain(omega.front()) + " to " + plain(omega.back()) + " rad per unit of time.");
+}
+
+Html given_plant(const ReportSubject& s) {
+    const Json& plant = s.request.at("plant").value();
+    if (!plant.is_object()) return {};
+    const std::string type = plant.value("type", "");
+    if (type == "nonlinear") {
+        Html out = equations_of(plant);
+        const Place point = s.result.at("operating_point");
+        if (point.at("u").exists())
+            out += element("p", Html("Operating point: u ") + figure(point.at("u"), 6) + ", y " +
+                                    figure(point.at("y"), 6) + ". The linear model there:") +
+                   formula(s.result.at("linear_model").value());
+        return out;
+    }
+    if (type == "frequency_response") return points_of(plant);
+    if (type != "set") return formula(plant) + uncertainty_of(plant);
+    Html out = element("p", "Several plants, the first of which is nominal; limits hold on all of them:");
+    for (const Json& one : plant["plants"]) out += formula(one) + uncertainty_of(one);
+    return out;
+}
+
+Html parameters_of(const Place& model, const ReportSubject& s) {
+    std::vector<Row> rows;
+    for (const auto& [name, value] : model.at("plant").value().items()) {
+        if (!value.is_number()) continue;
+        const bool time = name[0] == 'T' || name == "L";
+        const Place error = model.at("standard_errors").at(name);
+        rows.push_back({with_unit(name, time          ? s.time
+                                        : name == "K" ? unit_quotient(s.y, s.u)
+                                                      : ""),
+                        figure(model.at("plant").at(name)), error.exists() ? "± " + figure(error, 2) : Html("")});
+    }
+    if (rows.empty()) return {};
+    return table("Identified parameters", {"", "Value", "Standard error"}, rows);
+}
+
+Html quality_of(const Place& quality) {
+    std::vector<Row> rows;
+    for (const auto& [name, value] : quality.value().items()) {
+        std::string label = name;
+        for (char& c : label) c = c == '_' ? ' ' : c;
+        if (value.is_number()) rows.push_back({label, figure(quality.at(name))});
+        if (value.is_boolean()) rows.push_back({label, value.get<bool>() ? "yes" : "no"});
+        if (value.is_string()) rows.push_back({label, value.get<std::string>()});
+    }
+    std::vector<Html> notes;
+    for (const Json& note : quality.at("notes").value())
+        if (note.is_string()) notes.push_back(note.get<std::string>());
+    return table("The record", {"", ""}, rows) + list(notes);
+}
+
+std::vector<double> numbers_at(const Place& place) {
+    std::vector<double> out;
+    for (const Json& value : place.value()) out.push_back(value.is_number() ? value.get<double>() : 0.0 / 0.0);
+    return out;
+}
+
+Html fit_of(const Place& fit, const ReportSubject& s) {
+    if (!fit.at("t").exists() || !fit.at("y_model").exists()) return {};
+    const std::vector<double> t = numbers_at(fit.at("t"));
+    Plot plot{
+        .title = "Record and model", .x_label = with_unit("t", s.time), .y_label = with_unit("y", s.y), .traces = {}};
+    plot.traces.push_back({.name = "Record", .line = Line::setpoint, .x = t, .y = numbers_at(fit.at("y"))});
+    plot.traces.push_back({.name = "Model", .line = Line::proposal, .x = t, .y = numbers_at(fit.at("y_model"))});
+    Plot input{.title = "Record: u", .x_label = with_unit("t", s.time), .y_label = with_unit("u", s.u), .traces = {}};
+    input.traces.push_back({.name = "", .line = Line::setpoint, .x = t, .y = numbers_at(fit.at("u"))});
+    return element("div", drawn(plot) + drawn(input), {{"class", "figures"}});
+}
+
+Html identified(const ReportSubject& s) {
+    const Place model = s.result.at("model");
+    if (!model.at("plant").exists()) return {};
+    Html out = element("p", "Identified from a recorded test:") + formula(model.at("plant").value());
+    out += element("p", Html("Fit of the free run ") + figure(model.at("fit_percent")) + " %. " +
+                            text_at(model.at("choice_reason")));
+    out += fit_of(model.at("fit"), s);
+    out += element("div", parameters_of(model, s) + element("div", quality_of(model.at("data_quality"))),
+                   {{"class", "tables"}});
+    const Place band = model.at("excited_band");
+    if (band.at("omega_low").exists())
+        out += element("p", Html("The record excites from ") + figure(band.at("omega_low")) + " to " +
+                                figure(band.at("omega_high")) + " rad/" + s.time + ".");
+    std::vector<Html> warnings;
+    for (std::size_t i = 0; i < model.at("warnings").value().size(); ++i)
+        warnings.push_back(text_at(model.at("warnings").at(i).at("detail")));
+    return out + list(warnings);
+}
+
+}  // namespace
+
+Html plant_section(const ReportSubject& s) {
+    const Html record = identified(s);
+    if (!record.empty()) return section("Record and model", record);
+    return section("Plant", given_plant(s));
+}
+
+Html assumptions_section(const ReportSubject& s) {
+    const Place evaluate = s.request.at("evaluate");
+    const auto step = [&](const char* name, const std::string& unit) {
+        const Json& value = evaluate.at(name).value();
+        return (value.is_number() ? number_text(value.get<double>(), 6) : std::string("1")) +
+               (unit.empty() ? "" : " " + unit);
+    };
+    const bool nonlinear = s.result.at("operating_point").exists();
+    std::vector<Html> out = {
+        nonlinear
+            ? "Methods and margins rest on the linear model at the operating point; responses are of the equations."
+            : "The plant is linear about its operating point, with the dead time at its input; all values are "
+              "deviations from that point.",
+        "Responses: a set-point step of " + step("setpoint_step", s.y) + " and a load step of " +
+            step("load_step", s.u) + " at the plant's input, both at t = 0. Indices are integrals " +
+            (evaluate.at("horizon").value().is_number()
+                 ? "to " + number_text(evaluate.at("horizon").value().get<double>(), 6) + " " + s.time + "."
+                 : "until the response has settled for good."),
+        "u = Kp [b r − y + (1/Ti) ∫(r − y) dt + Td d/dt (c r − y)], y filtered as the table says. L = P C, S = 1/(1 + "
+        "L), "
+        "T = L/(1 + L); Ms and Mt are their largest sizes.",
+        "A model is never the process: enter the settings with the loop watched, and keep today's at hand."};
+    const Place check = s.entry.at("verification");
+    if (check.at("iae_step_halving").exists())
+        out.push_back(Html("Checked: halving every step moves the load IAE by ") +
+                      figure(check.at("iae_step_halving"), 2) + " of itself; stability by two methods that " +
+                      (check.at("stability_methods_agree").value() == true ? "agree." : "do not agree."));
+    const Place longest = s.entry.at("longest_sample_time");
+    if (longest.value().is_number())
+        out.push_back(Html("The controller must run at least every ") + figure(longest) + " " + s.time +
+                      " to keep Ms within 5 %.");
+    return section("Assumptions and limits", list(out));
+}
+
+}  // namespace tunewright::api

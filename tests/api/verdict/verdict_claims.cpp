@@ -1,0 +1,306 @@
+#include "tests/api/verdict/verdict_claims.h"
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <regex>
+
+namespace tunewright::api {
+namespace {
+
+std::optional<double> at(const Json& value, const std::string& pointer) {
+    const Json::json_pointer where(pointer);
+    if (!value.contains(where) || !value[where].is_number()) return std::nullopt;
+    return value[where].get<double>();
+}
+
+bool null_at(const Json& value, const std::string& pointer) {
+    const Json::json_pointer where(pointer);
+    return value.contains(where) && value[where].is_null();
+}
+
+/// Where a figure of a finding stands in its entry. An entry's own places come first; any of them will do.
+const std::map<std::string, std::vector<std::string>>& places() {
+    static const std::map<std::string, std::vector<std::string>> all = {
+        {"Ms", {"/robustness/Ms", "/implemented/robustness/Ms", "/region/worst_Ms"}},
+        {"Mt", {"/robustness/Mt", "/implemented/robustness/Mt"}},
+        {"Mks", {"/robustness/Mks", "/implemented/robustness/Mks"}},
+        {"omega_Ms", {"/robustness/omega_Ms", "/implemented/robustness/omega_Ms"}},
+        {"omega_Mt", {"/robustness/omega_Mt", "/implemented/robustness/omega_Mt"}},
+        {"Ms_ideal", {"/robustness/Ms"}},
+        {"load_IAE", {"/performance/load/IAE", "/implemented/performance/load/IAE"}},
+        {"load_IAE_ideal", {"/performance/load/IAE"}},
+        {"worst_Ms", {"/region/worst_Ms"}},
+        {"gain_low", {"/robustness/tolerates/gain/0", "/implemented/robustness/tolerates/gain/0"}},
+        {"gain_high", {"/robustness/tolerates/gain/1", "/implemented/robustness/tolerates/gain/1"}},
+        {"extra_dead_time",
+         {"/robustness/tolerates/extra_dead_time", "/implemented/robustness/tolerates/extra_dead_time"}},
+        {"overshoot_percent",
+         {"/performance/setpoint/overshoot_percent", "/implemented/performance/setpoint/overshoot_percent"}},
+        {"TV", {"/performance/setpoint/TV", "/implemented/performance/setpoint/TV"}},
+        {"u_std", {"/performance/noise/u_std"}},
+        {"longest_sample_time", {"/longest_sample_time"}},
+        {"excess_percent", {"/optimum_at_Ms/excess_percent"}},
+        {"Tf", {"/controller/filter/Tf"}},
+        {"Ms_limit", {"/options/Ms", "/options/limit"}},
+        {"Mt_limit", {"/options/Mt"}},
+        {"Mks_limit", {"/options/Mks"}},
+    };
+    return all;
+}
+
+/// What runs: the loop as it is built, where that is known.
+std::string runs(const Json& entry) { return entry.contains("implemented") ? "/implemented" : ""; }
+
+void check_numbers(const Json& finding, std::vector<std::string>& faults) {
+    const std::string text = finding["text"], code = finding["code"];
+    if (code == "reason" || code == "large-errors") return;  // sentences of others
+    for (const char* word : {"nan", "null", "inf ", "  "})
+        if (text.find(word) != text.npos) faults.push_back(code + " says \"" + word + "\": " + text);
+    static const std::regex number(R"((^|[^A-Za-z0-9_.])(-?\d+(\.\d+)?(e-?\d+)?))");
+    for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it) {
+        const double said = std::stod((*it)[2].str());
+        bool known = false;
+        for (const auto& [name, value] : finding["figures"].items())
+            known = known || std::abs(said - value.get<double>()) <= 5.001e-3 * std::abs(value.get<double>());
+        if (!known) faults.push_back(code + ": " + (*it)[2].str() + " is not among its figures: " + finding.dump());
+    }
+}
+
+void check_figures(const Json& entry, const Json& finding, std::vector<std::string>& faults) {
+    for (const auto& [name, value] : finding["figures"].items()) {
+        const auto known = places().find(name);
+        if (known == places().end()) continue;
+        bool found = false;
+        for (const std::string& place : known->second) found = found || at(entry, place) == value.get<double>();
+        if (!found)
+            faults.push_back(finding["code"].get<std::string>() + ": no figure of the entry is " + name + " = " +
+                             value.dump());
+    }
+}
+
+std::optional<double> limit(const Json& entry, const std::string& name) {
+    const auto value = at(entry, "/options/" + name);
+    return value && *value > (name == "Mks" ? 0 : 1) ? value : std::nullopt;
+}
+
+struct Words {
+    const char* text;
+    double low, high;
+};
+
+/// How far words may be from the ratio that they stand for.
+constexpr Words kWords[] = {
+    {"about a tenth of", 0.085, 0.115},      {"about a fifth of", 0.17, 0.23},  {"about a quarter of", 0.21, 0.29},
+    {"about a third of", 0.29, 0.38},        {"about half of", 0.45, 0.55},     {"about two thirds of", 0.62, 0.71},
+    {"about three quarters of", 0.71, 0.79}, {"about the same as", 0.86, 1.16}, {"about twice", 1.88, 2.12},
+    {"about three times", 2.8, 3.2}};
+
+void check_against_today(const Json& entry, const Json& today, const Json& finding, std::vector<std::string>& faults) {
+    const std::string text = finding["text"];
+    const auto IAE = at(entry, runs(entry) + "/performance/load/IAE"),
+               before = at(today, runs(today) + "/performance/load/IAE");
+    const bool unstable = today[Json::json_pointer(runs(today) + "/robustness/stable")] == false;
+    if ((text.find("today's settings are unstable") != text.npos) != unstable)
+        faults.push_back("today's stability: " + text);
+    if (unstable || !before || *before <= 0) return;
+    const double ratio = *IAE / *before;
+    for (const Words& words : kWords)
+        if (text.find(words.text) != text.npos && !(ratio >= words.low && ratio <= words.high))
+            faults.push_back("a ratio of " + std::to_string(ratio) + " is called " + words.text);
+    if (at(finding, "/figures/ratio") && std::abs(*at(finding, "/figures/ratio") / ratio - 1) > 1e-9)
+        faults.push_back("the ratio is " + std::to_string(ratio) + ": " + finding.dump());
+    if ((finding["level"] == "good" && ratio > 0.9) || (finding["level"] == "warning" && ratio < 1.1))
+        faults.push_back("a ratio of " + std::to_string(ratio) + " has level " + finding["level"].dump());
+}
+
+void check_active_limit(const Json& entry, const Json& finding, std::vector<std::string>& faults) {
+    const std::string text = finding["text"];
+    const bool on_worst = text.find("on the worst plant") != text.npos;
+    int active = 0;
+    for (const std::string name : {"Ms", "Mt", "Mks"}) {
+        const auto value = at(finding, "/figures/" + name);
+        const auto asked = limit(entry, name);
+        if (text.find(name + " = ") != text.npos) {
+            ++active;
+            if (!value || !asked || std::abs(*value / *asked - 1) > 3e-3)
+                faults.push_back(name + " is called the active limit: " + finding.dump());
+        }
+        if (text.find(name + " (") != text.npos && (!value || !asked || *value > 1.003 * *asked))
+            faults.push_back(name + " is said to be within its limit: " + finding.dump());
+        // A limit that is not named must not be the one that stops the design.
+        const auto runs_at = at(entry, runs(entry) + "/robustness/" + name);
+        if (!on_worst && runs_at && asked && std::abs(*runs_at / *asked - 1) < 1e-3 &&
+            text.find(name + " = ") == text.npos)
+            faults.push_back(name + " is at its limit and not called active: " + text);
+    }
+    if (active == 0 || (active == 1) == (text.find("limits are") != text.npos))
+        faults.push_back("count of limits: " + text);
+}
+
+void check_finding(const Json& entry, const Json* today, const Json& finding, const Json& request,
+                   std::vector<std::string>& faults) {
+    const std::string code = finding["code"], text = finding["text"];
+    const Json& figures = finding["figures"];
+    const auto fault = [&](bool wrong, const std::string& what) {
+        if (wrong) faults.push_back(code + ": " + what + ": " + finding.dump());
+    };
+    check_numbers(finding, faults);
+    check_figures(entry, finding, faults);
+    if (code == "active-limit") check_active_limit(entry, finding, faults);
+    if (code == "against-today") {
+        fault(today == nullptr, "there is no today");
+        if (today != nullptr) check_against_today(entry, *today, finding, faults);
+    }
+    if (code == "movement")
+        fault(today == nullptr ||
+                  std::abs(figures["TV"].get<double>() / *at(*today, runs(*today) + "/performance/setpoint/TV") /
+                               figures["ratio"].get<double>() -
+                           1) > 1e-9,
+              "not the ratio of TV");
+    if (code == "members") {
+        const bool all = at(entry, "/region/stable_fraction") == 1.0 && at(entry, "/region/worst_Ms");
+        fault((text.find("Stable o") == 0 && text.find("% of") == text.npos) != all, "stability of all plants");
+        if (!all)
+            fault(figures["stable_percent"].get<double>() > 100 * *at(entry, "/region/stable_fraction") + 1e-9,
+                  "share");
+    }
+    if (code == "sample-time")
+        fault(!(request["implement"]["sample_time"].get<double>() > *at(entry, "/longest_sample_time")),
+              "the sample time is short enough");
+    if (code == "PI-as-good")
+        fault(figures["PI_load_IAE"].get<double>() > 1.0501 * *at(entry, "/performance/load/IAE"), "PI is worse");
+    if (code == "derivative-pays")
+        fault(figures["PI_load_IAE"].get<double>() < 1.0499 * *at(entry, "/performance/load/IAE"), "PI is as good");
+    if (code == "noise-gain")
+        fault(!(*at(entry, "/robustness/Mks") > 19 * std::abs(at(entry, "/controller/Kp").value_or(0))),
+              "the noise gain is usual");
+    if (code == "no-filter") fault(!null_at(entry, "/robustness/Mks"), "Mks is finite");
+    if (code == "margin-unknown")
+        fault(!null_at(entry, "/robustness/Ms") && !null_at(entry, "/implemented/robustness/Ms"), "Ms is known");
+    if (code == "dead-time-rules" && request.contains("plant") && request["plant"]["type"] == "fopdt")
+        fault(*at(request, "/plant/L") < 1.999 * *at(request, "/plant/T"), "the dead time is short");
+}
+
+int rank(const Json& level) { return level == "good" ? 0 : level == "note" ? 1 : level == "warning" ? 2 : 3; }
+
+void check_entry(const Json& entry, const Json* today, const Json& request, std::vector<std::string>& faults) {
+    const Json& verdict = entry["verdict"];
+    if (verdict.empty()) return faults.push_back("an entry without verdict");
+    const Json& head = verdict[0];
+    if (entry.contains("error")) {
+        if (head["code"] != "no-controller" || head["level"] != "bad")
+            faults.push_back("a failure is called " + head.dump());
+        return;
+    }
+    const Facts facts = facts_of(entry, request);
+    if (facts.bad != (head["level"] == "bad")) faults.push_back("level " + head.dump() + " with: " + facts.why);
+    if ((facts.bad || facts.not_good) == (head["level"] == "good"))
+        faults.push_back("level " + head.dump() + " with: " + facts.why);
+    std::map<std::string, int> codes;
+    for (const Json& finding : verdict) {
+        if (++codes[finding["code"]] > 1) faults.push_back("twice: " + finding.dump());
+        if (finding["level"] == "bad" && head["level"] != "bad") faults.push_back("bad behind " + head.dump());
+        check_finding(entry, today, finding, request, faults);
+    }
+    const bool limited = head["text"].get<std::string>().find("limited by") != std::string::npos;
+    if (head["code"] == "robust" && limited != (finding(verdict, "active-limit") != nullptr))
+        faults.push_back("limited, without an active limit: " + verdict.dump());
+}
+
+void check_result(const Json& answer, std::vector<std::string>& faults) {
+    if (!answer.contains("verdict") || answer["verdict"].empty()) return faults.push_back("an answer without verdict");
+    const Json& head = answer["verdict"][0];
+    const Json& entries = answer["controllers"];
+    int best = 3;
+    for (const Json& entry : entries)
+        if (entry.value("method", "") != "baseline" && !entry.contains("error"))
+            best = std::min(best, rank(entry["verdict"][0]["level"]));
+    if (head["code"] == "none") {
+        if (best < 3) faults.push_back("nothing to take, though one is usable");
+        return;
+    }
+    const Json& chosen = entries[head["figures"]["entry"].get<std::size_t>()];
+    const Json& own = chosen["verdict"][0]["level"];
+    if (rank(own) == 3 || rank(own) > best) faults.push_back("takes " + own.dump() + " though a better one is there");
+    if (head["code"] == "take" && head["level"] != own)
+        faults.push_back("the level is not the entry's: " + head.dump());
+    if (head["code"] == "keep-today") {
+        const Json& today = entries.back();
+        if (today["method"] != "baseline" || rank(today["verdict"][0]["level"]) > rank(own))
+            faults.push_back("keeps what is worse");
+    }
+}
+
+}  // namespace
+
+const Json* finding(const Json& verdict, const std::string& code) {
+    for (const Json& one : verdict)
+        if (one["code"] == code) return &one;
+    return nullptr;
+}
+
+Facts facts_of(const Json& entry, const Json& request) {
+    Facts facts;
+    const auto bad = [&](bool is, const std::string& why) {
+        if (is) facts.why += why + "; ";
+        facts.bad = facts.bad || is;
+    };
+    const auto doubt = [&](bool is, const std::string& why) {
+        if (is) facts.why += why + "; ";
+        facts.not_good = facts.not_good || is;
+    };
+    const bool horizon =
+        request.contains("/evaluate/horizon"_json_pointer) && request["evaluate"]["horizon"].is_number();
+    const bool stable = entry["robustness"]["stable"];
+    const bool integral = at(entry, "/equivalents/parallel/Ki").value_or(0) != 0;
+    bad(!stable, "unstable");
+    double worst = 0;
+    for (const std::string place : {"", "/implemented"}) {
+        if (place != "" && !entry.contains("implemented")) continue;
+        const Json& robustness = entry[Json::json_pointer(place + "/robustness")];
+        bad(robustness["stable"] == false, "unstable" + place);
+        worst = std::max(worst, at(robustness, "/Ms").value_or(0));
+        doubt(null_at(robustness, "/Ms"), "Ms is not known" + place);
+        doubt(at(robustness, "/Mt").value_or(0) > 2.00001, "Mt above 2" + place);
+        for (const char* name : {"Ms", "Mt"})
+            if (const auto asked = limit(entry, name);
+                asked && at(robustness, std::string("/") + name).value_or(0) > 1.003 * *asked)
+                doubt(true, std::string(name) + " above its limit" + place);
+        const bool at_rest = at(entry, place + "/performance/setpoint/settling_time") &&
+                             at(entry, place + "/performance/load/recovery_time");
+        if (integral && !at_rest && stable)
+            place.empty() && !horizon ? bad(true, "not at rest")
+                                      : doubt(place.empty() || !horizon, "not at rest" + place);
+    }
+    if (entry.contains("region")) {
+        bad(at(entry, "/region/stable_fraction").value_or(0) < 1 || null_at(entry, "/region/worst_Ms"),
+            "unstable somewhere");
+        const auto Ms = at(entry, "/region/worst_Ms");
+        worst = std::max(worst, Ms.value_or(0));
+        if (const auto asked = limit(entry, "Ms"))
+            doubt(Ms.value_or(0) > 1.011 * *asked, "Ms above its limit at worst");
+    }
+    bad(worst > 2.00001, "Ms above 2");
+    doubt(worst > 1.70001, "Ms above 1.7");
+    doubt(!integral, "no integral action");
+    for (const Json& warning : entry["warnings"]) {
+        bad(warning["code"] == "left-domain" || (warning["code"] == "does-not-settle" && integral && !horizon),
+            warning["code"]);
+        doubt(warning["code"] == "not-as-built" || warning["code"] == "does-not-settle", warning["code"]);
+    }
+    return facts;
+}
+
+std::vector<std::string> contradictions(const Json& answer, const Json& request) {
+    std::vector<std::string> faults;
+    const Json* today = nullptr;
+    for (const Json& entry : answer["controllers"])
+        if (entry.value("method", "") == "baseline" && !entry.contains("error")) today = &entry;
+    for (const Json& entry : answer["controllers"])
+        check_entry(entry, &entry == today ? nullptr : today, request, faults);
+    check_result(answer, faults);
+    return faults;
+}
+
+}  // namespace tunewright::api

@@ -5,9 +5,11 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "api/report/report.h"
 #include "server/config.h"
 #include "server/http/problems.h"
 #include "server/jobs/timer.h"
+#include "server/json_text.h"
 
 namespace tunewright::server {
 namespace {
@@ -95,6 +97,18 @@ int identify(const IdentifyCommand& command) {
     return failed ? 1 : 0;
 }
 
+int plant(const PlantCommand& command) {
+    std::string text = command.text;
+    if (text == "-") read_input("-", text);
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+    const std::string units = std::move(JsonObject().text("time", command.time_unit)).str();
+    const std::string question = std::move(JsonObject().raw("units", units).text("text", text)).str();
+    const api::Answer answer = api::parse_plant_call(question);
+    const bool failed = answer.status >= 400;
+    (failed ? std::cerr : std::cout) << answer.body << "\n";
+    return failed ? 1 : 0;
+}
+
 int code(const CodeCommand& command) {
     std::string result, request;
     if (!read_input(command.file, result)) return fail(unreadable(command.file));
@@ -102,6 +116,16 @@ int code(const CodeCommand& command) {
     const auto written = api::controller_code({result, request}, command.controller, command.words);
     if (const auto* problem = std::get_if<api::Problem>(&written)) return fail(*problem);
     std::cout << std::get<api::ControllerCode>(written).text;
+    return 0;
+}
+
+int report(const ReportCommand& command) {
+    std::string result, request;
+    if (!read_input(command.file, result)) return fail(unreadable(command.file));
+    if (!command.request.empty() && !read_input(command.request, request)) return fail(unreadable(command.request));
+    const auto written = api::report_html({result, request}, command.controller, {});
+    if (const auto* problem = std::get_if<api::Problem>(&written)) return fail(*problem);
+    std::cout << std::get<std::string>(written);
     return 0;
 }
 

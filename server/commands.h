@@ -1,5 +1,5 @@
-// The commands that need no service of their own: `tunewright tune` and `tunewright identify` answer one request,
-// `tunewright code` writes a controller of a result, and `tunewright health` asks a running service.
+// The commands that need no service of their own: `tunewright tune`, `identify` and `plant` answer one request,
+// `tunewright code` and `report` write a controller of a result, and `tunewright health` asks a running service.
 #pragma once
 
 #include <string>
@@ -23,6 +23,15 @@ struct IdentifyCommand {
 /// only limit on the file's size is that of a record, 2,000,000 samples.
 int identify(const IdentifyCommand& command);
 
+struct PlantCommand {
+    std::string text;  ///< "-": standard input
+    std::string time_unit = "s";
+};
+
+/// Answers POST /v1/plants/parse of the text to standard output and returns 0; a problem goes to standard error as
+/// problem JSON and 1 is returned.
+int plant(const PlantCommand& command);
+
 struct CodeCommand {
     std::string file;        ///< a result or a job; "-": standard input
     std::string request;     ///< file of the request that it answers; "": not known
@@ -33,6 +42,16 @@ struct CodeCommand {
 /// Writes the controller as source text to standard output and returns 0; a problem goes to standard error as problem
 /// JSON and 1 is returned.
 int code(const CodeCommand& command);
+
+struct ReportCommand {
+    std::string file;        ///< a result or a job; "-": standard input
+    std::string request;     ///< file of the request that it answers; "": not known
+    std::string controller;  ///< its number in the result; "": the best
+};
+
+/// Writes GET /v1/jobs/{id}/report.html of the result to standard output and returns 0; a problem goes to standard
+/// error as problem JSON and 1 is returned.
+int report(const ReportCommand& command);
 
 /// GET `url` (http://HOST:PORT/PATH, HOST an address or a name), answered within three seconds. Returns 0 where the
 /// status is 200; else 1, and standard error says why. 2 where the url cannot be used.

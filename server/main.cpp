@@ -186,9 +186,22 @@ int main(int argc, char** argv) {
     identify_app->add_flag("--traces", identifying.question.traces,
                            "CSV: answer the record beside the models' free runs too");
 
+    PlantCommand typing;
+    CLI::App* plant_app =
+        app.add_subcommand("plant", "A typed plant such as \"2 e^(-3s)/(10s+1)\" as JSON, with its formula");
+    plant_app->add_option("text", typing.text, "The plant; - reads standard input")->required();
+    plant_app->add_option("--time-unit", typing.time_unit, "Unit of the times of the answer; s if not given");
+
     CodeCommand coding;
     CLI::App* code_app = app.add_subcommand("code", "A controller of a result as Structured Text, C or Python");
     add_code_options(*code_app, coding);
+
+    ReportCommand reporting;
+    CLI::App* report_app = app.add_subcommand("report", "A controller of a result as a page to print, in HTML");
+    report_app->add_option("file", reporting.file, "A result of tune, or a job as JSON; - reads standard input")
+        ->required();
+    report_app->add_option("--controller", reporting.controller, "Number in the result, from 0 (default: the best)");
+    report_app->add_option("--request", reporting.request, "File of the request, where the result does not have it");
 
     KeyCommand naming;
     CLI::App* methods_app = app.add_subcommand("methods", "The tuning methods with their options, as JSON");
@@ -209,7 +222,9 @@ int main(int argc, char** argv) {
         if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
         if (identify_app->parsed()) return identify(identifying);
+        if (plant_app->parsed()) return plant(typing);
         if (code_app->parsed()) return code(coding);
+        if (report_app->parsed()) return report(reporting);
         if (methods_app->parsed()) {
             std::cout << tunewright::api::methods_json() << "\n";
             return 0;

@@ -193,6 +193,7 @@ private:
         add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_);
         add_code_routes(router_, jobs_);
+        add_report_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, batch_lane_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, turns_, timer_, closing_.get_token());

@@ -39,6 +39,7 @@ void add_times(JsonObject& object, const JobSummary& job) {
         .raw("started_at", moment(job.started_at))
         .raw("finished_at", moment(job.finished_at))
         .number("attempts", job.attempts);
+    if (!job.outline.empty()) object.raw("outline", job.outline);
 }
 
 std::string percent_encode(const std::string& text) {

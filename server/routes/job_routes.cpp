@@ -158,6 +158,8 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
             if (!query.status) refuse("it must be one of queued, running, succeeded, failed, cancelled.");
         } else if (name == "name") {
             query.name = value;
+        } else if (name == "q") {
+            query.text = value;
         } else if (name == "batch") {
             query.batch = value;
         } else if (name == "limit") {
@@ -166,7 +168,7 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
             query.before_seq = parse_cursor(value);
             if (!query.before_seq) refuse("it must come from the next link of an earlier page.");
         } else {
-            refuse("the list knows only status, name, batch, limit and cursor.");
+            refuse("the list knows only status, name, q, batch, limit and cursor.");
         }
     }
     return problem;

@@ -27,6 +27,9 @@ void add_trace_routes(http::Router& router, JobService& jobs);
 /// /v1/jobs/{id}/controllers/{index}/code
 void add_code_routes(http::Router& router, JobService& jobs);
 
+/// /v1/jobs/{id}/report.html
+void add_report_routes(http::Router& router, JobService& jobs);
+
 struct BatchLimits {
     api::JobLimits job;
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch
@@ -36,8 +39,9 @@ struct BatchLimits {
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
                       const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/identify, /v1/experiments/relay and the conversions below /v1/controllers: computed while the
-/// client waits, when its turn has come, with a deadline, or until `closing`.
+/// /v1/evaluate, /v1/design, /v1/frontier, /v1/identify, /v1/experiments/relay and the conversions below
+/// /v1/controllers: computed while the client waits, when its turn has come, with a deadline, or until `closing`.
+/// /v1/plants/parse: at once.
 void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing);
 
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "api/service.h"
+#include "server/http/negotiation.h"
 #include "server/http/problems.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
@@ -19,11 +20,20 @@ using http::problem_response;
 using http::Response;
 using SyncCall = std::function<api::Answer(const Call&, const RunControl&)>;
 
+using Refusal = std::optional<Response> (*)(const http::Request&);
+
 constexpr std::chrono::seconds kEvaluateTime{10};
+constexpr std::chrono::seconds kDesignTime{10};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
 constexpr std::chrono::milliseconds kLook{250};  // for clients that have gone
+
+bool is_file(const http::Request& request) {
+    const std::string type = http::media_type(request);
+    return type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values" ||
+           type == "text/plain" || type == "application/octet-stream";
+}
 
 double monotonic_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -89,12 +99,23 @@ Response compute(const SyncCall& work, const Call& call, std::chrono::seconds li
     return response.set("Server-Timing", fmt::format("compute;dur={:.2f}", monotonic_ms() - start));
 }
 
+/// A file of a recorded test, or JSON that holds it.
+std::optional<Response> refuse_file_call(const http::Request& request) {
+    if (!is_file(request) && !http::sends_json(request))
+        return problem_response(415, "The body must be the file itself, with Content-Type: text/csv, or JSON.");
+    return refuse_form(request);
+}
+
+api::Answer preview(const Call& call, const RunControl&) {
+    return is_file(call.request) ? api::preview_file(call.request.body) : api::preview_call(call.request.body);
+}
+
 /// The time counts from the arrival of the request, waiting for its turn included.
 http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turns& turns, Timer& timer,
-                          const std::stop_token& closing) {
+                          const std::stop_token& closing, Refusal refuse) {
     return [=, &turns, &timer](const Call& call) {
         const auto deadline = Turns::Clock::now() + limit;
-        if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
+        if (auto refusal = refuse(call.request)) return *std::move(refusal);
         if (closing.stop_requested()) return closing_down();
         switch (turns.take(call.request.client, deadline, call.request.left)) {
             case Turns::Wait::full:
@@ -123,14 +144,29 @@ SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
     return [work](const Call& call, const RunControl&) { return work(call.path.at("id"), call.request.body); };
 }
 
+/// What is answered at once: as long as somebody types, it is asked for at each key, and waits for no computation.
+Response parse_plant(const Call& call) {
+    if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
+    const api::Answer answer = api::parse_plant_call(call.request.body);
+    Response response;
+    response.status = answer.status;
+    response.body = answer.body;
+    return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+}
+
 }  // namespace
 
 void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing) {
-    const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit) {
-        router.add("POST", path, synchronous(work, limit, turns, timer, closing));
+    const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit,
+                         Refusal refuse = refuse_call) {
+        router.add("POST", path, synchronous(work, limit, turns, timer, closing, refuse));
     };
+    router.add("POST", "/v1/plants/parse", parse_plant);
     add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);
+    add("/v1/design", of_body(api::design_call), kDesignTime);
+    add("/v1/frontier", of_body(api::frontier_call), kDesignTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
+    add("/v1/records/preview", preview, kIdentifyTime, refuse_file_call);
     add("/v1/experiments/relay", of_body(api::relay_call), kRelayTime);
     add("/v1/controllers/{id}/settings", of_product(api::controller_settings_call), kConversionTime);
     add("/v1/controllers/{id}/controller", of_product(api::controller_twin_call), kConversionTime);

@@ -74,6 +74,7 @@ struct JobSummary {
     std::string owner;
     std::string batch;       ///< id of the batch it belongs to; "" if none
     std::int64_t index = 0;  ///< its place in the batch, from 0
+    std::string outline;     ///< JSON: what an ended job was about and what came out, in a line; "" if none
 };
 
 /// What somebody who follows a job needs.
@@ -96,11 +97,13 @@ struct JobEnd {
     std::string error;    ///< "" if none
     std::string version;  ///< of the program that computed it
     UnixMs finished_at = 0;
+    std::string outline = {};  ///< as in JobSummary
 };
 
 struct JobQuery {
     std::optional<JobStatus> status;
     std::optional<std::string> name;
+    std::optional<std::string> text;  ///< part of the name, of the id or of the outline's method, in any case
     std::optional<std::string> owner;
     std::optional<std::string> batch;  ///< only its entries; without it single jobs alone
     int limit = 50;
@@ -177,7 +180,8 @@ struct NewEntry {
     double timeout_s = 60;
     std::string request;  ///< "" where it could not be read
     std::string request_hash;
-    std::string error;  ///< problem of an entry that is failed from the start; "" for one that waits
+    std::string error;         ///< problem of an entry that is failed from the start; "" for one that waits
+    std::string outline = {};  ///< of one that is failed from the start
 };
 
 struct BatchSummary {

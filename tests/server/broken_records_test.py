@@ -70,7 +70,7 @@ BROKEN = {
     "empty": ("", (), "csv is empty"),
     "header only": ("t,u,y\n", (), "csv has headings but no line of numbers"),
     "two rows": (text(([0, 1], [0, 1], [0, 1])), (), "2 usable samples"),
-    "one column": ("y\n1\n2\n3\n", (), "name it in columns.u"),
+    "one column": ("y\n1\n2\n3\n", (), "No column is plainly u"),
     "text in the middle": (lines(L57="27.5,11,stuck"), (), 'Line 57, column "y": "stuck" is not a number'),
     "text for a time": (lines(L57="noon,11,20"), (), 'Line 57, column "t": "noon" is not a number'),
     "all NaN": (text((T, U, ["NaN"] * LENGTH), line="%.6g,%.6g,%s"), (), "0 usable samples in 300 rows"),

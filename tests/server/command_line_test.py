@@ -41,6 +41,15 @@ class CommandLineTest(unittest.TestCase):
             file.flush()
             self.assertEqual(run("tune", file.name).returncode, 0)
 
+    def test_plant_says_what_a_line_means(self):
+        done = run("plant", "K=2 T=10 min L=30 s", "--time-unit", "min")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(json.loads(done.stdout)["plant"], {"type": "fopdt", "K": 2, "T": 10, "L": 0.5})
+        self.assertEqual(run("plant", "-", text="2/(10s+1)\n").returncode, 0)
+        done = run("plant", "2/(10s+1")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("position 3", json.loads(done.stderr)["detail"])
+
     def test_health_is_0_for_a_service_that_answers_and_1_for_none(self):
         with Service() as service:
             address = "127.0.0.1:%d" % service.port

@@ -122,6 +122,34 @@ class HttpTest(unittest.TestCase):
         refused = self.service.post("/v1/experiments/relay", {"plant": FOPDT, "relay": {"hysteresis": 100}})
         self.assertProblem(refused, 422)
 
+    def test_a_typed_plant_is_a_plant_everywhere(self):
+        line = "2 e^(-3s)/(10s+1)"
+        parsed = self.service.post("/v1/plants/parse", {"text": line})
+        self.assertEqual((parsed.status, parsed.json["text"]), (200, "2 e^(-3 s)/(10 s + 1)"))
+        self.assertIn("<mfrac>", parsed.json["formula"])
+        self.assertEqual(self.service.post("/v1/plants/parse", {"text": "2/"}).json["errors"][0]["pointer"], "/text")
+        relay = self.service.post("/v1/experiments/relay", {"plant": line, "relay": {"cycles": 3}})
+        self.assertEqual(relay.status, 200)
+        design = self.service.post("/v1/design", {"plant": line, "tune": [{"method": "simc"}]})
+        self.assertEqual(design.status, 200, design.body)
+        job = self.service.post("/v1/jobs", {"plant": line, "tune": [{"method": "simc"}]}, {"Prefer": "wait=30"}).json
+        self.assertEqual(job["request"]["plant"], {"type": "fopdt", "K": 2, "T": 10, "L": 3})
+        body = {"jobs": [{"plant": line, "tune": [{"method": "simc"}]}, {"plant": "2/(10s", "tune": [{"method": "simc"}]}]}
+        batch = self.service.post("/v1/batches", body).json
+        self.assertEqual(batch["total"], 2)
+
+    def test_a_file_is_previewed_as_it_is(self):
+        csv = "Zeit [s];Stellgröße;Temperatur\r\n" + "".join("%d;%d,0;2%d,5\r\n" % (k, k // 5, k % 10) for k in range(30))
+        for encoding, name in (("utf-8", "utf-8"), ("cp1252", "iso-8859-1"), ("utf-16", "utf-16le")):
+            answer = self.service.post("/v1/records/preview", csv.encode(encoding), {"Content-Type": "text/csv"})
+            self.assertEqual(answer.status, 200, answer.body[:300])
+            found = answer.json
+            self.assertEqual([column["guess"] for column in found["columns"]], ["t", "u", "y"])
+            self.assertEqual((found["encoding"], found["rows"], found["columns"][1]["heading"]), (name, 30, "Stellgröße"))
+        asked = self.service.post("/v1/records/preview", {"csv": csv, "time_unit": "min"})
+        self.assertEqual(asked.json["time"]["dt"], 60)
+        self.assertProblem(self.service.post("/v1/records/preview", b"<a/>", {"Content-Type": "text/xml"}), 415)
+
     def test_a_connection_serves_many_requests_and_pipelined_ones_in_order(self):
         connection = http.client.HTTPConnection("127.0.0.1", self.service.port)
         for _ in range(50):

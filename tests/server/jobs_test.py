@@ -185,6 +185,12 @@ class ListTest(unittest.TestCase):
         self.assertEqual([job["id"] for job in jobs], self.ids[1::2][::-1])
         self.assertEqual(self.pages("/v1/jobs?status=failed"), [[]])
 
+    def test_a_list_says_what_came_out_and_is_searched_by_it(self):
+        outline = self.service.get("/v1/jobs?q=EVEN&limit=1").json["jobs"][0]["outline"]
+        self.assertEqual(outline["plant"]["type"], "fopdt")
+        self.assertEqual(self.service.get("/v1/jobs?q=" + outline["method"] + "&limit=200").json["jobs"][0]["id"], self.ids[-1])
+        self.assertEqual(self.pages("/v1/jobs?q=nowhere"), [[]])
+
     def test_wrong_parameters_are_all_named(self):
         answer = self.service.get("/v1/jobs?status=done&limit=0&cursor=x&colour=red")
         self.assertEqual(answer.status, 422)

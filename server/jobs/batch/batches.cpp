@@ -155,6 +155,7 @@ void Reception::keep(std::vector<api::BatchEntry> entries) {
             made.request_hash = std::move(job->request_hash);
         } else {
             made.error = api::to_json(std::get<api::Problem>(entry.job));
+            made.outline = api::error_outline(made.error);
         }
         group_bytes_ += made.request.size() + made.error.size();
         group_.push_back(std::move(made));

@@ -83,6 +83,8 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
     end.error = std::move(outcome.error_json);
     if (end.status == JobStatus::failed && end.error.empty())
         end.error = fault_problem("The computation failed without saying why.");
+    end.outline = outcome.outline_json.empty() && !end.error.empty() ? api::error_outline(end.error)
+                                                                     : std::move(outcome.outline_json);
     end.version = settings_.version;
     end.finished_at = settings_.now();
     ends_.finish({held, std::move(end), seconds, std::move(outcome.method)});

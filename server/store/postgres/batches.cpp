@@ -23,13 +23,14 @@ const std::string kAdd =
     "(SELECT min(turn) - 1 FROM jobs WHERE status = 'queued' AND class = 1), "
     "(SELECT max(turn) FROM jobs WHERE status = 'queued' AND class = 1 AND flow = $3)) AS turn) "
     "INSERT INTO jobs (id, name, status, class, turn, owner, flow, batch, batch_index, created_at, finished_at, "
-    "timeout_s, request_hash, request, error) "
+    "timeout_s, request_hash, request, error, outline) "
     "SELECT g.id, g.name, CASE WHEN g.error = '' THEN 'queued' ELSE 'failed' END, 1, "
     "s.turn + count(*) FILTER (WHERE g.error = '') OVER (ORDER BY g.index), $2, $3, $1, g.index, $4, "
     "CASE WHEN g.error <> '' THEN $4::bigint END, g.timeout_s, g.request_hash, nullif(g.request, ''), "
-    "nullif(g.error, '') "
-    "FROM unnest($5::text[], $6::text[], $7::float8[], $8::text[], $9::text[], $10::text[], $11::bigint[]) "
-    "AS g (id, name, timeout_s, request, request_hash, error, index), served s ORDER BY g.index";
+    "nullif(g.error, ''), nullif(g.outline, '') "
+    "FROM unnest($5::text[], $6::text[], $7::float8[], $8::text[], $9::text[], $10::text[], $11::bigint[], "
+    "$12::text[]) "
+    "AS g (id, name, timeout_s, request, request_hash, error, index, outline), served s ORDER BY g.index";
 
 }  // namespace
 
@@ -46,7 +47,7 @@ bool add_entries(Session& session, const std::string& id, const std::vector<NewE
         Values().text(id));
     if (rows.empty()) return false;
     if (entries.empty()) return true;
-    TextArray ids, name, timeout, request, hash, error, index;
+    TextArray ids, name, timeout, request, hash, error, index, outline;
     for (const NewEntry& entry : entries) {
         ids.add(entry.id);
         name.add(entry.name);
@@ -55,10 +56,11 @@ bool add_entries(Session& session, const std::string& id, const std::vector<NewE
         hash.add(entry.request_hash);
         error.add(entry.error);
         index.add_plain(std::to_string(entry.index));
+        outline.add(entry.outline);
     }
     Values values;
     values.plain(rows[0][0].c_str()).plain(rows[0][1].c_str()).plain(rows[0][2].c_str()).number(now);
-    for (const TextArray* array : {&ids, &name, &timeout, &request, &hash, &error, &index})
+    for (const TextArray* array : {&ids, &name, &timeout, &request, &hash, &error, &index, &outline})
         values.plain(array->literal());
     session.run(kAdd, values);
     return true;

@@ -40,9 +40,10 @@ Accepted find_earlier(Session& session, const NewJob& job) {
 
 const std::string kFinish =
     "UPDATE jobs j SET status = g.status, finished_at = g.finished_at, version = g.version, "
-    "result = nullif(g.result, ''), error = nullif(g.error, ''), worker = NULL, lease_until = NULL "
-    "FROM unnest($1::text[], $2::int[], $3::text[], $4::text[], $5::text[], $6::text[], $7::bigint[]) "
-    "AS g (id, attempts, status, result, error, version, finished_at) "
+    "result = nullif(g.result, ''), error = nullif(g.error, ''), outline = nullif(g.outline, ''), worker = NULL, "
+    "lease_until = NULL "
+    "FROM unnest($1::text[], $2::int[], $3::text[], $4::text[], $5::text[], $6::text[], $7::bigint[], $8::text[]) "
+    "AS g (id, attempts, status, result, error, version, finished_at, outline) "
     "WHERE j.id = g.id AND j.attempts = g.attempts AND j.status = 'running' RETURNING j.id";
 
 struct FoundJob {
@@ -105,7 +106,7 @@ std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>
     // one job the first counts.
     std::map<std::string, std::size_t> places;
     for (std::size_t i = 0; i < ends.size(); i++) places.emplace(ends[i]->id, i);
-    TextArray id, attempts, status, result, error, version, finished;
+    TextArray id, attempts, status, result, error, version, finished, outline;
     for (const auto& [key, place] : places) {
         const JobEnd& end = *ends[place];
         id.add(end.id);
@@ -115,9 +116,10 @@ std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>
         error.add(end.error);
         version.add(end.version);
         finished.add_plain(std::to_string(end.finished_at));
+        outline.add(end.outline);
     }
     Values values;
-    for (const TextArray* array : {&id, &attempts, &status, &result, &error, &version, &finished})
+    for (const TextArray* array : {&id, &attempts, &status, &result, &error, &version, &finished, &outline})
         values.plain(array->literal());
     std::vector<bool> answers(ends.size(), false);
     for (const pqxx::row& row : session.run(kFinish, values)) answers[places.at(text_of(row[0]))] = true;

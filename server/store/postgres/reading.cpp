@@ -7,7 +7,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr int kSummaryCount = 15;
+constexpr int kSummaryCount = 16;
 
 std::optional<UnixMs> moment(const pqxx::field& field) {
     return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
@@ -28,13 +28,14 @@ void fill_summary(const pqxx::row& row, JobSummary& job) {
     job.owner = text_of(row[11]);
     job.batch = text_of(row[12]);
     job.index = row[13].is_null() ? 0 : row[13].as<std::int64_t>();
+    job.outline = text_of(row[14]);
 }
 
 }  // namespace
 
 const std::string kSummaryColumns =
     "j.seq, j.id, j.name, j.status, j.created_at, j.started_at, j.finished_at, j.attempts, j.timeout_s, "
-    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, "
+    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, j.outline, "
     "CASE WHEN j.progress_attempts = j.attempts THEN j.progress END";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, j.result, j.error";
 const std::string kTables = " FROM jobs j LEFT JOIN batches b ON b.seq = j.batch";
@@ -156,6 +157,11 @@ JobPage list_jobs(Session& session, const JobQuery& query) {
     if (query.status) sql += " AND j.status = " + sql.text(std::string(to_string(*query.status)));
     if (query.name) sql += " AND j.name = " + sql.text(*query.name);
     if (query.owner) sql += " AND j.owner = " + sql.text(*query.owner);
+    if (query.text) {
+        const std::string part = "lower(" + sql.text(*query.text) + "::text)";
+        sql += " AND (strpos(lower(j.name), " + part + ") > 0 OR strpos(j.id, " + part +
+               ") > 0 OR strpos(j.outline::jsonb ->> 'method', " + part + ") > 0)";
+    }
     if (query.before_seq && query.batch)
         sql += " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = " + sql.number(*query.before_seq) + ")";
     if (query.before_seq && !query.batch) sql += " AND j.seq < " + sql.number(*query.before_seq);

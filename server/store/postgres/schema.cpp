@@ -142,7 +142,10 @@ ALTER TABLE jobs ADD COLUMN not_before timestamptz;
 CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crashes > 1;
 )sql";
 
-constexpr std::array kSteps{kStep1, kStep2};
+// What a list shows of an ended job beside its name: small, so that a page of jobs reads no result.
+constexpr const char* kStep3 = "ALTER TABLE jobs ADD COLUMN outline text";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 

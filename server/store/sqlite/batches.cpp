@@ -25,12 +25,14 @@ void add_entry(Connection& store, const Receiving& batch, const NewEntry& entry,
     {
         Connection::Use row = store.use(
             "INSERT INTO jobs (id, name, status, class, turn, owner, flow, batch, batch_index, created_at, "
-            "finished_at, timeout_s, request_hash) VALUES (?1, ?2, ?3, 1, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)");
+            "finished_at, timeout_s, request_hash, outline) "
+            "VALUES (?1, ?2, ?3, 1, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, nullif(?13, ''))");
         row.with(entry.id, entry.name, waits ? "queued" : "failed", turn, batch.owner, batch.flow, batch.seq,
                  entry.index, now);
         waits ? row.bind_null(10) : row.bind(10, now);
         row.bind(11, entry.timeout_s);
         row.bind(12, entry.request_hash);
+        row.bind(13, entry.outline);
         row.run();
     }
     const std::int64_t seq = store.database().getLastInsertRowid();

@@ -57,10 +57,11 @@ bool finish_job(Connection& store, const JobEnd& end) {
     std::int64_t seq = 0;
     {
         Connection::Use row = store.use(
-            "UPDATE jobs SET status = ?3, finished_at = ?4, version = ?5, worker = NULL, lease_until = NULL "
+            "UPDATE jobs SET status = ?3, finished_at = ?4, version = ?5, outline = nullif(?6, ''), "
+            "worker = NULL, lease_until = NULL "
             "WHERE id = ?1 AND attempts = ?2 AND status = 'running' RETURNING seq");
         const std::string status(to_string(end.status));
-        if (!row.with(end.id, end.attempts, status, end.finished_at, end.version).next()) return false;
+        if (!row.with(end.id, end.attempts, status, end.finished_at, end.version, end.outline).next()) return false;
         seq = row.integer(0);
     }
     if (end.result.empty() && end.error.empty()) return true;

@@ -5,7 +5,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr int kSummaryCount = 15;
+constexpr int kSummaryCount = 16;
 
 void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.seq = row.integer(0);
@@ -22,13 +22,14 @@ void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.owner = row.text(11);
     job.batch = row.text(12);
     job.index = row.integer(13);
+    job.outline = row.text(14);
 }
 
 }  // namespace
 
 const std::string kSummaryColumns =
     "j.seq, j.id, j.name, j.status, j.created_at, j.started_at, j.finished_at, j.attempts, j.timeout_s, "
-    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, p.body";
+    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, j.outline, p.body";
 const std::string kSummaryTables =
     " FROM jobs j LEFT JOIN batches b ON b.seq = j.batch "
     "LEFT JOIN progress p ON p.seq = j.seq AND p.attempts = j.attempts";
@@ -109,6 +110,10 @@ JobPage list_jobs(Connection& store, const JobQuery& query) {
     if (query.status) sql += " AND j.status = ?2";
     if (query.name) sql += " AND j.name = ?3";
     if (query.owner) sql += " AND j.owner = ?4";
+    if (query.text)
+        sql +=
+            " AND (instr(lower(j.name), lower(?7)) > 0 OR instr(j.id, lower(?7)) > 0 OR "
+            "instr(json_extract(j.outline, '$.method'), lower(?7)) > 0)";
     if (query.before_seq)
         sql += query.batch ? " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = ?5)" : " AND j.seq < ?5";
     sql += query.batch ? " ORDER BY j.batch_index DESC" : " ORDER BY j.seq DESC";
@@ -121,6 +126,7 @@ JobPage list_jobs(Connection& store, const JobQuery& query) {
     if (query.owner) row.bind(4, *query.owner);
     if (query.before_seq) row.bind(5, *query.before_seq);
     row.bind(6, query.limit + 1);
+    if (query.text) row.bind(7, *query.text);
     JobPage page;
     while (row.next()) page.jobs.push_back(read_summary(row));
     page.more = page.jobs.size() > static_cast<std::size_t>(query.limit);

@@ -91,6 +91,26 @@ TEST_P(StoreConformance, AFailedJobKeepsItsErrorAndACancelledOneItsPartialResult
     EXPECT_EQ(store_->find("b").value().result, R"({"partial":true})");
 }
 
+TEST_P(StoreConformance, AnOutlineStandsInListsAndIsSearchedByItsMethod) {
+    for (const char* id : {"a", "b", "c"}) accept(job(id));
+    claim_many(2);
+    const JobEnd end{"a", 1, JobStatus::succeeded, "{}", "", "1.2.3", 3000, R"({"plant":"b%","method":"simc"})"};
+    EXPECT_TRUE(completed<bool>([&](auto done) { store_->finish(end, done); }));
+    const auto ids_with = [&](const std::string& text) {
+        JobQuery query;
+        query.text = text;
+        Ids ids;
+        for (const JobSummary& summary : store_->list(query).jobs) ids.push_back(summary.id);
+        return ids;
+    };
+    EXPECT_EQ(store_->find("a").value().outline, end.outline);
+    EXPECT_EQ(store_->find("b").value().outline, "");
+    EXPECT_THAT(ids_with("SIM"), testing::ElementsAre("a"));
+    EXPECT_THAT(ids_with("Name of B"), testing::ElementsAre("b"));
+    EXPECT_THAT(ids_with("name of"), testing::ElementsAre("c", "b", "a"));
+    EXPECT_THAT(ids_with("%"), testing::IsEmpty()) << "neither a pattern nor looked for in the plant";
+}
+
 TEST_P(StoreConformance, CancellingAQueuedJobEndsItAndItIsNeverClaimed) {
     accept(job("a"));
     EXPECT_EQ(cancel("a"), CancelEffect::cancelled);

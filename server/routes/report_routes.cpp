@@ -1,0 +1,74 @@
+#include "api/report/report.h"
+#include "server/http/negotiation.h"
+#include "server/http/problems.h"
+#include "server/json_text.h"
+#include "server/routes/job_access.h"
+#include "server/routes/request_checks.h"
+#include "server/routes/routes.h"
+
+namespace tunewright::server {
+namespace {
+
+using http::Call;
+using http::problem_response;
+using http::Response;
+
+/// The parameter `controller`; "" where it is not given.
+std::optional<Response> read_controller(const http::Request& request, std::string& controller) {
+    api::Problem problem = bad_parameters("report");
+    for (const auto& [name, value] : request.query) {
+        if (name == "controller")
+            controller = value;
+        else
+            refuse_parameter(problem, name, value, "known is controller, a number of the result.");
+    }
+    if (problem.errors.empty()) return std::nullopt;
+    return problem_response(problem);
+}
+
+/// Where the client has reached the service.
+std::string origin_of(const http::Request& request) {
+    const std::string host(request.header("Host"));
+    return host.empty() ? "" : "http://" + host;
+}
+
+Response report_of(const JobRecord& job, const Call& call, const std::string& controller) {
+    if (!has_ended(job.status))
+        return problem_response(409, "The job has not ended; its report is there when it has succeeded.");
+    if (job.result.empty())
+        return problem_response(
+            404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");
+    const api::ReportWords words{
+        .job = job.id,
+        .name = job.name,
+        .date = job.finished_at ? iso_time(*job.finished_at) : "",
+        .origin = origin_of(call.request),
+    };
+    auto report = api::report_html({job.result, job.request}, controller, words);
+    if (const auto* problem = std::get_if<api::Problem>(&report)) return problem_response(*problem);
+    Response response;
+    response.body = std::get<std::string>(std::move(report));
+    response.set("Content-Type", "text/html; charset=utf-8");
+    return response.set("Content-Security-Policy", api::report_policy());
+}
+
+Response get_report(JobService& jobs, const Call& call) {
+    if (!http::accepts(call.request, "text/html"))
+        return problem_response(406, "The answer is text/html, which the Accept field does not allow.");
+    std::string controller;
+    if (auto refusal = read_controller(call.request, controller)) return *std::move(refusal);
+    const std::string& id = call.path.at("id");
+    return guarded([&] {
+        const std::optional<JobView> view = jobs.find(id);
+        if (!view || !may_see(call.request, view->job)) return no_such_job(id);
+        return report_of(view->job, call, controller);
+    });
+}
+
+}  // namespace
+
+void add_report_routes(http::Router& router, JobService& jobs) {
+    router.add("GET", "/v1/jobs/{id}/report.html", [&](const Call& call) { return get_report(jobs, call); });
+}
+
+}  // namespace tunewright::server

@@ -124,8 +124,9 @@ export function launchBrowser() {
  * A page in a fresh context that keeps a list of everything that went wrong in it: console errors and warnings, uncaught
  * exceptions, violations of the content security policy, answers of the service from 500 on.
  */
-export async function openPage(browser, { scheme = "light", width = 1440, height = 900 } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, acceptDownloads: true });
+export async function openPage(browser, { scheme = "light", width = 1440, height = 900, hasTouch = false } = {}) {
+  const viewport = { width, height };
+  const context = await browser.newContext({ viewport, colorScheme: scheme, acceptDownloads: true, hasTouch });
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
   const faults = [];
@@ -208,6 +209,13 @@ export const WINDOWS = [
 /** By how many pixels the page is wider than its window. */
 export const overflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
+/** Unfolds what Design keeps below its plots. */
+export async function openMore(page) {
+  const more = page.locator("details.more");
+  await more.waitFor();
+  if (!(await more.evaluate((element) => element.open))) await more.locator("> summary").click();
+}
 
 /** Lets go of a text file over an element. */
 export async function dropFile(page, selector, name, text) {

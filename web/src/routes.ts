@@ -8,11 +8,25 @@ export type Route =
   /** A recorded test: of that job, or the one at hand. */
   | { screen: "identify"; job: string | null }
   | { screen: "relay"; plant: string; values: Record<string, string> }
-  | { screen: "design"; job: string; entry: number | null }
+  /** `values`: where its sliders stand, where that is not the proposal. */
+  | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
   /** The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. */
   | { screen: "compare"; job: string; sort: string; rows: number[] | null }
+  /** The jobs that have this text in their name, id or method. */
+  | { screen: "jobs"; text: string }
+  /** The loops of a batch, in an order as in compare. */
+  | { screen: "batch"; id: string; sort: string }
   /** What the service can do, or one method of it. */
   | { screen: "methods"; id: string };
+
+export type JobScreen = "design" | "compare";
+export type JobRoute = Extract<Route, { screen: JobScreen }>;
+
+export const showsJob = (route: Route): route is JobRoute => route.screen === "design" || route.screen === "compare";
+
+/** A job's screen as it is when nothing was chosen on it yet. */
+export const addressOfJob = (job: string, screen: JobScreen): string =>
+  formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });
 
 /** The route of a location hash; anything unknown is the start. */
 export function parseRoute(hash: string): Route {
@@ -23,6 +37,8 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
   if (parts[0] === "identify") return { screen: "identify", job: null };
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
+  if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
+  if (parts[0] === "batches" && parts[1]) return { screen: "batch", id: parts[1], sort: values["sort"] ?? "" };
   if (parts[0] === "methods") return { screen: "methods", id: parts[1] ?? "" };
   if (parts[0] === "jobs" && parts[1]) {
     if (parts[2] === "compare") {
@@ -36,8 +52,13 @@ export function parseRoute(hash: string): Route {
     }
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
-    const entry = /^\d+$/.test(values["entry"] ?? "") ? Number(values["entry"]) : null;
-    return { screen: "design", job: parts[1], entry };
+    const { entry, ...turned } = values;
+    return {
+      screen: "design",
+      job: parts[1],
+      entry: /^\d+$/.test(entry ?? "") ? Number(entry) : null,
+      ...(Object.keys(turned).length > 0 ? { values: turned } : {}),
+    };
   }
   return { screen: "start" };
 }
@@ -61,13 +82,22 @@ export function formatRoute(route: Route): string {
       return `#/jobs/${encodeURIComponent(route.job)}/edit`;
     case "methods":
       return route.id === "" ? "#/methods" : `#/methods/${encodeURIComponent(route.id)}`;
+    case "jobs":
+      return route.text === "" ? "#/jobs" : `#/jobs?q=${encodeURIComponent(route.text)}`;
+    case "batch":
+      return `#/batches/${encodeURIComponent(route.id)}${route.sort ? `?sort=${encodeURIComponent(route.sort)}` : ""}`;
     case "compare": {
       const rows = route.rows && route.rows.length > 0 ? `rows=${route.rows.join(".")}` : "";
       const query = [route.sort && `sort=${encodeURIComponent(route.sort)}`, rows].filter(Boolean).join("&");
       return `#/jobs/${encodeURIComponent(route.job)}/compare${query ? `?${query}` : ""}`;
     }
-    case "design":
-      return `#/jobs/${encodeURIComponent(route.job)}/design${route.entry === null ? "" : `?entry=${route.entry}`}`;
+    case "design": {
+      const query = new URLSearchParams({
+        ...(route.entry === null ? {} : { entry: String(route.entry) }),
+        ...route.values,
+      }).toString();
+      return `#/jobs/${encodeURIComponent(route.job)}/design${query ? `?${query}` : ""}`;
+    }
   }
 }
 

@@ -1,4 +1,7 @@
-// The page's state: one immutable workspace. Every change is a function from one workspace to the next; subscribers run once per frame.
+// The page's state: one immutable workspace in a signal. Every change is a function from one workspace to the next; what is
+// shown of it follows once per frame, and only where the part that it shows has changed.
+import { computed, effect, signal, untracked } from "@preact/signals-core";
+import type { ReadonlySignal } from "@preact/signals-core";
 import type { ProductSummary } from "./api/products.ts";
 import type { Example, IdentifyRequest, Job, Method } from "./api/types.ts";
 import type { MyController } from "./my_controller.ts";
@@ -31,36 +34,61 @@ export interface Workspace {
 export interface Store {
   get(): Workspace;
   set(change: (workspace: Workspace) => Workspace): void;
+  /** A part of the workspace, or what follows from it, as a signal: equal values are no change. */
+  pick<T>(select: (workspace: Workspace) => T): ReadonlySignal<T>;
   subscribe(listener: (workspace: Workspace, previous: Workspace) => void): () => void;
 }
 
 export function createStore(initial: Workspace): Store {
-  let current = initial;
-  let painted = initial;
-  let pending = false;
-  const listeners = new Set<(workspace: Workspace, previous: Workspace) => void>();
-  const flush = (): void => {
-    pending = false;
-    const previous = painted;
-    painted = current;
-    for (const listener of [...listeners]) listener(current, previous);
-  };
+  const current = signal(initial);
   return {
-    get: () => current,
+    get: () => current.peek(),
     set(change) {
-      const next = change(current);
-      if (next === current) return;
-      current = next;
-      if (!pending) {
-        pending = true;
-        // A hidden tab gets no frames; its state must still be painted when it is looked at.
-        if (document.hidden) setTimeout(flush, 0);
-        else requestAnimationFrame(flush);
-      }
+      current.value = change(current.peek());
     },
+    pick: (select) => computed(() => select(current.value)),
     subscribe(listener) {
-      listeners.add(listener);
-      return () => listeners.delete(listener);
+      let painted = current.peek();
+      return shown(
+        () => current.value,
+        (workspace) => {
+          const previous = painted;
+          painted = workspace;
+          if (previous !== workspace) listener(workspace, previous);
+        },
+      );
     },
   };
+}
+
+/** Shows a value now, and again in the frame after it has changed. Returns how to stop. */
+export function shown<T>(read: () => T, show: (value: T) => void): () => void {
+  let pending = false;
+  let stopped = false;
+  let first = true;
+  const value = computed(read);
+  const paint = (): void => {
+    pending = false;
+    if (!stopped) show(value.peek());
+  };
+  const stop = effect(() => {
+    const now = value.value;
+    if (first) {
+      first = false;
+      return untracked(() => show(now));
+    }
+    if (pending) return;
+    pending = true;
+    nextFrame(paint);
+  });
+  return () => {
+    stopped = true;
+    stop();
+  };
+}
+
+/** A hidden tab gets no frames; its state must still be painted when it is looked at. */
+function nextFrame(work: () => void): void {
+  if (document.hidden) setTimeout(work, 0);
+  else requestAnimationFrame(work);
 }

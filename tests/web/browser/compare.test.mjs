@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS, openMore } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;
@@ -43,8 +43,8 @@ test("every method of the service is a row, ranked as the service ranks, with th
     const { request, result } = await jobOf(page);
     assert.deepEqual(request.tune, [{ method: "all" }]);
     const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
-    // On a linear plant nobody asks for the emulation of a nonlinear controller.
-    for (const { id } of methods.filter((method) => !["all", "emulation"].includes(method.id)))
+    // On a linear plant nobody asks for the emulation of a nonlinear controller, and a front is no rule.
+    for (const { id } of methods.filter((method) => !["all", "emulation", "frontier"].includes(method.id)))
       assert.ok(
         result.controllers.some((entry) => entry.method === id),
         `${id} has no row`,
@@ -59,12 +59,14 @@ test("every method of the service is a row, ranked as the service ranks, with th
       order.map((entry) => entry.title),
     );
     assert.ok((await links.allInnerTexts()).includes("Today's settings"));
-    const limited = order.filter((entry) => entry.robustness.stable && entry.robustness.Ms <= 2);
+    const held = order.filter((entry) => !entry.standing.why);
+    assert.equal(held[0].title, "Robust optimum (PID)");
     const IAE = (await column(page, "IAE load")).map(Number);
     assert.deepEqual(
-      IAE.slice(0, limited.length),
-      limited.map((entry) => asShown(entry.performance.load.IAE)),
+      IAE.slice(0, held.length),
+      held.map((entry) => asShown(entry.performance.load.IAE)),
     );
+    assert.ok(rising(held.map((entry) => entry.standing.excess_percent)));
     const excess = await column(page, "+% over");
     for (const [at, entry] of order.entries()) {
       const value = entry.optimum_at_Ms.excess_percent;
@@ -155,10 +157,11 @@ test("the limit on Ms ranks anew, unstable rows go on request, columns are chose
     const ranked = async () => (await column(page, "#")).filter((text) => text !== "").length;
     const within = (limit) =>
       result.controllers.filter(
-        (entry) => entry.method !== "baseline" && entry.robustness?.stable && entry.robustness.Ms <= limit,
+        ({ method, standing }) =>
+          method !== "baseline" && standing?.settles && standing.within && standing.Ms <= limit * 1.0001,
       ).length;
     assert.equal(await ranked(), within(2));
-    const limit = page.getByLabel("ranked by load IAE among Ms ≤");
+    const limit = page.getByLabel("ranked by excess over the optimum*, among Ms ≤");
     await limit.fill("1,45");
     await page.keyboard.press("Enter");
     assert.equal(await ranked(), within(1.45));
@@ -174,10 +177,10 @@ test("the limit on Ms ranks anew, unstable rows go on request, columns are chose
     const best = result.controllers[result.ranking[0]];
     assert.ok(settling.includes(Number(best.performance.setpoint.settling_time).toPrecision(3)), settling.join());
     assert.equal(await sortButton(page, "Kp").count(), 0);
-    await page.getByLabel("only stable").check();
+    await page.getByLabel("only those that settle").check();
     assert.equal(
       await table(page).locator("tbody tr").count(),
-      result.controllers.filter((entry) => entry.robustness?.stable).length,
+      result.controllers.filter((entry) => entry.standing?.settles).length,
     );
   });
 });
@@ -269,6 +272,7 @@ test("Design shows the trade-off of an entry that brings it", async () => {
     await page.getByRole("checkbox", { name: /arrieta_ms$/ }).check();
     await page.getByRole("button", { name: "Tune this model" }).click();
     await page.getByRole("button", { name: "arrieta ms", exact: true }).click();
+    await openMore(page);
     await tradeoff(page).getByRole("heading", { name: "Degradation against Ms" }).waitFor();
     const entry = (await jobOf(page)).result.controllers.find((candidate) => candidate.method === "arrieta_ms");
     assert.equal(await tradeoffCell(page, /^J_d \(s\)/, 0), asShown(entry.tradeoff.model.J_d));
@@ -299,7 +303,7 @@ test("a nonlinear PID is taken as today's settings, and shown in its own form wi
     assert.match(settings[3], /0\.5$/);
     assert.equal(await page.locator(".settings input:visible").count(), 0);
     const verdict = await page.getByRole("region", { name: "Verdict" }).innerText();
-    assert.match(verdict, /Ms and all margins belong to its linear part/);
+    assert.match(verdict, /belong to the controller.s linear part/);
     const today = result.controllers.find((entry) => entry.method === "baseline");
     if (today.nonlinear) assert.ok(verdict.includes(today.nonlinear.statement));
     // It comes back into the form as it was entered.

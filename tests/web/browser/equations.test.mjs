@@ -101,7 +101,7 @@ test("what is missing is said without asking the service", async () => {
     await field(page, "Its value").fill("half");
     await tune(page);
     const summary = page.getByRole("group", { name: "What to mend" });
-    await summary.getByRole("heading", { name: "2 things to mend" }).waitFor();
+    await summary.getByRole("heading", { name: "2 problems to fix" }).waitFor();
     for (const label of ["dh/dt =", "Its value"])
       assert.equal(await field(page, label).getAttribute("aria-invalid"), "true", label);
     // The model card's faults are its own.

@@ -95,7 +95,7 @@ test("a relay test shows its limit cycle, the plant's ultimate point, measured p
     await cycle.getByText("1 measured point of G(jω)").click();
     assert.match(await cycle.getByRole("table").nth(1).innerText(), /0\.4366\s+−0\.1347\s+0\.1780\s+0\.0012/);
     const quality = await page.getByRole("region", { name: "Was the test good enough?" }).innerText();
-    assert.match(quality, /Usable with care: 1 thing to know\.\s+The loop crosses beyond the record\./);
+    assert.match(quality, /Usable with care: 1 warning\.\s+The loop crosses beyond the record\./);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
 });
@@ -105,7 +105,7 @@ test("limits on all that the record leaves possible are asked for by a check box
     await dropFile(page, ".drop", "step.csv", stepTest);
     await candidatesShown(page);
     await page.getByText(/^By robust; /).waitFor();
-    const box = page.getByRole("checkbox", { name: "Hold the limits on all that the record leaves possible" });
+    const box = page.getByRole("checkbox", { name: "Meet the limits for every model consistent with the record" });
     assert.ok(!(await box.isChecked()));
     await box.check();
     await page.getByRole("button", { name: "Use and tune" }).click();
@@ -198,24 +198,25 @@ test("a record that cannot be read says why at its field, and is mended there", 
         /^.*\n/,
         "h,i,j,a,d,e,b\n",
       );
-      const refused = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
+      const looked = page.waitForResponse((response) => response.url().endsWith("/v1/records/preview"));
       await dropFile(page, ".drop", "heater.csv", heater);
-      const answer = await refused;
-      assert.equal(answer.status(), 422);
-      const { errors } = await answer.json();
+      const { problems } = await (await looked).json();
+      const errors = problems.map(({ pointer, detail }) => ({ pointer: `/record/${pointer}`, detail }));
+      assert.ok(errors.length > 0);
       const summary = page.getByRole("group", { name: "What to mend" });
       await summary.waitFor();
       for (const error of errors) {
         assert.ok((await summary.innerText()).includes(error.detail), error.detail);
-        const input = page.getByLabel(`Column ${error.pointer.split("/").at(-1)}`);
+        const labels = { t: "Time", u: "Controller output (u)", y: "Measurement (y)" };
+        const input = page.getByLabel(labels[error.pointer.split("/").at(-1)], { exact: true });
         assert.equal(await input.getAttribute("aria-invalid"), "true");
         assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), error.detail);
       }
-      await page.getByLabel("Column t").fill("a");
-      await page.getByLabel("Column u").fill("b");
-      await page.getByLabel("Column y").fill("5");
+      await page.getByLabel("Time", { exact: true }).selectOption("a");
+      await page.getByLabel("Controller output (u)", { exact: true }).selectOption("b");
+      await page.getByLabel("Measurement (y)", { exact: true }).selectOption("d");
       const answered = identified(page);
-      await page.getByRole("button", { name: "Identify again" }).click();
+      await page.getByRole("button", { name: "Identify this test" }).click();
       assert.ok((await (await answered).json()).model.fit_percent > 97);
       await candidatesShown(page);
       assert.ok(await summary.isHidden());

@@ -2,12 +2,15 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../harness.mjs";
+import { accessibilityViolations, browserTests, openMore, overflow, WINDOWS } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage, jobOf } = tests;
 
-const designShown = (page) => page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+const designShown = async (page) => {
+  await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+  await openMore(page);
+};
 const picker = (page) => page.getByRole("region", { name: /^My controller/ });
 const typed = (page) => page.getByRole("region", { name: /^Type into/ });
 const found = (page) => page.getByRole("listbox", { name: "Maker and product" }).getByRole("option");
@@ -50,12 +53,12 @@ async function tuneModel(page, address = "#/new/fopdt?K=1.25&T=40&L=8") {
 }
 
 /** Designs anew for what is chosen, and answers the new job. */
-async function designForMine(page) {
+async function designForMine(page, button = "Design for this controller") {
   const before = page.url();
-  await page.getByRole("button", { name: "Design for this controller" }).click();
+  await page.getByRole("button", { name: button }).click();
   await page.waitForFunction((address) => location.href !== address, before);
-  await page.getByRole("button", { name: "Design for this controller" }).waitFor({ state: "hidden" });
   await page.waitForFunction(() => !document.querySelector(".own-controller[aria-busy]"));
+  await page.getByRole("button", { name: button }).waitFor({ state: "hidden" });
   return jobOf(page);
 }
 
@@ -213,9 +216,7 @@ test("only what a product needs is asked for; it is remembered and sent with lat
     await typed(page).waitFor();
     await picker(page).getByRole("button", { name: "No controller" }).click();
     assert.equal(await typed(page).count(), 0);
-    await page.getByRole("button", { name: "Design for an ideal controller" }).click();
-    await page.getByRole("button", { name: "Design for an ideal controller" }).waitFor({ state: "hidden" });
-    assert.equal((await jobOf(page)).request.implement, undefined);
+    assert.equal((await designForMine(page, "Design for an ideal controller")).request.implement, undefined);
     await page.getByRole("link", { name: "Start" }).click();
     assert.equal(await search(page).inputValue(), "");
   });

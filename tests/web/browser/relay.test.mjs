@@ -53,7 +53,7 @@ test("from a model to the relay test on it: record, limit cycle and plan as the 
     assert.equal(await figure(page, "Au"), shown(answer.limit_cycle.Au, 4));
     assert.equal(await figure(page, "φu"), shown(answer.limit_cycle.phi_u, 4));
     await tracesShown(page, "The test as it would be recorded", 2);
-    const plan = await page.getByRole("region", { name: "A test worth making" }).innerText();
+    const plan = await page.getByRole("region", { name: "Recommended test" }).innerText();
     assert.match(plan, new RegExp(`period of ${Number(answer.plan.expected_period).toPrecision(3)} s`));
     if (answer.plan.reason) assert.ok(plan.includes(answer.plan.reason));
 
@@ -82,7 +82,7 @@ test("the plan's settings are taken over and simulated", async () => {
   await withPage("#/relay/fopdt?K=1&T=10&L=2", {}, async (page) => {
     await page.getByRole("button", { name: "Use these settings" }).waitFor();
     await page.getByLabel("Noise of y").fill("0.02");
-    await page.getByLabel("Relay looks every").fill("0.05");
+    await page.getByLabel("Relay sample time").fill("0.05");
     const noisy = simulated(page);
     await page.getByRole("button", { name: "Simulate" }).click();
     const { plan } = await (await noisy).json();

@@ -50,7 +50,7 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
     const before = await jobOf(page);
     const slider = page.getByRole("slider", { name: "λ, slider" });
     assert.match(await slider.getAttribute("aria-valuetext"), /^lambda 10\.0 s, Ms 1\.\d\d$/);
-    const tuned = page.waitForResponse((response) => response.request().method() === "POST");
+    const tuned = page.waitForResponse((response) => response.request().postData()?.includes("lambda"));
     await slider.focus();
     await page.keyboard.press("Shift+ArrowLeft");
     await tuned;
@@ -109,7 +109,7 @@ test("a lambda out of reach is refused in the service's words, and the design st
       await page.getByLabel("λ (s)", { exact: true }).fill("-3");
       await page.keyboard.press("Enter");
       await page.getByText("λ is -3; it must be above 0.").waitFor();
-      const answer = page.waitForResponse((response) => response.request().method() === "POST");
+      const answer = page.waitForResponse((response) => response.request().postData()?.includes("lambda"));
       await page.getByLabel("λ (s)", { exact: true }).fill("4000");
       await page.keyboard.press("Enter");
       const { result } = await (await answer).json();

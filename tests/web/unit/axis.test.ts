@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { extent, makeScale, ticks, tickText, usableRange } from "../../../web/src/plot/axis.ts";
+import { extent, makeScale, ticks, tickText, tickTexts, usableRange } from "../../../web/src/plot/axis.ts";
 
 test("axes without data have a range and ticks, linear and logarithmic", () => {
   for (const kind of ["linear", "log"] as const) {
@@ -49,7 +49,11 @@ test("linear ticks are round, inside the range and at least three", () => {
 });
 
 test("log ticks cover narrow and wide ranges", () => {
-  assert.deepEqual(ticks("log", [0.001, 1], 5), [0.001, 0.01, 0.1, 1]);
+  assert.deepEqual(ticks("log", [0.001, 1], 3), [0.001, 0.01, 0.1, 1]);
+  // Where they stand apart, 1, 2 and 5; and never two alone.
+  assert.deepEqual(ticks("log", [0.01, 1], 3), [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1]);
+  assert.deepEqual(ticks("log", [0.04, 2], 1.6), [0.1, 0.3, 1]);
+  assert.ok(ticks("log", [20, 2e8], 4).length >= 3);
   assert.ok(ticks("log", [0.9, 2.1], 3).length >= 3);
   assert.ok(ticks("log", [1e-12, 1e12], 6).length <= 9);
   assert.ok(ticks("log", [1.01, 1.02], 4).length >= 3);
@@ -69,4 +73,10 @@ test("tick texts have no dust and a true minus", () => {
   assert.equal(tickText(0), "0");
   assert.equal(tickText(1e-4), "1e−4");
   assert.equal(tickText(2e6), "2e6");
+});
+
+test("the ticks of an axis are written in one notation", () => {
+  assert.deepEqual(tickTexts([0, 50000, 100000]), ["0", "5e4", "1e5"]);
+  assert.deepEqual(tickTexts([0.001, 0.1, 10]), ["0.001", "0.1", "10"]);
+  assert.deepEqual(tickTexts([1e-4, 0.01, 1]), ["1e−4", "1e−2", "1"]);
 });

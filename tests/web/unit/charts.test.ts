@@ -2,7 +2,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Entry, Result } from "../../../web/src/api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames } from "../../../web/src/charts/drawn.ts";
-import { nyquistFrame } from "../../../web/src/charts/nyquist.ts";
+import { bodeFrame } from "../../../web/src/charts/bode.ts";
+import { nyquistFrame, windingOf } from "../../../web/src/charts/nyquist.ts";
 import { recordFrame } from "../../../web/src/charts/record.ts";
 import { responseFrame } from "../../../web/src/charts/responses.ts";
 import { sensitivityFrame } from "../../../web/src/charts/sensitivities.ts";
@@ -85,4 +86,37 @@ test("the record is drawn with its model, and with its input where that is known
   assert.equal(recordFrame(model, { record: { csv: "" } })!.panes.length, 1);
   assert.equal(recordFrame(model, { record: { u: [0, 1], y: [0, 1] } })!.panes.length, 2);
   assert.equal(recordFrame({ plant: { type: "fopdt" }, fit_percent: 97 }, {}), null);
+});
+
+test("the Bode plot shows two decades to both sides of the crossover and the margins where they are read", () => {
+  const omega = Array.from({ length: 121 }, (_, i) => 1e-4 * 10 ** (i / 15));
+  const loop = {
+    omega,
+    L: { re: omega.map(() => 0), im: omega.map((w) => -1 / w), phase_deg: omega.map((w) => -90 - 10 * w) },
+    S_abs: omega,
+    T_abs: omega,
+    CS_abs: omega,
+  };
+  const robustness = { stable: true, gain_crossover: 1, phase_crossover: 9, phase_margin_deg: 80, gain_margin: 9 };
+  const drawn = drawnEntries({ controllers: [make("robust", { frequency: loop, robustness } as Partial<Entry>)] }, [0]);
+  const frame = bodeFrame(drawn, undefined);
+  assert.deepEqual(frame.x.range, [0.01, 100]);
+  const points = frame.panes.map((pane) => pane.marks!.find((mark) => mark.kind === "point"));
+  assert.deepEqual(points.map((mark) => mark && "x" in mark && [mark.x, mark.y]), [[9, 1 / 9], [1, -100]]);
+  const [lo, hi] = frame.panes[1]!.y.range!;
+  assert.ok(lo >= -550 && hi <= -79);
+});
+
+test("a dead time's turns begin one turn after the gain crossover, where they stay small", () => {
+  const omega = [...Array(300).keys()].map((k) => 0.1 * 1.03 ** k);
+  const loop = (gain: (w: number) => number, L: number) => {
+    const phase = omega.map((w) => -90 - (w * L * 180) / Math.PI);
+    const at = (part: (radians: number) => number) => omega.map((w, k) => gain(w) * part((phase[k]! * Math.PI) / 180));
+    return { ...frequency, omega, L: { re: at(Math.cos), im: at(Math.sin), phase_deg: phase } };
+  };
+  const dead = windingOf(loop((w) => 0.3 / w, 3))!;
+  assert.ok(omega[dead.from]! > 2 && omega[dead.from]! < 3 && dead.radius < 0.15 && dead.radius > 0.1);
+  assert.equal(windingOf(loop((w) => 0.3 / w, 0.01)), null);
+  assert.equal(windingOf(loop((w) => Math.max(0.8, 0.3 / w), 3)), null);
+  assert.equal(windingOf({ ...frequency, L: { re: [0], im: [1] } }), null);
 });

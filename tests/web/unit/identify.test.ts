@@ -1,11 +1,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { withTraces } from "../../../web/src/api/experiments.ts";
-import { latest } from "../../../web/src/api/latest.ts";
 import type { Candidate, IdentifyRequest, Model, TuningRequest } from "../../../web/src/api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../../../web/src/charts/identified.ts";
 import { held } from "../../../web/src/charts/record.ts";
-import { csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
+import { columnChoices, csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
+import { formWords, timeWords } from "../../../web/src/form/record_preview.ts";
+import type { Preview } from "../../../web/src/api/records.ts";
+import { stepParts } from "../../../web/src/charts/record.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tuning_request.ts";
 import { parameterTexts } from "../../../web/src/views/cards/candidates_card.ts";
 import { cycleRows } from "../../../web/src/words/cycle.ts";
@@ -114,7 +116,7 @@ test("a time whose error is longer than the record is said to be unknown", () =>
 test("a good test is said to be good; warnings and a poor fit change that, with their figures", () => {
   assert.equal(qualityOf(model, units).head, "Good enough.");
   const warned = qualityOf({ ...model, warnings: [{ code: "drift", detail: "y drifts." }] }, units);
-  assert.deepEqual([warned.level, warned.head], ["warn", "Usable with care: 1 thing to know."]);
+  assert.deepEqual([warned.level, warned.head], ["warn", "Usable with care: 1 warning."]);
   const noted = { ...model, data_quality: { ...model.data_quality, notes: ["a", "b"] } };
   assert.equal(qualityOf(noted, units).head, "Good enough, with 2 remarks.");
   const poor = qualityOf({ ...model, fit_percent: 46 }, units);
@@ -172,31 +174,6 @@ test("records given as numbers and as text are told apart by their samples alone
   assert.equal(csvOf(controlled), "t,u,y,r\n0,0,5,7\n2,1,6,8");
 });
 
-test("of requests that overtake each other only the first and the newest are sent, and only the newest is shown", async () => {
-  const sent: number[] = [];
-  const answers: number[] = [];
-  const gates: (() => void)[] = [];
-  const calls = latest<number, number>(
-    (request) => {
-      sent.push(request);
-      return new Promise((resolve) => gates.push(() => resolve(10 * request)));
-    },
-    { onBusy: () => undefined, onAnswer: (answer) => answers.push(answer), onError: () => assert.fail() },
-  );
-  for (const request of [1, 2, 3, 4]) calls.send(request);
-  const settle = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
-  gates.shift()!();
-  await settle();
-  gates.shift()!();
-  await settle();
-  assert.deepEqual([sent, answers], [[1, 4], [40]]);
-  calls.send(5);
-  calls.drop();
-  gates.shift()!();
-  await settle();
-  assert.deepEqual(answers, [40]);
-});
-
 test("the page asks for the traces of a record's models and of nothing else", () => {
   const record = { csv: "t,u,y\n" };
   assert.deepEqual(withTraces({ record, identify: { model: "fopdt" } }), {
@@ -205,4 +182,46 @@ test("the page asks for the traces of a record's models and of nothing else", ()
   });
   const plant = { plant: { type: "fopdt", K: 1, T: 1, L: 1 } };
   assert.deepEqual(withTraces(plant as TuningRequest), plant);
+});
+
+const previewed: Preview = {
+  columns: ["Time", "", "PV", "PV", "4"].map((heading) => ({
+    heading,
+    guess: "-",
+    confidence: 0,
+    unit: "",
+    first: "20,5",
+    thumbnail: [],
+  })),
+  rows: 1200,
+  separator: "tab",
+  decimal: ",",
+  encoding: "windows-1252",
+  time: { unit: "s", assumed: true, from: 0, to: 599.5, dt: 0.5, gaps: 1, duplicates: 2 },
+  skipped: [],
+  skipped_lines: 0,
+  notes: [],
+  problems: [],
+};
+
+test("columns are chosen by their headings, by their numbers where these say nothing or two things", () => {
+  assert.deepEqual(
+    columnChoices(previewed).map(([value]) => value),
+    ["Time", "2", "3", "4", "5"],
+  );
+});
+
+test("a preview says how the file is written and what its times are", () => {
+  assert.equal(formWords(previewed), "1200 rows, columns separated by tabs, decimal comma, WINDOWS-1252.");
+  assert.match(timeWords(previewed), /^One row every 0\.5 s, over 599\.5 s, 1 gap, 2 duplicate time stamps\. The file does not say/);
+  assert.equal(timeWords({ ...previewed, time: undefined } as unknown as Preview), "");
+});
+
+test("each move of u has the part of the record that shows it alone", () => {
+  const t = Array.from({ length: 100 }, (_, index) => index);
+  const u = t.map((time) => (time < 20 ? 0 : time < 60 ? 5 + 0.01 * (time % 2) : 2));
+  assert.deepEqual(stepParts(t, u), [
+    { at: 20, from: 10, to: 59 },
+    { at: 60, from: 40, to: 99 },
+  ]);
 });

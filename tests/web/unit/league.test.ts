@@ -41,8 +41,40 @@ const result: Result = {
     make("baseline", 1.3, 20),
   ],
 };
-const columns = leagueColumns(unitNames({ time: "min" }));
 const methods = (rows: { entry: Entry }[]): string[] => rows.map((row) => row.entry.method);
+const standing = (Ms: number | null, excess_percent: number | null, why = "", own = true): Partial<Entry> => ({
+  standing: { settles: !why.includes("settle"), within: own, Ms, excess_percent, ...(why ? { why } : {}) },
+});
+
+test("rows rank by the excess over the optimum at their Ms; what does not hold stands below what does", () => {
+  const rows = leagueRows(
+    {
+      controllers: [
+        make("sharp", 1.95, 5, standing(1.95, 25)),
+        make("oscillates", 1.5, 1, standing(1.5, 2, "It does not settle.")),
+        make("beyond", 1.3, 2, standing(2.4, 1, "On the worst plant Ms is 2.4.")),
+        make("missed", 1.5, 2, standing(1.5, 1, "Ms is 1.5, above 1.4.", false)),
+        make("robust", 1.4, 8, standing(1.4, 0)),
+      ],
+    },
+    2,
+  );
+  assert.deepEqual(methods(rows), ["robust", "sharp", "beyond", "missed", "oscillates"]);
+  assert.deepEqual(
+    rows.map((row) => row.why),
+    ["", "", "Ms is above 2.00.", "Ms is 1.5, above 1.4.", "It does not settle."],
+  );
+});
+
+test("what oscillates without settling is drawn at first only where nothing settles", () => {
+  const calm = make("calm", 1.4, 8, standing(1.4, 0));
+  const wild = make("wild", 1.4, 2, standing(1.4, 0, "It does not settle."));
+  assert.deepEqual(defaultOverlay({ controllers: [wild, calm, calm], ranking: [1, 2, 0] }), [1, 2]);
+  assert.deepEqual(defaultOverlay({ controllers: [wild, calm], ranking: [1, 0] }), [1]);
+  assert.deepEqual(defaultOverlay({ controllers: [wild], ranking: [0] }), [0]);
+});
+
+const columns = leagueColumns(unitNames({ time: "min" }));
 
 test("rows stand by load IAE within the limit, then beyond it, then unstable, then without an answer", () => {
   const rows = leagueRows(result, 2);

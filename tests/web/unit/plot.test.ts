@@ -3,9 +3,10 @@ import test from "node:test";
 import { nearestIndex } from "../../../web/src/plot/cursor.ts";
 import { columnExtremes, drawableRuns } from "../../../web/src/plot/dense.ts";
 import { frameToCsv, frameToSvg } from "../../../web/src/plot/export.ts";
-import type { Frame } from "../../../web/src/plot/frame.ts";
+import type { Frame, Mark } from "../../../web/src/plot/frame.ts";
+import { markLabels } from "../../../web/src/plot/labels.ts";
 import { layoutFrame, wholeView } from "../../../web/src/plot/layout.ts";
-import { drawLayout, tracePath } from "../../../web/src/plot/marks.ts";
+import { drawLayout, pointNear, tracePath } from "../../../web/src/plot/marks.ts";
 import { zoomAbout, zoomToRectangle } from "../../../web/src/plot/zoom.ts";
 
 const plane: Frame = {
@@ -169,4 +170,89 @@ test("the CSV export has every sample with its trace and axis", () => {
   assert.equal(lines.length, 7);
   assert.equal(lines[0], "trace,axis,time (s),value");
   assert.equal(lines[2], "a,y,1,1");
+});
+
+test("while something is held the ranges only grow, and a zoom stays what it is", () => {
+  const rising = (top: number): Frame => ({
+    title: "t",
+    description: "",
+    x: { kind: "linear", label: "x" },
+    panes: [{ y: { kind: "linear", label: "y" }, traces: [{ name: "a", look: 1, x: [0, top], y: [0, top] }] }],
+    link: "x",
+    cursorLabel: "x",
+    cursorKind: "linear",
+    fileName: "f",
+  });
+  const wide = layoutFrame(rising(10), 400, 300, wholeView(rising(10)));
+  const held = layoutFrame(rising(4), 400, 300, wholeView(rising(4)), wide);
+  assert.deepEqual(held.boxes[0]!.y.range, wide.boxes[0]!.y.range);
+  assert.deepEqual(held.boxes[0]!.x.range, wide.boxes[0]!.x.range);
+  const grown = layoutFrame(rising(20), 400, 300, wholeView(rising(20)), held);
+  assert.ok(grown.boxes[0]!.y.range[1] > 20);
+  const zoomed = layoutFrame(rising(4), 400, 300, { x: [1, 2], y: [[0, 3]] }, wide);
+  assert.deepEqual([zoomed.boxes[0]!.x.range, zoomed.boxes[0]!.y.range], [[1, 2], [0, 3]]);
+});
+
+test("a handle is found from near by, and no other point", () => {
+  const frame: Frame = {
+    title: "t",
+    description: "",
+    x: { kind: "linear", label: "x", range: [0, 10] },
+    panes: [
+      {
+        y: { kind: "linear", label: "y", range: [0, 10] },
+        traces: [],
+        marks: [
+          { kind: "point", x: 5, y: 5, label: "here", handle: true },
+          { kind: "point", x: 5.1, y: 5, label: "a rule", quiet: true },
+        ],
+      },
+    ],
+    link: "x",
+    cursorLabel: "x",
+    cursorKind: "linear",
+    fileName: "f",
+  };
+  const box = layoutFrame(frame, 400, 300, wholeView(frame)).boxes[0]!;
+  const near = { x: box.x.toPixel(5) + 6, y: box.y.toPixel(5) - 6 };
+  assert.equal(pointNear(box, near, 12, (mark) => mark.handle === true)?.label, "here");
+  assert.equal(pointNear(box, near, 12, (mark) => mark.quiet === true)?.label, "a rule");
+  assert.equal(pointNear(box, { x: near.x + 40, y: near.y }, 12, () => true), null);
+});
+
+test("zoomed in time, y shows what is in view; what was zoomed by hand stays", () => {
+  const frame: Frame = { ...times, panes: [{ y: { kind: "linear", label: "y" }, traces: [{ name: "a", look: 1, x: [0, 1, 2, 3, 4], y: [0, 100, 1, 2, 1] }] }] };
+  const at = (view: ReturnType<typeof wholeView>) => layoutFrame(frame, 400, 300, view).boxes[0]!.y.range;
+  assert.ok(at(wholeView(frame))[1] > 100);
+  const [lo, hi] = at({ x: [3, 4], y: [null] });
+  assert.ok(lo < 1 && lo > 0 && hi > 2 && hi < 3);
+  assert.deepEqual(at({ x: [3, 4], y: [[0, 7]] }), [0, 7]);
+});
+
+test("turns about the origin that run into each other are a disc; enlarged they are the curve", () => {
+  const turns = [...Array(400).keys()].map((k) => k / 6);
+  const trace = { name: "L", look: 1 as const, x: turns.map((t) => 0.2 * Math.cos(t)), y: turns.map((t) => 0.2 * Math.sin(t)), parameter: turns };
+  const frame: Frame = { ...plane, panes: [{ ...plane.panes[0]!, traces: [{ ...trace, winding: { from: 40, radius: 0.2 } }], marks: [] }] };
+  const drawn = (view: ReturnType<typeof wholeView>) => {
+    const layout = layoutFrame(frame, 400, 300, view);
+    return { corners: tracePath(layout.boxes[0]!, frame.panes[0]!.traces[0]!).split("L").length, discs: JSON.stringify(drawLayout(frame, layout, "p")).split('"circle"').length - 1 };
+  };
+  assert.deepEqual(drawn(wholeView(frame)), { corners: 41, discs: 1 });
+  assert.deepEqual(drawn({ x: [-0.25, 0.25], y: [[-0.25, 0.25]] }), { corners: 400, discs: 0 });
+});
+
+test("names of marks stand neither on one another nor where the curve runs, where there is another place", () => {
+  const level = (value: number, label: string): Mark => ({ kind: "level", value, role: "limit", label });
+  const frame: Frame = {
+    ...times,
+    panes: [{ y: { kind: "linear", label: "y", range: [0, 2] }, traces: [], marks: [level(1, "first"), level(1.02, "second"), { kind: "point", x: 1, y: 1, label: "third" }] }],
+  };
+  const boxes = (of: Frame) =>
+    markLabels(layoutFrame(of, 400, 300, wholeView(of)).boxes[0]!).map(({ attributes }) => attributes as Record<string, number | string>);
+  const [first, second] = boxes(frame);
+  assert.ok(first!["text-anchor"] !== second!["text-anchor"] || Math.abs(Number(first!["y"]) - Number(second!["y"])) >= 14);
+  // A curve along the upper right sends the name to another side of its line.
+  const x = [...Array(200).keys()].map((k) => k / 100);
+  const crossed: Frame = { ...frame, panes: [{ ...frame.panes[0]!, traces: [{ name: "y", look: 1, x, y: x.map(() => 1.06) }], marks: [level(1, "limit")] }] };
+  assert.ok(Number(boxes(crossed)[0]!["y"]) > layoutFrame(crossed, 400, 300, wholeView(crossed)).boxes[0]!.y.toPixel(1));
 });

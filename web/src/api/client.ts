@@ -18,13 +18,15 @@ export interface Reply {
   etag: string | null;
 }
 
+/** `signal` ends the call before its answer is there. */
 export async function call(
   method: string,
   path: string,
   body?: unknown,
   headers: Record<string, string> = {},
+  signal?: AbortSignal,
 ): Promise<Reply> {
-  const { response, text } = await answerOf(method, path, body, headers);
+  const { response, text } = await answerOf(method, path, body, headers, signal);
   const etag = response.headers.get("ETag");
   if (response.status === 304) return { status: 304, data: null, etag };
   const data = parse(text);
@@ -58,13 +60,14 @@ async function answerOf(
   path: string,
   body: unknown,
   headers: Record<string, string>,
+  signal?: AbortSignal,
 ): Promise<Answer> {
   let key = currentKey();
-  let answer = await send(method, path, body, headers, key);
+  let answer = await send(method, path, body, headers, key, signal);
   while (answer.response.status === 401) {
     key = await otherKey(key);
     if (key === null) break;
-    answer = await send(method, path, body, headers, key);
+    answer = await send(method, path, body, headers, key, signal);
   }
   return answer;
 }
@@ -76,6 +79,7 @@ async function send(
   body: unknown,
   headers: Record<string, string>,
   key: string | null,
+  signal?: AbortSignal,
 ): Promise<Answer> {
   try {
     const response = await fetch(path.replace(/^\//, ""), {
@@ -86,7 +90,8 @@ async function send(
         ...(key === null ? {} : { Authorization: `Bearer ${key}` }),
         ...headers,
       },
-      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      ...(body === undefined ? {} : { body: body instanceof Blob ? body : JSON.stringify(body) }),
+      ...(signal ? { signal } : {}),
     });
     return { response, text: response.status === 304 ? "" : await response.text() };
   } catch {

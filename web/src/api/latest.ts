@@ -1,8 +1,11 @@
-// Latest wins: one call under way, at most one waiting (the newest); what came between is never sent.
+// Latest wins: a few calls under way so that a slow network does not slow the answers down, at most one request waiting (the
+// newest), and every answer reported as it arrives unless a newer one was reported before. What came between is never sent.
 
-export interface Latest<Request> {
+export interface Latest<Request, Answer> {
   send(request: Request): void;
-  /** Nothing that is still on its way is reported any more. */
+  /** Reports an answer that is at hand; what is still on its way is older than it. */
+  give(answer: Answer, request: Request): void;
+  /** Nothing that is still on its way is wanted any more: its calls are ended and nothing of them is reported. */
   drop(): void;
 }
 
@@ -12,41 +15,59 @@ export interface LatestEvents<Request, Answer> {
   onError(error: unknown, request: Request): void;
 }
 
+/** With 60 ms to the service and back three calls give some 40 answers a second; a service at hand never sees more than one. */
+const UNDER_WAY = 3;
+
 export function latest<Request, Answer>(
-  work: (request: Request) => Promise<Answer>,
+  work: (request: Request, signal: AbortSignal) => Promise<Answer>,
   events: LatestEvents<Request, Answer>,
-): Latest<Request> {
-  let running = false;
+  underWay = UNDER_WAY,
+): Latest<Request, Answer> {
   let waiting: { request: Request } | null = null;
-  let epoch = 0;
+  let sent = 0;
+  let reported = 0;
+  let running = 0;
+  let calls = new AbortController();
 
   async function run(request: Request): Promise<void> {
-    const mine = epoch;
-    running = true;
-    events.onBusy(true);
+    const mine = calls;
+    const number = ++sent;
+    running += 1;
+    if (running === 1) events.onBusy(true);
+    // An answer that comes after a newer one is old; one that comes while a newer request waits is the best there is.
+    const report = (tell: () => void): void => {
+      if (mine !== calls || number < reported) return;
+      reported = number;
+      tell();
+    };
     try {
-      const answer = await work(request);
-      // The answer to a request that was replaced meanwhile is old.
-      if (mine === epoch && !waiting) events.onAnswer(answer, request);
+      const answer = await work(request, mine.signal);
+      report(() => events.onAnswer(answer, request));
     } catch (error) {
-      if (mine === epoch && !waiting) events.onError(error, request);
+      report(() => events.onError(error, request));
     }
-    if (mine !== epoch) return;
-    running = false;
-    const next = waiting as { request: Request } | null;
+    if (mine !== calls) return;
+    running -= 1;
+    const next = waiting;
     waiting = null;
     if (next) void run(next.request);
-    else events.onBusy(false);
+    else if (running === 0) events.onBusy(false);
   }
 
   return {
     send(request) {
-      if (running) waiting = { request };
+      if (running >= underWay) waiting = { request };
       else void run(request);
     },
+    give(answer, request) {
+      waiting = null;
+      reported = ++sent;
+      events.onAnswer(answer, request);
+    },
     drop() {
-      epoch += 1;
-      running = false;
+      calls.abort();
+      calls = new AbortController();
+      running = 0;
       waiting = null;
     },
   };

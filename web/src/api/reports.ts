@@ -115,8 +115,25 @@ export interface Emulation {
 }
 
 /** The reports that an entry may have. */
+export interface FrontPoint {
+  /** The limit. */
+  Ms: number;
+  controller: Controller;
+  load_IAE: number | null;
+  overshoot_percent: number | null;
+  Mks: number | null;
+  achieved: { Ms: number | null; Mt: number | null };
+}
+
+export interface Front {
+  points: FrontPoint[];
+  /** The lowest limit that is met, where lower ones were asked for. */
+  infeasible_below: number | null;
+}
+
 export interface Reports {
   rimc?: Rimc;
   tradeoff?: Tradeoff;
   emulation?: Emulation;
+  frontier?: Front;
 }

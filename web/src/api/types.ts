@@ -24,6 +24,8 @@ export interface RecordedTest {
   csv?: string;
   /** Headings, or numbers from 1. */
   columns?: { t?: string | number; u?: string | number; y?: string | number; r?: string | number };
+  /** Of the times in the csv, where it does not say or says it wrongly. */
+  time_unit?: string;
   kind?: string;
   u0?: number;
   y0?: number;
@@ -81,6 +83,14 @@ export interface Notice {
   level?: "warning" | "bad";
 }
 
+/** A conclusion of the service: its sentence, and the numbers of that by name. */
+export interface Finding {
+  code: string;
+  level: "good" | "note" | "warning" | "bad";
+  text: string;
+  figures?: Record<string, number | null>;
+}
+
 export interface FieldError {
   pointer: string;
   detail: string;
@@ -92,6 +102,8 @@ export interface Problem {
   status?: number;
   detail?: string;
   errors?: FieldError[];
+  /** Options of the method with which it would be possible. */
+  cure?: { text: string; options: Record<string, number> };
   /** A record that was read, but determines no model. */
   record?: { t: number[]; u: (number | null)[]; y: (number | null)[] };
 }
@@ -113,6 +125,8 @@ export interface Controller {
   delta_r?: number | null;
   action?: string;
   filter?: Filter;
+  /** What the set point passes first. */
+  setpoint_filter?: { T: number };
   why_null?: WhyNull;
 }
 
@@ -122,6 +136,7 @@ export interface Equivalent {
   Kd?: number | null;
   Ti?: number | null;
   Td?: number | null;
+  b?: number;
   b_equivalent?: number | null;
   why_null?: WhyNull;
 }
@@ -180,6 +195,8 @@ export interface Entry extends Reports {
   source?: string;
   options?: Record<string, unknown>;
   warnings?: Notice[];
+  /** The first says what the loop is. */
+  verdict?: Finding[];
   error?: Problem;
   /** Limits hold over the record's confidence region, not on its model alone. */
   over_region?: boolean;
@@ -193,6 +210,7 @@ export interface Entry extends Reports {
   verification?: Record<string, unknown>;
   region?: Region;
   optimum_at_Ms?: OptimumAtMs;
+  standing?: Standing;
   /** On a nonlinear plant, whose own figures and responses stand above: those of the linearised loop. */
   linear?: Pick<Entry, "performance" | "responses">;
   /** Of the nonlinear form: what can be said of errors of every size. */
@@ -204,6 +222,20 @@ export interface Entry extends Reports {
   longest_sample_time?: number | null;
   compute_ms?: number;
   partial?: boolean;
+}
+
+/** How an entry stands in a comparison: what the service ranks by. */
+export interface Standing {
+  /** Both responses come to rest where they should. */
+  settles: boolean;
+  /** On the worst plant, in the user's own controller. */
+  Ms: number | null;
+  /** The limit on Ms that was asked of this entry holds. */
+  within: boolean;
+  excess_percent: number | null;
+  /** Why it stands behind those that hold; left out where it holds. */
+  why?: string;
+  why_null?: WhyNull;
 }
 
 export interface Candidate {
@@ -270,6 +302,8 @@ export interface Result {
   operating_point?: OperatingPoint;
   linear_model?: Plant;
   controllers: Entry[];
+  /** Over all entries: which to take. */
+  verdict?: Finding[];
   ranking?: number[];
   ranking_by?: string;
   partial?: boolean;

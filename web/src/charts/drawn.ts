@@ -39,26 +39,31 @@ const variantOf = (entry: Entry): string => /\(([^()]*)\)$/.exec(entry.title ?? 
 export const drawable = (entry: Entry | undefined): boolean =>
   Boolean(entry && !entry.error && (entry.responses || entry.frequency));
 
+/** Entries to draw, the best first: what oscillates without settling only where nothing settles. */
+function worthDrawing(result: Result): number[] {
+  const every = [...new Set([...(result.ranking ?? []), ...result.controllers.keys()])];
+  const drawn = every.filter((index) => drawable(result.controllers[index]));
+  const calm = drawn.filter((index) => result.controllers[index]!.standing?.settles !== false);
+  return calm.length > 0 ? calm : drawn;
+}
+
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
 export function defaultDrawn(result: Result): number[] {
   const entries = result.controllers;
-  const order = [...(result.ranking ?? []), ...entries.map((_, index) => index)];
   const today = entries.findIndex((entry) => entry.method === "baseline");
   const chosen = new Set<number>(today >= 0 && drawable(entries[today]) ? [today] : []);
-  for (const index of order) {
+  for (const index of worthDrawing(result)) {
     if (chosen.size >= MOST_DRAWN) break;
-    if (drawable(entries[index])) chosen.add(index);
+    chosen.add(index);
   }
   return [...chosen].sort((a, b) => a - b);
 }
 
 /** The two best of the ranking, or the best beside today's settings. */
 export function defaultOverlay(result: Result): number[] {
-  const best = [...(result.ranking ?? []), ...result.controllers.keys()].filter((index) =>
-    drawable(result.controllers[index]),
-  );
+  const best = worthDrawing(result);
   const today = best.find((index) => result.controllers[index]!.method === "baseline");
-  const others = [...new Set(best)].filter((index) => index !== today);
+  const others = best.filter((index) => index !== today);
   const chosen = today === undefined ? others.slice(0, 2) : [today, ...others.slice(0, 1)];
   return chosen.sort((a, b) => a - b);
 }

@@ -1,5 +1,5 @@
 // The Nyquist curve of L with the circles that it must not enter.
-import type { TuningRequest } from "../api/types.ts";
+import type { FrequencyTraces, TuningRequest } from "../api/types.ts";
 import type { Frame, Mark } from "../plot/frame.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import type { Drawn } from "./drawn.ts";
@@ -44,9 +44,10 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
         y: { kind: "linear", label: "Im L", range: [-1.8, 1.2] },
         traces: drawn.flatMap((item) => {
           const frequency = item.entry.frequency;
-          return frequency
-            ? [{ name: item.name, look: item.look, x: frequency.L.re, y: frequency.L.im, parameter: frequency.omega }]
-            : [];
+          if (!frequency) return [];
+          const { re: x, im: y } = frequency.L;
+          const winding = windingOf(frequency);
+          return [{ name: item.name, look: item.look, x, y, parameter: frequency.omega, ...(winding ? { winding } : {}) }];
         }),
         marks: [{ kind: "upright", value: 0, role: "zero" }, ...marks],
       },
@@ -57,6 +58,23 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
     cursorKind: "log",
     fileName: "nyquist",
   };
+}
+
+const TURN_DEG = 360;
+/** A wider ring of turns is worth seeing. */
+const WIDEST = 0.6;
+
+/** Where L has made a whole turn beyond its last gain of one and will make at least another: a dead time's. */
+export function windingOf(frequency: FrequencyTraces): { from: number; radius: number } | null {
+  const { re, im, phase_deg: phase } = frequency.L;
+  if (!phase) return null;
+  const gain = re.map((value, index) => Math.hypot(value ?? NaN, im[index] ?? NaN));
+  const crossover = gain.map((value) => value >= 1).lastIndexOf(true);
+  const after = (index: number): number => (phase[Math.max(0, crossover)] ?? NaN) - (phase[index] ?? NaN);
+  const from = phase.findIndex((_, index) => index > crossover && after(index) > TURN_DEG);
+  if (from < 0 || !(after(phase.length - 1) > 2 * TURN_DEG)) return null;
+  const radius = Math.max(...gain.slice(from).filter(Number.isFinite));
+  return radius < WIDEST ? { from, radius } : null;
 }
 
 const inverse = (value: number | null | undefined): number | null =>

@@ -4,6 +4,7 @@ import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
 import { formatNumber, quotient, unitNames, withUnit } from "../words/numbers.ts";
+import { aroundCrossover } from "./bode.ts";
 import type { Drawn } from "./drawn.ts";
 import type { Limits } from "../words/limits.ts";
 
@@ -11,6 +12,7 @@ type Curve = "S_abs" | "T_abs" | "CS_abs";
 
 export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: TuningRequest | undefined): Frame {
   const units = unitNames(request?.units);
+  const range = aroundCrossover(drawn);
   const pane = (curve: Curve, label: string, limit: number | null, limitName: string, decades: number): Pane => {
     const traces = drawn.flatMap((item): Trace[] => {
       const frequency: FrequencyTraces | undefined = item.entry.frequency;
@@ -31,7 +33,7 @@ export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: Tuning
             `${name}: Ms ${formatNumber(entry.robustness?.Ms)}, Mt ${formatNumber(entry.robustness?.Mt)}, Mks ${formatNumber(entry.robustness?.Mks)}.`,
         )
         .join(" ") || "No curve to draw.",
-    x: { kind: "log", label: `ω (rad/${units.time})` },
+    x: { kind: "log", label: `ω (rad/${units.time})`, ...(range ? { range } : {}) },
     panes: [
       pane("S_abs", "|S|", limits.Ms, "limit", 2),
       pane("T_abs", "|T|", limits.Mt, "limit", 2),

@@ -76,7 +76,7 @@ export class FormErrors {
       return h("li", {}, link);
     });
     const count = errors.length;
-    const head = count === 0 ? general : `${count} ${count === 1 ? "thing" : "things"} to mend`;
+    const head = count === 0 ? general : `${count} ${count === 1 ? "problem" : "problems"} to fix`;
     this.summary.replaceChildren(h("h2", {}, head), ...(items.length > 0 ? [h("ul", {}, items)] : []));
     this.summary.hidden = false;
     this.summary.focus();

@@ -73,7 +73,7 @@ const matrixField = (name: string, hint: string, example: string): PlantField =>
   write: writeMatrix,
 });
 
-const gain = numberField("K", "how far y goes for one unit of u, in the end", "gain", "1.25");
+const gain = numberField("K", "steady-state change in y per unit of u", "gain", "1.25");
 const deadTime = numberField("L", "dead time: nothing happens before it", "time", "8");
 const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
 
@@ -129,7 +129,7 @@ export const PLANT_FORMS: PlantForm[] = [
     type: "ipdt",
     title: "Integrating with dead time",
     fields: [
-      numberField("K", "slope of y for one unit of u", "slope", "0.02"),
+      numberField("K", "slope of y per unit of u", "slope", "0.02"),
       deadTime,
       numberField("T", "additional lag; empty is none", "time", "", true),
       uncertainty,

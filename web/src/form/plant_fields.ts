@@ -1,18 +1,25 @@
-// A plant to enter: its kind, its parameters, the formula as it is typed. On Start and on the relay test's screen.
+// A plant to enter: in one line as people write it, or by its kind and parameters; each shows what the other says. The
+// service reads the line and writes the formula. On Start and on the relay test's screen.
+import { ApiError } from "../api/client.ts";
+import { latest } from "../api/latest.ts";
+import { parsePlant } from "../api/plants.ts";
+import type { PlantAnswer, PlantQuestion } from "../api/plants.ts";
 import type { Plant } from "../api/types.ts";
-import { h, mathElement } from "../dom.ts";
+import { h, uniqueId } from "../dom.ts";
 import { quotient } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
-import { plantFormula } from "./formula.ts";
+import { formulaNodes } from "./formula.ts";
 import { formOf, PLANT_FORMS, readPlant } from "./plant.ts";
 import type { PlantForm, PlantReading } from "./plant.ts";
 
 export interface PlantFields {
   elements: HTMLElement[];
   read(): PlantReading;
+  /** When the service has said what the line that was typed means. */
+  settled(): Promise<void>;
   /** False where these fields cannot show such a plant. */
   load(plant: Plant): boolean;
   loadTyped(form: string, values: Record<string, string>): void;
@@ -21,11 +28,28 @@ export interface PlantFields {
   setUnits(units: UnitNames): void;
 }
 
+const INCOMPLETE = "The formula appears when the numbers are complete.";
+
 /** `active`: whether a request that is sent now is about these fields' plant. */
 export function plantFields(errors: FormErrors, active: () => boolean, onChange: () => void): PlantFields {
   let form: PlantForm = PLANT_FORMS[0]!;
   let units: UnitNames = { time: "s", u: "", y: "" };
   let fields: { name: string; unit: "gain" | "slope" | "time" | ""; field: Field<HTMLInputElement> }[] = [];
+  // What the line says cannot be used until the service has read it.
+  let fault: string | null = null;
+  let waiting: (() => void)[] = [];
+  let busy = false;
+  let fromLine = false;
+  const line = textField(
+    {
+      label: "Model in one line",
+      hint: "a formula, K=2 T=10 L=3, or zeros and poles; 3 min and 500 ms are understood",
+      placeholder: "2 e^(-3s)/((10s+1)(2s+1))",
+      pointer: () => (active() ? "/plant" : null),
+      wide: true,
+    },
+    errors,
+  );
   const kind = choiceField(
     {
       label: "Kind of process",
@@ -36,7 +60,8 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     errors,
   );
   const parameters = h("div", { class: "fields" });
-  const formula = h("div", { class: "formula" });
+  const formula = h("div", { class: "formula", id: uniqueId("formula") });
+  line.input.setAttribute("aria-describedby", `${line.input.getAttribute("aria-describedby") ?? ""} ${formula.id}`);
 
   const typed = (name: string): string => fields.find((item) => item.name === name)?.field.input.value ?? "";
   const texts = (): Record<string, string> =>
@@ -47,18 +72,71 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     if (unit === "slope") return ratio ? `${ratio}/${units.time}` : `1/${units.time}`;
     return unit === "time" ? units.time : "";
   };
+  const say = (sentence: string): void => formula.replaceChildren(h("span", { class: "hint" }, sentence));
 
-  function showFormula(): void {
+  const calls = latest<PlantQuestion, PlantAnswer>(parsePlant, {
+    onBusy: setBusy,
+    onAnswer(answer, question) {
+      if (question.text === undefined) {
+        if (answer.text !== undefined) line.input.value = answer.text;
+      } else if (question.text === line.input.value) {
+        fault = answer.plant ? null : (answer.fault ?? "");
+        if (answer.plant) showPlant(answer.plant);
+      }
+      if (answer.fault !== undefined) say(answer.fault);
+      else formula.replaceChildren(...formulaNodes(answer.formula));
+    },
+    onError(error, question) {
+      const sentence = error instanceof ApiError ? error.message : String(error);
+      if (question.text !== undefined) fault = sentence;
+      say(sentence);
+    },
+  });
+
+  function setBusy(now: boolean): void {
+    busy = now;
+    if (now) return;
+    for (const done of waiting) done();
+    waiting = [];
+  }
+
+  function askText(): void {
+    fromLine = true;
+    fault = "";
+    calls.send({ text: line.input.value, units: { time: units.time } });
+  }
+
+  /** The formula and the line of what stands in the fields. */
+  function askFields(): void {
+    fromLine = false;
+    fault = null;
     const reading = readPlant(form, typed);
-    const tree = reading.errors.length === 0 ? plantFormula(reading.plant) : null;
-    formula.replaceChildren(
-      tree ? mathElement(tree) : h("span", { class: "hint" }, "The formula appears when the numbers are complete."),
-    );
+    if (reading.errors.length === 0) return calls.send({ plant: reading.plant });
+    calls.drop();
+    setBusy(false);
+    line.input.value = "";
+    say(INCOMPLETE);
+  }
+
+  /** The plant that was typed; what a line cannot say, the parameters' uncertainty, stays. */
+  function showPlant(plant: Plant): void {
+    const match = formOf(plant);
+    if (!match) return;
+    const before = texts();
+    choose(match, {
+      ...Object.fromEntries(match.fields.map((field) => [field.name, field.write(plant[field.name])])),
+      ...(before["uncertainty"] ? { uncertainty: before["uncertainty"] } : {}),
+    });
   }
 
   function choose(next: PlantForm, values: Record<string, string>): void {
+    const same = next === form && fields.length > 0;
     form = next;
     kind.input.value = form.id;
+    if (same) {
+      for (const item of fields) item.field.input.value = values[item.name] ?? "";
+      return;
+    }
     for (const item of fields) errors.remove(item.field.control);
     fields = form.fields.map((item) => ({
       name: item.name,
@@ -76,38 +154,53 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
       ),
     }));
     parameters.replaceChildren(...fields.map((item) => item.field.element));
-    showFormula();
   }
 
   const examples = (of: PlantForm): Record<string, string> =>
     Object.fromEntries(of.fields.map((field) => [field.name, field.example]));
+  const settled = (): Promise<void> => (busy ? new Promise((done) => waiting.push(done)) : Promise.resolve());
 
   kind.input.addEventListener("change", () => {
     const next = PLANT_FORMS.find((candidate) => candidate.id === kind.input.value) ?? PLANT_FORMS[0]!;
     choose(next, examples(next));
+    askFields();
     onChange();
   });
-  parameters.addEventListener("input", showFormula);
+  parameters.addEventListener("input", askFields);
   parameters.addEventListener("change", () => onChange());
+  line.input.addEventListener("input", askText);
+  line.input.addEventListener("change", () => void settled().then(() => fault === null && onChange()));
   choose(form, examples(form));
+  askFields();
 
   return {
-    elements: [kind.element, parameters, formula],
-    read: () => readPlant(form, typed),
+    elements: [line.element, formula, kind.element, parameters],
+    read() {
+      const reading = readPlant(form, typed);
+      if (fault === null) return reading;
+      return { plant: reading.plant, errors: [{ pointer: "/plant", detail: fault }] };
+    },
+    settled,
     load(plant) {
       const match = formOf(plant);
       if (!match) return false;
       choose(match, Object.fromEntries(match.fields.map((field) => [field.name, field.write(plant[field.name])])));
+      askFields();
       return true;
     },
     loadTyped(id, values) {
       const match = PLANT_FORMS.find((candidate) => candidate.id === id);
-      if (match) choose(match, Object.keys(values).length > 0 ? values : examples(match));
+      if (!match) return;
+      choose(match, Object.keys(values).length > 0 ? values : examples(match));
+      askFields();
     },
     typed: () => ({ form: form.id, values: texts() }),
     setUnits(next) {
+      const changed = next.time !== units.time;
       units = next;
       for (const item of fields) item.field.setUnit(unitText(item.unit));
+      // A line with units of its own means other numbers now.
+      if (changed && fromLine) askText();
     },
   };
 }

@@ -1,6 +1,7 @@
 // How a record is to be read and identified: columns, kind, model, method. The same fields on Start and on Identify.
 import type { FieldError, RecordedTest } from "../api/types.ts";
 import { h } from "../dom.ts";
+import type { Preview } from "../api/records.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
@@ -13,6 +14,36 @@ export interface RecordFields {
   /** What the fields add to a record and to `identify`. */
   read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
   load(record: RecordedTest, identify: Identify | undefined): void;
+  /** The columns to choose among, and what was found of them. */
+  offer(preview: Preview): void;
+}
+
+type ColumnName = "t" | "u" | "y" | "r";
+
+const COLUMN_LABELS: Record<ColumnName, string> = {
+  t: "Time",
+  u: "Controller output (u)",
+  y: "Measurement (y)",
+  r: "Set point",
+};
+
+const TIME_UNITS = [
+  ["", "as the file says, else seconds"],
+  ["ms", "milliseconds"],
+  ["s", "seconds"],
+  ["min", "minutes"],
+  ["h", "hours"],
+  ["d", "days"],
+] as const;
+
+/** A column is chosen by its heading; by its number where it has none, or one that is there twice. */
+export function columnChoices(preview: Preview): [value: string, text: string][] {
+  return preview.columns.map(({ heading, first }, index) => {
+    const twice = preview.columns.filter((other) => other.heading === heading).length > 1;
+    const number = String(index + 1);
+    if (heading === "" || twice) return [number, `column ${number}${heading ? `, ${heading}` : first ? `: ${first}...` : ""}`];
+    return [/^[1-9]\d*$/.test(heading) ? number : heading, heading];
+  });
 }
 
 const KINDS = [
@@ -38,42 +69,45 @@ const METHODS = [
   ["two_point", "two points of the step"],
 ] as const;
 
+const FOUND = "found by itself";
+const COLUMN_NAMES = ["t", "u", "y", "r"] as const;
+
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
   typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
 
 /** `all`: also what only somebody who looks at the record can know. */
 export function recordFields(errors: FormErrors, all: boolean): RecordFields {
-  const column = (name: "t" | "u" | "y" | "r", meaning: string): Field<HTMLInputElement> =>
-    textField(
-      {
-        label: `Column ${name}`,
-        hint: `${meaning}; heading or number`,
-        placeholder: "auto",
-        pointer: () => `/record/columns/${name}`,
-      },
+  const column = (name: ColumnName): Field<HTMLSelectElement> =>
+    choiceField(
+      { label: COLUMN_LABELS[name], choices: [["", FOUND]], pointer: () => `/record/columns/${name}` },
       errors,
     );
   const optional = (label: string, hint: string, pointer: string): Field<HTMLInputElement> =>
     textField({ label, hint, placeholder: "optional", pointer: () => pointer }, errors);
   const columns = {
-    t: column("t", "time"),
-    u: column("u", "output"),
-    y: column("y", "measurement"),
-    r: column("r", "set point, if any"),
+    t: column("t"),
+    u: column("u"),
+    y: column("y"),
+    r: column("r"),
   };
+  const timeUnit = choiceField(
+    { label: "Times are in", choices: TIME_UNITS, pointer: () => "/record/time_unit" },
+    errors,
+  );
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
   const method = all
     ? choiceField({ label: "Method", choices: METHODS, pointer: () => "/identify/method" }, errors)
     : null;
-  const numbers = all
+  const dt = optional("Sampling time (s)", "where there is no time column", "/record/dt");
+  const numbers: Record<string, Field<HTMLInputElement>> = all
     ? {
-        dt: optional("Sampling time", "where there is no time column", "/record/dt"),
+        dt,
         u0: optional("u before", "output before the first sample", "/record/u0"),
         y0: optional("y before", "measurement before the first sample", "/record/y0"),
         shift: optional("Shift", "of relay formulas; 1/Pu if empty", "/identify/shift"),
       }
-    : {};
+    : { dt };
   // Parts of a loaded request that have no field here: sent back as they came.
   let rest: { record: Partial<RecordedTest>; identify: Identify } = { record: {}, identify: {} };
 
@@ -83,6 +117,8 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         "div",
         { class: "fields" },
         Object.values(columns).map((field) => field.element),
+        timeUnit.element,
+        dt.element,
       ),
       h(
         "div",
@@ -90,7 +126,9 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         kind.element,
         model.element,
         method?.element,
-        Object.values(numbers).map((field) => field.element),
+        Object.values(numbers)
+          .filter((field) => field !== dt)
+          .map((field) => field.element),
       ),
     ],
     read() {
@@ -98,9 +136,10 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       const identify: Identify = { ...rest.identify, model: model.input.value };
       const faults: FieldError[] = [];
       const named = Object.entries(columns).flatMap(([name, field]) =>
-        field.input.value.trim() ? [[name, columnOf(field.input.value.trim())] as const] : [],
+        field.input.value ? [[name, columnOf(field.input.value)] as const] : [],
       );
       if (named.length > 0) record.columns = Object.fromEntries(named);
+      if (timeUnit.input.value) record.time_unit = timeUnit.input.value;
       if (kind.input.value !== "auto") record.kind = kind.input.value;
       if (method && method.input.value !== "auto") identify["method"] = method.input.value;
       for (const [name, field] of Object.entries(numbers)) {
@@ -114,7 +153,8 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       return { record, identify, errors: faults };
     },
     load(record, identify = {}) {
-      for (const name of ["t", "u", "y", "r"] as const) columns[name].input.value = String(record.columns?.[name] ?? "");
+      for (const name of COLUMN_NAMES) choose(columns[name].input, String(record.columns?.[name] ?? ""));
+      choose(timeUnit.input, record.time_unit ?? "");
       kind.input.value = known(KINDS, record.kind);
       model.input.value = known(MODELS, identify["model"]);
       if (method) method.input.value = known(METHODS, identify["method"]);
@@ -124,13 +164,32 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       }
       const { model: _model, method: given, shift, ...others } = identify;
       const { u0, y0, u_limits, from, to } = record;
-      const dt = record.csv === undefined ? undefined : record.dt;
       rest = {
-        record: all ? defined({ u_limits }) : defined({ u0, y0, u_limits, from, to, dt }),
+        record: all ? defined({ u_limits }) : defined({ u0, y0, u_limits, from, to }),
         identify: all ? others : { ...others, ...defined({ method: given, shift }) },
       };
     },
+    offer(preview) {
+      const choices = columnChoices(preview);
+      for (const name of COLUMN_NAMES) {
+        const { input } = columns[name];
+        const now = input.value;
+        const at = preview.columns.findIndex((found) => found.guess === name);
+        const found = now === "" && at >= 0 ? `${FOUND}: ${choices[at]![1]}` : name === "r" ? "none, or found by itself" : FOUND;
+        input.replaceChildren(
+          h("option", { value: "" }, found),
+          ...choices.map(([value, text]) => h("option", { value }, text)),
+        );
+        choose(input, now);
+      }
+    },
   };
+}
+
+/** What a request names is a choice too, whether or not the file has been looked at. */
+function choose(select: HTMLSelectElement, value: string): void {
+  if (![...select.options].some((option) => option.value === value)) select.append(h("option", { value }, value));
+  select.value = value;
 }
 
 const defined = (values: Identify): Identify =>

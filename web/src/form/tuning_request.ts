@@ -14,7 +14,7 @@ import type {
 
 /** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
 export type TuneSubject =
-  /** `uncertainty` "identified": limits hold on all that the record leaves possible. */
+  /** `uncertainty` "identified": limits hold for every model consistent with the record. */
   (Pick<IdentifyRequest, "record" | "identify"> & { uncertainty?: "identified" | undefined }) | { plant: Plant };
 
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
@@ -52,6 +52,30 @@ export const withBaseline = (request: TuningRequest, baseline: TypedBaseline): T
   ...request,
   baseline,
 });
+
+/** What the entry of that index was made by, whose order is that of `tune`; null for today's settings. */
+export function tuneEntryOf(request: TuningRequest, result: Result, index: number): TuneEntry | null {
+  const entry = result.controllers[index];
+  if (!entry || entry.method === "baseline") return null;
+  const given =
+    request.tune === undefined || asksForAll(request.tune) ? everyMethod(result) : (request.tune as TuneEntry[]);
+  const tune = given[index];
+  return tune?.method === entry.method ? tune : { method: entry.method };
+}
+
+/** The same request with one of its entries made by other options. */
+export function withTune(request: TuningRequest, result: Result, index: number, tune: TuneEntry): TuningRequest {
+  const all = request.tune === undefined || asksForAll(request.tune);
+  const given = all ? everyMethod(result) : (request.tune as TuneEntry[]);
+  return { ...request, tune: given.map((entry, at) => (at === index ? tune : entry)) };
+}
+
+/** The same request with other options of a method; null: of the only one. */
+export function withOptions(request: TuningRequest, method: string | null, options: Record<string, number>): TuningRequest {
+  const given = Array.isArray(request.tune) ? request.tune : [{ method: method ?? "robust" }];
+  const tune = given.map((entry) => (method === null || entry.method === method ? { ...entry, ...options } : entry));
+  return { ...request, tune };
+}
 
 /** Options that say the same as lambda in another way. */
 const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];

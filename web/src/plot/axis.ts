@@ -74,7 +74,7 @@ export function ticks(kind: ScaleKind, range: Range, count: number): number[] {
   const [lo, hi] = usableRange(range[0], range[1], kind);
   const wanted = Math.max(3, Math.min(20, Math.round(count) || 3));
   if (kind === "linear") return linearTicks(lo, hi, wanted);
-  const decades = logTicks(lo, hi, wanted);
+  const decades = logTicks(lo, hi, wanted, count);
   return decades.length >= 3 ? decades : linearTicks(lo, hi, wanted).filter((value) => value > 0);
 }
 
@@ -100,13 +100,23 @@ function clean(index: number, step: number): number {
   return Number((index * step).toPrecision(12));
 }
 
-function logTicks(lo: number, hi: number, wanted: number): number[] {
+/** Every so-maniest decade, those whose exponent it divides where three of them are left. */
+function thinned(decades: number[], every: number): number[] {
+  const round = decades.filter((value) => Math.round(Math.log10(value)) % every === 0);
+  if (round.length >= 3) return round;
+  return every > 2 ? thinned(decades, every - 1) : decades.filter((_, index) => index % 2 === 0);
+}
+
+/** So much room for a decade, in ticks, lets 1, 2 and 5 stand apart. */
+const FINE_PER_DECADE = 1.3;
+
+/** `room`: how many ticks fit; `wanted`: the same, and at least three. */
+function logTicks(lo: number, hi: number, wanted: number, room: number): number[] {
   const first = Math.floor(Math.log10(lo));
   const last = Math.ceil(Math.log10(hi));
-  const inside = (mantissas: number[], every: number): number[] => {
+  const inside = (mantissas: number[]): number[] => {
     const list: number[] = [];
     for (let exponent = first; exponent <= last; exponent += 1) {
-      if (exponent % every !== 0) continue;
       for (const mantissa of mantissas) {
         const value = Number(`${mantissa}e${exponent}`);
         if (value >= lo * (1 - 1e-9) && value <= hi * (1 + 1e-9)) list.push(value);
@@ -114,21 +124,30 @@ function logTicks(lo: number, hi: number, wanted: number): number[] {
     }
     return list;
   };
-  for (const mantissas of [[1], [1, 3], [1, 2, 5]]) {
-    const list = inside(mantissas, 1);
-    if (list.length > wanted + 2 && mantissas.length === 1) return inside([1], Math.ceil(list.length / wanted));
+  const fine = inside([1, 2, 5]);
+  if (fine.length >= 3 && Math.log10(hi / lo) * FINE_PER_DECADE <= room) return fine;
+  for (const mantissas of [[1], [1, 3]]) {
+    const list = inside(mantissas);
+    if (list.length > wanted + 2 && mantissas.length === 1) return thinned(list, Math.ceil(list.length / wanted));
     if (list.length >= 3) return list;
   }
-  return inside([1, 2, 5], 1);
+  return fine;
 }
 
 const MINUS = "−";
 
-/** A tick's text: no dust, true minus, powers of ten where plain digits would be long. */
+const isLong = (size: number): boolean => size !== 0 && (size >= 1e5 || size < 1e-3);
+const written = (text: string): string => text.replaceAll("-", MINUS);
+
+/** A number's text: no dust, true minus, powers of ten where plain digits would be long. */
 export function tickText(value: number): string {
   if (value === 0) return "0";
-  const size = Math.abs(value);
-  const text =
-    size >= 1e5 || size < 1e-3 ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
-  return text.replaceAll("-", MINUS);
+  const text = isLong(Math.abs(value)) ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
+  return written(text);
+}
+
+/** The texts of an axis' ticks, in one notation. */
+export function tickTexts(values: readonly number[]): string[] {
+  if (!values.some((value) => isLong(Math.abs(value)))) return values.map(tickText);
+  return values.map((value) => (value === 0 ? "0" : value === 1 ? "1" : written(value.toExponential().replace("e+", "e"))));
 }

@@ -1,4 +1,5 @@
-// Cursors that move together: plots with the same link name share a position.
+// Cursors that move together, and stretches that are looked at together: plots with the same link name share them.
+import type { Range } from "./axis.ts";
 
 export interface CursorPosition {
   value: number | null;
@@ -6,7 +7,11 @@ export interface CursorPosition {
   source: object | null;
 }
 
-type Listener = (position: CursorPosition) => void;
+export interface Listener {
+  onCursor(position: CursorPosition): void;
+  /** Another plot shows that stretch, or everything. */
+  onZoom(stretch: Range | null): void;
+}
 
 const links = new Map<string, Set<Listener>>();
 
@@ -21,7 +26,12 @@ export function joinLink(name: string, listener: Listener): () => void {
 }
 
 export function moveCursor(name: string, position: CursorPosition): void {
-  for (const listener of links.get(name) ?? []) listener(position);
+  for (const listener of links.get(name) ?? []) listener.onCursor(position);
+}
+
+/** `mine`: who shows it already. */
+export function zoomTogether(name: string, stretch: Range | null, mine: Listener): void {
+  for (const listener of links.get(name) ?? []) if (listener !== mine) listener.onZoom(stretch);
 }
 
 /** Index of the sample nearest to the value; -1 for an empty list. The list rises, or falls. */

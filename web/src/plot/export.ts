@@ -134,10 +134,7 @@ export const exportHeight = (height: number): number => height + HEADER;
 
 /** The light colours, whatever the page shows: exports go on paper. */
 export function lightPalette(): Palette {
-  const probe = document.createElement("div");
-  probe.className = "light-tokens";
-  document.body.append(probe);
-  const colours = getComputedStyle(probe);
+  const colours = getComputedStyle(document.documentElement);
   const read = new Map<string, string>();
   for (const token of [
     "surface",
@@ -153,8 +150,9 @@ export function lightPalette(): Palette {
     "series-3",
     "series-4",
   ]) {
-    read.set(`--${token}`, colours.getPropertyValue(`--${token}`).trim());
+    // A token reads "light-dark(#2363c5, #5b95f5)".
+    const first = /#[0-9a-f]{3,6}/i.exec(colours.getPropertyValue(`--${token}`));
+    if (first) read.set(`--${token}`, first[0]);
   }
-  probe.remove();
   return (token) => read.get(token) ?? "#000000";
 }

@@ -13,6 +13,8 @@ export interface Trace {
   y: readonly (number | null)[];
   /** The cursor's variable where it is not x: a curve in a plane run through by a parameter. */
   parameter?: readonly number[];
+  /** From that sample on it winds about the origin, turn upon turn, within that radius. */
+  winding?: { from: number; radius: number };
 }
 
 export type Mark =
@@ -20,7 +22,20 @@ export type Mark =
   | { kind: "upright"; value: number; label?: string; role: "setpoint" | "limit" | "zero" }
   | { kind: "band"; from: number; to: number; label?: string }
   | { kind: "circle"; x: number; y: number; radius: number; label: string; labelAt: "above" | "below" }
-  | { kind: "point"; x: number; y: number; label: string };
+  | {
+      kind: "point";
+      x: number;
+      y: number;
+      label: string;
+      /** Its colour; the colour of what must be avoided by itself. */
+      look?: Look;
+      /** Its name shows while it is pointed at: for points that stand close. */
+      quiet?: boolean;
+      /** It can be taken and moved. */
+      handle?: boolean;
+    };
+
+export type Point = Extract<Mark, { kind: "point" }>;
 
 export interface Axis {
   kind: ScaleKind;
@@ -53,6 +68,10 @@ export interface Frame {
   /** The cursor's variable with its unit, e.g. "time (s)". */
   cursorLabel: string;
   cursorKind: ScaleKind;
+  /** What dragging over the plot does instead of zooming: it chooses a stretch of x. Shift and drag zooms. */
+  brush?: (from: number, to: number) => void;
+  /** The same subject drawn in another way, which a button shows in its place. */
+  alternative?: Frame;
   /** File name of exports, without ending. */
   fileName: string;
 }

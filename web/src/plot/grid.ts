@@ -8,6 +8,10 @@ export interface PlotGrid {
   element: HTMLElement;
   /** Null takes the plot away. */
   show(key: string, frame: Frame | null): void;
+  /** While something that changes the frames is held their axes only grow. */
+  hold(held: boolean): void;
+  /** The frames are old: newer ones are on their way. */
+  setBusy(busy: boolean): void;
   dispose(): void;
 }
 
@@ -31,6 +35,12 @@ export function plotGrid(announce: Announce): PlotGrid {
       plots.set(key, made);
       element.append(made.element);
       element.hidden = false;
+    },
+    hold(held) {
+      for (const plot of plots.values()) plot.hold(held);
+    },
+    setBusy(busy) {
+      element.setAttribute("aria-busy", String(busy));
     },
     dispose() {
       for (const key of [...plots.keys()]) remove(key);

@@ -1,5 +1,5 @@
 // From a frame and a size to rectangles and scales. Pure: the page and the exports share it.
-import { extent, makeScale, ticks, tickText, usableRange } from "./axis.ts";
+import { extent, makeScale, ticks, tickTexts, usableRange } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import type { Frame, Pane } from "./frame.ts";
 
@@ -38,21 +38,28 @@ const TOP = 8;
 const BOTTOM = 38;
 const GAP = 14;
 
-export function layoutFrame(frame: Frame, width: number, height: number, view: View): Layout {
+/** `atLeast`: a layout whose ranges this one's must not fall short of, where the user did not zoom. */
+export function layoutFrame(
+  frame: Frame,
+  width: number,
+  height: number,
+  view: View,
+  atLeast: Layout | null = null,
+): Layout {
   const innerHeight = Math.max(40, height - TOP - BOTTOM - GAP * (frame.panes.length - 1));
   const weights = frame.panes.map((pane) => pane.weight ?? 1);
   const total = weights.reduce((sum, weight) => sum + weight, 0);
   const heights = weights.map((weight) => (innerHeight * weight) / total);
-  const yRanges = frame.panes.map((pane, index) => view.y[index] ?? pane.y.range ?? dataRange(pane));
+  const yRanges = frame.panes.map(
+    (pane, index) =>
+      view.y[index] ??
+      (view.x && !frame.equal
+        ? rangeWithin(pane, view.x)
+        : covering(pane.y.range ?? dataRange(pane), atLeast?.boxes[index]?.y)),
+  );
   const left = leftOf(frame, yRanges, heights);
   const innerWidth = Math.max(40, width - left - RIGHT);
-  const xRange =
-    view.x ??
-    frame.x.range ??
-    extent(
-      frame.panes.flatMap((pane) => pane.traces.map((trace) => trace.x)),
-      frame.x.kind,
-    );
+  const xRange = view.x ?? covering(frame.x.range ?? dataRangeOfX(frame), atLeast?.boxes[0]?.x);
   let top = TOP;
   const boxes = frame.panes.map((pane, index): PaneBox => {
     const paneHeight = heights[index]!;
@@ -77,16 +84,36 @@ export function layoutFrame(frame: Frame, width: number, height: number, view: V
 /** As much as the longest tick text takes, so that no axis name stands on it. */
 function leftOf(frame: Frame, ranges: Range[], heights: number[]): number {
   const lengths = frame.panes.flatMap((pane, index) =>
-    ticks(pane.y.kind, ranges[index]!, heights[index]! / TICK_PX).map((value) => tickText(value).length),
+    tickTexts(ticks(pane.y.kind, ranges[index]!, heights[index]! / TICK_PX)).map((text) => text.length),
   );
   return LEFT + TICK_GLYPH_PX * Math.max(0, Math.max(0, ...lengths) - USUAL_TICK_LENGTH);
 }
+
+const dataRangeOfX = (frame: Frame): Range =>
+  extent(
+    frame.panes.flatMap((pane) => pane.traces.map((trace) => trace.x)),
+    frame.x.kind,
+  );
+
+/** The range, widened to what was shown before. */
+const covering = (range: Range, before: Scale | undefined): Range =>
+  before ? [Math.min(range[0], before.range[0]), Math.max(range[1], before.range[1])] : range;
 
 function dataRange(pane: Pane): Range {
   const levels = (pane.marks ?? []).flatMap((mark) =>
     mark.kind === "level" && mark.role !== "zero" ? [mark.value] : [],
   );
   return extent([...pane.traces.map((trace) => trace.y), levels], pane.y.kind, pane.y.kind === "linear" ? 0.06 : 0.03);
+}
+
+/** Of what lies in view, and a step to both sides of it. */
+function rangeWithin(pane: Pane, [from, to]: Range): Range {
+  const inView = pane.traces.map(({ x, y }) => {
+    const inside = (index: number): boolean => typeof x[index] === "number" && x[index]! >= from && x[index]! <= to;
+    return y.filter((_, index) => inside(index) || inside(index - 1) || inside(index + 1));
+  });
+  if (inView.every((list) => list.length === 0)) return pane.y.range ?? dataRange(pane);
+  return extent(inView, pane.y.kind, pane.y.kind === "linear" ? 0.06 : 0.03);
 }
 
 /** Widens the narrower of two ranges about its middle until a unit is as long on both axes. */

@@ -2,9 +2,10 @@
 // so the same nodes serve the page (which follows the theme) and the exports (which put the colours in).
 import { node, svgElement } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
-import { ticks, tickText } from "./axis.ts";
+import { ticks, tickTexts } from "./axis.ts";
 import { columnExtremes, drawableRuns } from "./dense.ts";
-import type { Frame, Look, Mark, Trace } from "./frame.ts";
+import type { Frame, Look, Mark, Point, Trace } from "./frame.ts";
+import { markLabels } from "./labels.ts";
 import { TICK_PX } from "./layout.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 
@@ -30,9 +31,8 @@ export const lineOf = (look: Look, thin = false): Attributes => (thin ? { ...LIN
 
 const FONT = { "font-size": 12 };
 const FAR = 20000;
-const SMALL_CIRCLE_PX = 36;
-/** About the width of a letter. */
-const GLYPH_PX = 6.4;
+/** Radius below which turns of a curve about the origin run into each other. */
+const SMEARED_PX = 90;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
 
@@ -51,9 +51,9 @@ function drawBox(frame: Frame, box: PaneBox, clip: string, last: boolean): TreeN
     node("clipPath", { id: clip }, node("rect", frameRect)),
     node("g", {}, ...drawGrid(box)),
     node("g", inside, ...marks.flatMap((mark) => drawMark(box, mark))),
-    node("g", inside, ...box.pane.traces.map((trace) => drawTrace(box, trace))),
+    node("g", inside, ...box.pane.traces.flatMap((trace) => drawTrace(box, trace))),
     node("rect", { ...frameRect, fill: "none", stroke: "var(--control)" }),
-    node("g", inside, ...markLabels(box, marks)),
+    node("g", inside, ...markLabels(box)),
     node("g", { fill: "var(--muted)", ...FONT }, ...drawTickTexts(box, last), ...drawAxisNames(frame, box, last)),
   ];
 }
@@ -82,17 +82,19 @@ function drawGrid(box: PaneBox): TreeNode[] {
 function drawTickTexts(box: PaneBox, last: boolean): TreeNode[] {
   const { x, y } = axisTicks(box);
   const bottom = box.top + box.height;
-  const texts: TreeNode[] = y.map((value) =>
-    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, tickText(value)),
+  const besideY = tickTexts(y);
+  const texts: TreeNode[] = y.map((value, index) =>
+    node("text", { x: box.left - 6, y: round(box.y.toPixel(value) + 4), "text-anchor": "end" }, besideY[index]!),
   );
   if (!last) return texts;
   let free = -Infinity;
-  for (const value of x) {
+  const below = tickTexts(x);
+  for (const [index, value] of x.entries()) {
     const at = box.x.toPixel(value);
-    const half = tickText(value).length * 3.4;
+    const half = below[index]!.length * 3.4;
     if (at - half < free) continue;
     free = at + half + 6;
-    texts.push(node("text", { x: round(at), y: round(bottom + 16), "text-anchor": "middle" }, tickText(value)));
+    texts.push(node("text", { x: round(at), y: round(bottom + 16), "text-anchor": "middle" }, below[index]!));
   }
   return texts;
 }
@@ -117,14 +119,23 @@ function drawAxisNames(frame: Frame, box: PaneBox, last: boolean): TreeNode[] {
   return names;
 }
 
+const lengthX = (box: PaneBox, units: number): number => Math.abs(box.x.toPixel(units) - box.x.toPixel(0));
+
+/** Turns about the origin that nobody could tell apart; enlarged, they are drawn. */
+function smeared(box: PaneBox, trace: Trace): { from: number; radius: number } | null {
+  const { winding } = trace;
+  return winding && lengthX(box, winding.radius) < SMEARED_PX ? winding : null;
+}
+
 /** The path of a trace in pixels; long traces keep their extremes of each pixel column. */
 export function tracePath(box: PaneBox, trace: Trace): string {
   const near = (pixel: number): number => Math.max(-FAR, Math.min(FAR, pixel));
+  const last = smeared(box, trace)?.from ?? Infinity;
   let path = "";
   for (const [first, end] of drawableRuns(trace.x, trace.y, box.x.kind === "log", box.y.kind === "log")) {
     const xs: number[] = [];
     const ys: number[] = [];
-    for (let index = first; index <= end; index += 1) {
+    for (let index = first; index <= Math.min(end, last); index += 1) {
       xs.push(near(box.x.toPixel(trace.x[index]!)));
       ys.push(near(box.y.toPixel(trace.y[index]!)));
     }
@@ -137,13 +148,19 @@ export function tracePath(box: PaneBox, trace: Trace): string {
   return path;
 }
 
-function drawTrace(box: PaneBox, trace: Trace): TreeNode {
-  return node("path", {
-    d: tracePath(box, trace) || "M0 0",
-    fill: "none",
-    "stroke-linejoin": "round",
-    ...lineOf(trace.look, trace.thin),
-  });
+function drawTrace(box: PaneBox, trace: Trace): TreeNode[] {
+  const line = lineOf(trace.look, trace.thin);
+  const path = node("path", { d: tracePath(box, trace) || "M0 0", fill: "none", "stroke-linejoin": "round", ...line });
+  const winding = smeared(box, trace);
+  if (!winding) return [path];
+  const disc = {
+    cx: round(box.x.toPixel(0)),
+    cy: round(box.y.toPixel(0)),
+    r: round(lengthX(box, winding.radius)),
+    fill: String(line["stroke"]),
+    "fill-opacity": 0.14,
+  };
+  return [node("circle", disc), path];
 }
 
 function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
@@ -189,45 +206,29 @@ function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
         node("circle", {
           cx: round(box.x.toPixel(mark.x)),
           cy: round(box.y.toPixel(mark.y)),
-          r: 3.5,
-          fill: "var(--bad)",
+          r: mark.handle ? 7 : 3.5,
+          fill: mark.look ? String(LINES[mark.look].stroke) : "var(--bad)",
+          ...(mark.quiet ? { "fill-opacity": 0.55 } : {}),
+          ...(mark.handle ? { stroke: "var(--surface)", "stroke-width": 2 } : {}),
         }),
       ];
   }
 }
 
-function markLabels(box: PaneBox, marks: Mark[]): TreeNode[] {
-  const right = box.left + box.width;
-  return marks.flatMap((mark): TreeNode[] => {
-    if (!mark.label) return [];
-    const at = (x: number, y: number, anchor: string): TreeNode[] => [
-      node("text", { x: round(x), y: round(y), "text-anchor": anchor, fill: "var(--text)", ...FONT }, mark.label!),
-    ];
-    switch (mark.kind) {
-      case "level": {
-        const line = box.y.toPixel(mark.value);
-        return at(right - 5, line - box.top > 15 ? line - 4 : line + 14, "end");
-      }
-      case "band":
-        return at(box.x.toPixel(mark.from) + 5, box.top + 14, "start");
-      case "upright":
-        return at(box.x.toPixel(mark.value) + 5, box.top + 14, "start");
-      case "circle": {
-        // Inside, where the curves that respect the circle never are; a small circle has no room for it.
-        const radius = Math.abs(box.y.toPixel(mark.y + mark.radius) - box.y.toPixel(mark.y));
-        const inside = radius > SMALL_CIRCLE_PX;
-        const above = mark.labelAt === "above";
-        const edge = box.y.toPixel(mark.y) + (above ? -radius : radius);
-        return at(box.x.toPixel(mark.x), edge + (above === inside ? 15 : -5), "middle");
-      }
-      case "point": {
-        const x = box.x.toPixel(mark.x);
-        const width = mark.label.length * GLYPH_PX + 6;
-        const crowded = x + width > right && x - box.left > right - x;
-        return at(crowded ? x - 6 : x + 6, box.y.toPixel(mark.y) - 6, crowded ? "end" : "start");
-      }
-    }
-  });
+/** The point of a pane that is meant by a place in pixels: the nearest that is so near, of those that qualify. */
+export function pointNear(
+  box: PaneBox,
+  place: { x: number; y: number },
+  reach: number,
+  qualifies: (mark: Point) => boolean,
+): Point | null {
+  const distance = (mark: Point): number =>
+    Math.hypot(box.x.toPixel(mark.x) - place.x, box.y.toPixel(mark.y) - place.y);
+  const near = (box.pane.marks ?? [])
+    .filter((mark): mark is Point => mark.kind === "point" && qualifies(mark))
+    .filter((mark) => distance(mark) <= reach)
+    .sort((a, b) => distance(a) - distance(b));
+  return near[0] ?? null;
 }
 
 /** A short piece of a series' line, for legends and table headings. */

@@ -1,21 +1,27 @@
 // One plot on the page: stacked panes over one x axis, with cursor, zoom, keys, data table and exports.
 import { h, node, svgElement, uniqueId } from "../dom.ts";
-import { joinLink, moveCursor } from "./cursor.ts";
-import type { CursorPosition } from "./cursor.ts";
+import { joinLink, moveCursor, zoomTogether } from "./cursor.ts";
+import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
 import { download, exportHeight, frameToCsv, frameToSvg, lightPalette, svgToPng } from "./export.ts";
 import type { Frame } from "./frame.ts";
 import { layoutFrame, wholeView } from "./layout.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
-import { drawLayout, swatch } from "./marks.ts";
+import { pointLabel } from "./labels.ts";
+import { drawLayout, pointNear, swatch } from "./marks.ts";
 import { cursorNodes, cursorRange, cursorScale, readings, valueAt } from "./readout.ts";
-import { zoomAbout, zoomToRectangle } from "./zoom.ts";
+import { stretchOf, zoomAbout, zoomToRectangle } from "./zoom.ts";
 
 export interface Plot {
   element: HTMLElement;
   update(frame: Frame): void;
+  /** While something that changes the frame is held its axes only grow; they settle when it is let go. */
+  hold(held: boolean): void;
   dispose(): void;
 }
+
+/** A point that is a handle was taken and moved to there, in the axes' units; `released`: it was let go. */
+export type OnDrag = (x: number, y: number, released: boolean) => void;
 
 /** Says a sentence to those who cannot see the plot. */
 export type Announce = (sentence: string) => void;
@@ -23,12 +29,21 @@ export type Announce = (sentence: string) => void;
 const KEYS =
   "Arrow keys move the cursor, with Shift in bigger steps; plus and minus zoom; 0 shows everything; T shows the data as a table.";
 const DRAG_MIN_PX = 6;
+const HANDLE_PX = 14;
+const TOUCH_PX = 28;
+const NAME_PX = 9;
 
-export function createPlot(first: Frame, announce: Announce): Plot {
-  let frame = first;
+export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | null = null): Plot {
+  let given = first;
+  let other = false;
+  const chosen = (): Frame => (other ? (given.alternative ?? given) : given);
+  let frame = chosen();
   let view = wholeView(frame);
   let layout: Layout = layoutFrame(frame, 480, 300, view);
   let cursor: CursorPosition = { value: null, source: null };
+  let held = false;
+  /** As it stands on the page: asking for it while drawing would lay the page out once a plot. */
+  let size = { width: 480, height: 300 };
   const self = {};
   const clip = uniqueId("pane");
 
@@ -54,12 +69,15 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     "aria-label": `Data of ${frame.title}`,
     hidden: true,
   });
+  const tableOf = h("span", { class: "visually-hidden" });
+  const exportOf = h("span", { class: "visually-hidden" });
   const tableButton = h(
     "button",
     { type: "button", class: "quiet", "aria-expanded": "false", onclick: () => toggleTable() },
     "Table",
-    h("span", { class: "visually-hidden" }, ` of ${frame.title}`),
+    tableOf,
   );
+  const otherButton = h("button", { type: "button", class: "quiet", onclick: () => showOther() });
   const resetButton = h(
     "button",
     { type: "button", class: "quiet", hidden: true, onclick: () => setView(wholeView(frame)) },
@@ -68,7 +86,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   const exportMenu = h(
     "details",
     { class: "menu" },
-    h("summary", {}, "Export", h("span", { class: "visually-hidden" }, ` ${frame.title}`)),
+    h("summary", {}, "Export", exportOf),
     h(
       "div",
       { class: "menu-items" },
@@ -89,7 +107,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   const element = h(
     "section",
     { class: "card plot", "aria-labelledby": title.id },
-    h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, tableButton, exportMenu)),
+    h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, otherButton, tableButton, exportMenu)),
     description,
     svg,
     h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),
@@ -102,11 +120,9 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   });
 
   function draw(): void {
-    const box = svg.getBoundingClientRect();
-    const width = Math.max(200, Math.round(box.width) || 480);
-    const height = Math.max(140, Math.round(box.height) || 300);
+    const { width, height } = size;
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    layout = layoutFrame(frame, width, height, view);
+    layout = layoutFrame(frame, width, height, view, held ? layout : null);
     drawing.replaceChildren(...drawLayout(frame, layout, clip).map(svgElement));
     resetButton.hidden = view.x === null && view.y.every((range) => range === null);
     drawCursor();
@@ -126,6 +142,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   function setView(next: View): void {
     view = next;
     draw();
+    if (!frame.equal) zoomTogether(frame.link, view.x, link);
   }
 
   function toggleTable(): void {
@@ -160,17 +177,40 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     return { x: event.clientX - rectangle.left, y: event.clientY - rectangle.top };
   };
 
+  /** Where a handle that was taken has been moved to. */
+  function moveHandle(point: { x: number; y: number }, released: boolean): void {
+    const box = boxAt(point.y);
+    onDrag?.(box.x.toValue(point.x), box.y.toValue(point.y), released);
+  }
+
+  /** The name of a quiet point under the pointer. */
+  function showName(point: { x: number; y: number }): void {
+    const box = boxAt(point.y);
+    const named = pointNear(box, point, NAME_PX, (mark) => mark.quiet === true);
+    if (named) overlay.append(svgElement(pointLabel(box, named)));
+  }
+
   const pointers = new Map<number, { x: number; y: number }>();
   let drag: { x: number; y: number } | null = null;
+  let taken = false;
 
   function hover(point: { x: number; y: number }): void {
     const box = boxAt(point.y);
     if (point.x < box.left || point.x > box.left + box.width) return moveTo(null);
     moveTo(valueAt(box, point));
+    showName(point);
   }
 
   svg.addEventListener("pointerdown", (event) => {
-    pointers.set(event.pointerId, pointOf(event));
+    const place = pointOf(event);
+    const reach = event.pointerType === "mouse" ? HANDLE_PX : TOUCH_PX;
+    if (onDrag && event.button === 0 && pointNear(boxAt(place.y), place, reach, (mark) => mark.handle === true)) {
+      taken = true;
+      event.preventDefault();
+      svg.setPointerCapture(event.pointerId);
+      return;
+    }
+    pointers.set(event.pointerId, place);
     if (event.pointerType === "mouse" && event.button === 0) {
       drag = pointOf(event);
       svg.setPointerCapture(event.pointerId);
@@ -178,6 +218,7 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   });
   svg.addEventListener("pointermove", (event) => {
     const point = pointOf(event);
+    if (taken) return moveHandle(point, false);
     const before = pointers.get(event.pointerId);
     if (pointers.size === 2 && before) {
       const other = [...pointers].find(([id]) => id !== event.pointerId)![1];
@@ -189,19 +230,26 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     }
     if (before) pointers.set(event.pointerId, point);
     if (event.pointerType !== "mouse") return;
-    if (drag) drawBand(drag, point);
+    if (drag) drawBand(drag, point, frame.brush !== undefined && !event.shiftKey);
     else hover(point);
   });
   const release = (event: PointerEvent): void => {
+    if (taken) {
+      taken = false;
+      return moveHandle(pointOf(event), true);
+    }
     pointers.delete(event.pointerId);
     const start = drag;
     drag = null;
     if (event.type !== "pointerup") return drawCursor();
     const end = pointOf(event);
     if (event.pointerType !== "mouse") return hover(end);
-    if (start && Math.hypot(end.x - start.x, end.y - start.y) > DRAG_MIN_PX)
-      setView(zoomToRectangle(frame, layout, view, boxAt(start.y), start, end));
-    else drawCursor();
+    if (!start || Math.hypot(end.x - start.x, end.y - start.y) <= DRAG_MIN_PX) return drawCursor();
+    if (frame.brush && !event.shiftKey) {
+      drawCursor();
+      return frame.brush(...stretchOf(layout.boxes[0]!, start.x, end.x));
+    }
+    setView(zoomToRectangle(frame, layout, view, boxAt(start.y), start, end));
   };
   svg.addEventListener("pointerup", release);
   svg.addEventListener("pointercancel", release);
@@ -210,9 +258,9 @@ export function createPlot(first: Frame, announce: Announce): Plot {
   });
   svg.addEventListener("dblclick", () => setView(wholeView(frame)));
 
-  function drawBand(from: { x: number; y: number }, to: { x: number; y: number }): void {
+  function drawBand(from: { x: number; y: number }, to: { x: number; y: number }, flat: boolean): void {
     const box = boxAt(from.y);
-    const tall = frame.equal || Math.abs(to.y - from.y) > 16;
+    const tall = !flat && (frame.equal || Math.abs(to.y - from.y) > 16);
     overlay.replaceChildren(
       svgElement(
         node("rect", {
@@ -270,28 +318,61 @@ export function createPlot(first: Frame, announce: Announce): Plot {
     return box.x.toPixel(value);
   }
 
-  const leave = joinLink(frame.link, (position) => {
-    cursor = position;
-    drawCursor();
+  const link: Listener = {
+    onCursor(position) {
+      cursor = position;
+      drawCursor();
+    },
+    onZoom(stretch) {
+      if (frame.equal) return;
+      view = { ...wholeView(frame), x: stretch };
+      draw();
+    },
+  };
+  const leave = joinLink(frame.link, link);
+  const observer = new ResizeObserver(([entry]) => {
+    const { width, height } = entry!.contentRect;
+    if (width === 0) return;
+    size = { width: Math.max(200, Math.round(width)), height: Math.max(140, Math.round(height)) };
+    draw();
   });
-  const observer = new ResizeObserver(() => draw());
   observer.observe(svg);
   const writeTexts = (): void => {
     title.textContent = frame.title;
+    tableOf.textContent = ` of ${frame.title}`;
+    exportOf.textContent = ` ${frame.title}`;
+    table.setAttribute("aria-label", `Data of ${frame.title}`);
+    const beside = other ? given : given.alternative;
+    otherButton.hidden = !given.alternative;
+    otherButton.textContent = beside?.title ?? "";
     description.textContent = `${frame.description} ${KEYS}`;
     if (frame.ownLegend) legend.replaceChildren(paneLegend(frame));
   };
   writeTexts();
 
+  function showOther(): void {
+    other = !other;
+    take(given);
+    announce(frame.description);
+  }
+
+  function take(next: Frame): void {
+    given = next;
+    const before = frame;
+    frame = chosen();
+    if (frame.panes.length !== before.panes.length) view = wholeView(frame);
+    writeTexts();
+    if (!table.hidden) table.replaceChildren(dataTable(frame));
+    draw();
+  }
+
   return {
     element,
-    update(next) {
-      const samePanes = next.panes.length === frame.panes.length;
-      frame = next;
-      if (!samePanes) view = wholeView(frame);
-      writeTexts();
-      if (!table.hidden) table.replaceChildren(dataTable(frame));
-      draw();
+    update: take,
+    hold(now) {
+      if (held === now) return;
+      held = now;
+      if (!held) draw();
     },
     dispose() {
       leave();

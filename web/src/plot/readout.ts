@@ -5,6 +5,7 @@ import { extent, tickText } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import { nearestIndex } from "./cursor.ts";
 import type { Frame, Trace } from "./frame.ts";
+import { freest } from "./labels.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 import { lineOf } from "./marks.ts";
 
@@ -115,38 +116,47 @@ export function cursorNodes(frame: Frame, box: PaneBox, value: number, figures: 
         }),
       );
   }
-  if (figures) nodes.push(...readoutNodes(box, readings(frame, box, value), parametric ? box.left + box.width : x));
+  if (figures) nodes.push(...readoutNodes(box, readings(frame, box, value)));
   return nodes;
 }
 
-/** The figures in one line where they fit, else one under the other, on the side away from the cursor. */
-function readoutNodes(box: PaneBox, parts: string[], cursorX: number): TreeNode[] {
-  const width = (text: string): number => text.length * 6.6 + 10;
-  const oneLine = parts.join(" · ");
-  const lines = width(oneLine) < box.width - 4 || parts.length * 16 + 6 > box.height ? [oneLine] : parts;
-  const widest = Math.max(...lines.map(width));
-  const onRight = lines.length === 1 || cursorX < box.left + box.width / 2;
-  const anchor = onRight ? box.left + box.width - 4 : box.left + 4;
-  const rect = node("rect", {
-    x: onRight ? anchor - widest : anchor,
-    y: box.top + 3,
-    width: widest,
-    height: lines.length * 16 + 4,
-    fill: "var(--surface)",
-    "fill-opacity": 0.88,
-  });
+const READ_PX = 6.6;
+const ROW_PX = 16;
+
+/** The figures in one line, or one under the other, in the corner where they hide the least. */
+function readoutNodes(box: PaneBox, parts: string[]): TreeNode[] {
+  const width = (lines: string[]): number => Math.max(...lines.map((line) => line.length * READ_PX)) + 10;
+  const choices = [[parts.join(" · ")], parts]
+    .filter((lines, at) => at === 0 || lines.length * ROW_PX + 6 < box.height)
+    .flatMap((lines) =>
+      [true, false].flatMap((top) =>
+        [true, false].map((right) => {
+          const size = { width: width(lines), height: lines.length * ROW_PX + 4 };
+          return {
+            lines,
+            right,
+            ...size,
+            left: right ? box.left + box.width - 4 - size.width : box.left + 4,
+            top: top ? box.top + 3 : box.top + box.height - 3 - size.height,
+          };
+        }),
+      ),
+    );
+  const { lines, right, ...place } = choices[freest(box, choices, [])]!;
+  const { left: x, top: y, width: wide, height } = place;
+  const back = node("rect", { x, y, width: wide, height, fill: "var(--surface)", "fill-opacity": 0.88 });
   const texts = lines.map((line, index) =>
     node(
       "text",
       {
-        x: onRight ? anchor - 5 : anchor + 5,
-        y: box.top + 16 + 16 * index,
-        "text-anchor": onRight ? "end" : "start",
+        x: right ? x + wide - 5 : x + 5,
+        y: y + 13 + ROW_PX * index,
+        "text-anchor": right ? "end" : "start",
         fill: "var(--text)",
         "font-size": 12,
       },
       line,
     ),
   );
-  return [rect, ...texts];
+  return [back, ...texts];
 }

@@ -14,6 +14,12 @@ const ordered = (scale: Scale, a: number, b: number): Range => {
 
 const tooNarrow = ([lo, hi]: Range): boolean => !(hi - lo > NARROWEST * Math.max(Math.abs(lo), Math.abs(hi)));
 
+/** What lies between two pixels, within the box. */
+export function stretchOf(box: PaneBox, a: number, b: number): Range {
+  const inside = (pixel: number): number => Math.max(box.left, Math.min(box.left + box.width, pixel));
+  return ordered(box.x, inside(a), inside(b));
+}
+
 export function zoomToRectangle(
   frame: Frame,
   layout: Layout,

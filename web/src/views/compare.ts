@@ -31,7 +31,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   let columns: LeagueColumn[] = [];
   const designLink = h("a", { href: "#/" }, "Settings and verdict");
   const { all, trouble, complain, cancel } = jobActions(store, events);
-  const title = titleCard("Compare", designLink);
+  const title = titleCard("Compare", announce, designLink);
   const failure = h("section", { class: "verdict", "aria-label": "Verdict" });
   const progress = progressCard(announce, () => void cancel());
   const heading = h("h2", { id: "league-title" });
@@ -102,7 +102,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   }
 
   function arrange(): void {
-    table.arrange(orderOf(store.get().sort), controls.limit(), controls.onlyStable());
+    table.arrange(orderOf(store.get().sort), controls.limit(), controls.onlySettled());
   }
 
   function rebuild(): void {

@@ -10,10 +10,12 @@ import { withLambda } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { formatRoute } from "../routes.ts";
+import { shown } from "../store.ts";
 import type { Store, Workspace } from "../store.ts";
 import { figureGroups } from "../words/figures.ts";
 import { unitNames } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
@@ -28,10 +30,10 @@ import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
 import { ownController } from "./own_controller.ts";
 import type { View } from "./start.ts";
+import { turnedDesign } from "./turned_design.ts";
 
-/** From so many entries on the column of the figures is broader, and from so many they stand across the page. */
+/** From so many entries on the figures stand below the plots, across the page. */
 const BROAD_FROM = 3;
-const WIDE_FROM = 5;
 
 /** A job of more entries than these shows here those that are drawn or chosen: its league table has them all. */
 const MOST_LISTED = 8;
@@ -43,18 +45,29 @@ function listedEntries(count: number, drawn: Drawn[], selected: number): number[
 }
 
 export interface DesignEvents extends JobEvents {
+  /** Tunes another request and shows that job. */
+  onTune(request: TuningRequest): Promise<void>;
   /** Tunes again and shows the answer in this one's place; throws where the entry of that index gets none. */
   onRetune(request: TuningRequest, index: number): Promise<void>;
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
   const league = h("a", { href: "#/" }, "League table");
-  const { all, trouble, cancel } = jobActions(store, events, "quiet");
-  const title = titleCard("Design", league, all);
+  const { all, trouble, cancel, complain } = jobActions(store, events, "quiet");
+  const title = titleCard("Design", announce, league, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
+  const cures = cureButtons((request) => events.onTune(request).catch(complain));
   const progress = progressCard(announce, () => void cancel());
   const settings = settingsCard(announce);
-  const figures = h("section", { class: "card figures-card", "aria-labelledby": "figures-title" });
+  let mainFigures: HTMLElement = h("div", {});
+  let otherFigures: HTMLElement = h("div", {});
+  const figures = h(
+    "section",
+    { class: "card figures-card", "aria-labelledby": "figures-title" },
+    h("h2", { id: "figures-title" }, "Figures"),
+    mainFigures,
+    h("details", {}, h("summary", {}, "All figures"), otherFigures),
+  );
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
@@ -64,25 +77,28 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const legend = createLegend(store);
   const plots = plotGrid(announce);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
-  const side = h("div", { class: "side" }, own.side, settings.element, figures, model, notes, computed);
-  const main = h(
-    "div",
-    { class: "main-column" },
-    ...reportsAt("above"),
-    legend.element,
-    linearNote,
-    plots.element,
-    ...reportsAt("below"),
-    ...own.below,
+  let finished: { job: Job; result: Result } | null = null;
+  const turned = turnedDesign(store, announce, {
+    onAnswer: showTurned,
+    onLate: (late) => {
+      plots.setBusy(late);
+      verdict.classList.toggle("late", late);
+    },
+    onHold: plots.hold,
+    onRetune: events.onRetune,
+  });
+  const main = h("div", { class: "main-column" }, legend.element, linearNote, plots.element);
+  const aside = h("div", { class: "side" }, settings.element, figures);
+  const more = h(
+    "details",
+    { class: "more", open: store.get().mine !== null },
+    h("summary", {}, "More: my controller, code, set point against load, how it was computed"),
+    h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
   );
-  const body = h("div", { class: "design-body" });
-  const headRight = h("div", { class: "head-right" }, trouble, verdict, progress.element);
-  const element = h(
-    "main",
-    { class: "design", id: "main" },
-    h("div", { class: "design-head" }, title.element, headRight),
-    body,
-  );
+  const below = h("div", { class: "below" }, model, ...reportsAt("above"), notes, more);
+  const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element);
+  const element = h("main", { class: "design", id: "main" }, title.element, headRight);
+  const bodyParts = [turned.controls, main, turned.front, aside, below];
 
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
@@ -104,7 +120,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     if (result) await events.onRetune(request, selectedEntry(result, workspace));
   }
 
-  function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames): void {
+  function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames, held: boolean): void {
     const columns = listed.map((index) => {
       const shown = drawn.find((item) => item.index === index);
       const entry = result.controllers[index]!;
@@ -115,41 +131,53 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       columns.some(({ entry }) => entry.region),
       columns.some(({ entry }) => entry.controller?.form === "npid"),
     );
-    const mainGroups = groups.filter((group) => group.main);
-    const otherGroups = groups.filter((group) => !group.main);
-    const open = figures.querySelector("details")?.open ?? false;
-    figures.replaceChildren(
-      h("h2", { id: "figures-title" }, "Figures"),
-      figuresTable("Main figures", columns, mainGroups),
-      h("details", { open }, h("summary", {}, "All figures"), figuresTable("All other figures", columns, otherGroups)),
-    );
+    const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
+    mainFigures.replaceWith(main);
+    mainFigures = main;
+    // What is folded away waits until the slider is let go.
+    if (held) return;
+    const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
+    otherFigures.replaceWith(others);
+    otherFigures = others;
   }
 
   function showPlots(job: Job, result: Result, drawn: Drawn[], selected: number): void {
-    const request = job.request;
     linearNote.hidden = !hasLinear(drawn);
-    showEntryPlots(plots, drawn, request, selected);
-    plots.show("record", result.model ? recordFrame(result.model, request) : null);
+    showEntryPlots(plots, drawn, job.request, selected);
+    plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
   }
 
-  function showResult(job: Job, result: Result, workspace: Workspace): void {
+  /** What moves with a slider: verdict, settings, figures and plots. */
+  function showMoving(job: Job, result: Result, workspace: Workspace, held: boolean): Drawn[] {
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
     const drawn = drawnEntries(result, workspace.drawn ?? defaultDrawn(result));
     const selected = selectedEntry(result, workspace);
     const listed = listedEntries(entries.length, drawn, selected);
-    if (!side.isConnected) body.replaceChildren(side, main);
-    element.classList.toggle("broad", listed.length >= BROAD_FROM && listed.length < WIDE_FROM);
-    body.classList.toggle("wide", listed.length >= WIDE_FROM);
-    showVerdict(verdict, job, result, names, selected, listed);
+    showVerdict(verdict, result, names, selected, listed);
     settings.show(entries[selected]!, names[selected]!, units);
-    showFigures(result, listed, drawn, names, units);
+    showFigures(result, listed, drawn, names, units, held);
+    showPlots(job, result, drawn, selected);
+    return drawn;
+  }
+
+  function showResult(job: Job, whole: Result, workspace: Workspace): void {
+    const selected = selectedEntry(whole, workspace);
+    turned.show(job, whole, selected);
+    const result = turned.effective(whole);
+    const entries = result.controllers;
+    const names = entryNames(entries);
+    const units = unitNames(job.request?.units);
+    if (!main.isConnected) element.append(...bodyParts);
+    const drawn = showMoving(job, result, workspace, false);
+    const listed = listedEntries(entries.length, drawn, selected);
+    element.classList.toggle("broad", listed.length >= BROAD_FROM);
     // Rules and robustness of a nonlinear plant rest on its linear model.
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     const reported = { name: names[selected]!, entry: entries[selected]!, model: linear, request: job.request, units };
     for (const card of reports) card.show(reported);
-    own.show({ job, result, index: selected, name: names[selected]!, units });
+    own.show({ job, result: whole, index: selected, name: names[selected]!, units });
     if (model.childElementCount === 0) {
       const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
       model.replaceChildren(...(about ? [about] : []));
@@ -162,7 +190,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     );
     showComputed(computed, result, entries[selected]!, names, units);
     legend.show(entries, listed, names, drawn, selected);
-    showPlots(job, result, drawn, selected);
+  }
+
+  /** An answer to the sliders is drawn when it arrives, not in a later frame. */
+  function showTurned(held: boolean): void {
+    if (!finished) return;
+    const { job, result } = finished;
+    own.follow(turned.answer()?.entry.controller ?? null);
+    if (held) return void showMoving(job, turned.effective(result), store.get(), true);
+    showResult(job, result, store.get());
+    if (turned.answer()) announce(verdict.textContent ?? "");
   }
 
   let announced: Result | null = null;
@@ -173,29 +210,38 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     progress.element.hidden = !job || isFinal(job.status);
     verdict.hidden = !job || !isFinal(job.status);
     title.show(job);
+    cures.show(job);
     if (!job) return;
     league.href = formatRoute({ screen: "compare", job: job.id, sort: workspace.sort, rows: workspace.drawn });
     league.hidden = (job.result?.controllers.length ?? 0) < 2;
     all.hidden = !league.hidden;
+    finished = null;
     if (!isFinal(job.status)) {
       progress.show(job);
     } else if (job.result && job.result.controllers.length > 0) {
+      finished = { job, result: job.result };
       showResult(job, job.result, workspace);
       if (announced !== job.result) announce(verdict.textContent ?? "");
       announced = job.result;
     } else {
-      body.replaceChildren();
+      for (const part of bodyParts) part.remove();
       showFailure(verdict, job);
     }
   }
 
-  show(store.get());
-  const leave = store.subscribe(show);
+  const parts = (["job", "jobTrouble", "selected", "drawn", "sort"] as const).map((name) =>
+    store.pick((workspace) => workspace[name]),
+  );
+  const leave = shown(
+    () => parts.map((part) => part.value),
+    () => show(store.get()),
+  );
   return {
     element,
     heading: title.heading,
     dispose() {
       leave();
+      turned.dispose();
       for (const card of reports) card.dispose();
       own.dispose();
       plots.dispose();

@@ -1,11 +1,13 @@
 // The legend above the plots: which controllers are drawn, and whose settings and verdict are shown.
 import type { Entry, TuningRequest } from "../api/types.ts";
+import { bodeFrame } from "../charts/bode.ts";
 import { MOST_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { nyquistFrame } from "../charts/nyquist.ts";
 import { responseFrame } from "../charts/responses.ts";
 import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h } from "../dom.ts";
+import type { Frame } from "../plot/frame.ts";
 import type { PlotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import type { Store } from "../store.ts";
@@ -95,5 +97,6 @@ export function showEntryPlots(
   plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
   plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
   plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
-  plots.show("sensitivities", frequency ? sensitivityFrame(drawn, limits, request) : null);
+  const curves = (): Frame => ({ ...sensitivityFrame(drawn, limits, request), alternative: bodeFrame(drawn, request) });
+  plots.show("sensitivities", frequency ? curves() : null);
 }

@@ -1,14 +1,17 @@
 // Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
 import { ApiError } from "../api/client.ts";
 import { identify } from "../api/experiments.ts";
+import { previewRecord } from "../api/records.ts";
 import { latest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
+import { stepParts } from "../charts/record.ts";
 import type { Samples } from "../charts/record.ts";
 import { h } from "../dom.ts";
 import { areaField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
 import { csvOf, recordFields, samplesOf } from "../form/record_fields.ts";
+import { previewPanel } from "../form/record_preview.ts";
 import { tuneSubject } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { createPlot } from "../plot/plot.ts";
@@ -20,13 +23,14 @@ import { candidatesCard } from "./cards/candidates_card.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
 import { partCard } from "./cards/part_card.ts";
 import { qualityCard } from "./cards/quality_card.ts";
+import { requestMenu } from "./request_menu.ts";
 import type { View } from "./start.ts";
 
 /** How the record will be tuned. */
 export interface TuningChoice {
   /** Names of the methods that stand on Start. */
   methods: string[];
-  /** Limits hold on all that the record leaves possible. */
+  /** Limits hold for every model consistent with the record. */
   region: boolean;
 }
 
@@ -68,6 +72,7 @@ export function identifyView(
     errors,
   );
   const fields = recordFields(errors, true);
+  const shown = h("div", { class: "preview-slot" });
   const again = h("button", { type: "submit" }, "Identify again");
   const reading = h(
     "form",
@@ -76,7 +81,7 @@ export function identifyView(
       "details",
       {},
       h("summary", {}, "How the record is read: columns, kind of test, model, method"),
-      h("div", { class: "stack" }, fields.elements, text.element, h("div", { class: "actions" }, again)),
+      h("div", { class: "stack" }, shown, fields.elements, text.element, h("div", { class: "actions" }, again)),
     ),
   );
   const slot = h("div", { class: "record-slot" });
@@ -103,10 +108,12 @@ export function identifyView(
   const cycle = cycleCard();
   const side = h("div", { class: "side" }, candidates.element, quality.element);
   const body = h("div", { class: "identify-body" }, record, side, cycle.element);
+  const menu = requestMenu(announce);
+  menu.show("", null);
   const element = h(
     "main",
     { class: "identify", id: "main" },
-    h("div", { class: "identify-head" }, heading, busy),
+    h("div", { class: "identify-head" }, heading, busy, menu.element),
     errors.summary,
     reading,
     body,
@@ -133,6 +140,7 @@ export function identifyView(
     onAnswer(answer, asked) {
       errors.clear();
       model = answer;
+      menu.show("v1/identify", asked);
       if (isWhole(asked)) takeWhole(answer.fit);
       body.hidden = false;
       side.hidden = false;
@@ -154,6 +162,7 @@ export function identifyView(
       if (isWhole(asked)) takeWhole(problem.record);
       body.hidden = whole === null;
       draw();
+      if (!whole) void look();
       if (!whole) reading.querySelector("details")!.open = true;
       errors.show(pointed, error instanceof Error ? error.message : String(error));
     },
@@ -167,6 +176,18 @@ export function identifyView(
     calls.send(now.request);
   }
 
+  /** What the text is read as, once somebody wants to know. */
+  async function look(): Promise<void> {
+    if (text.input.value.trim() === "") return;
+    try {
+      const preview = await previewRecord({ ...fields.read().record, csv: text.input.value });
+      shown.replaceChildren(previewPanel(preview));
+      fields.offer(preview);
+    } catch {
+      // Identifying it says what is wrong.
+    }
+  }
+
   const isWhole = (asked: IdentifyRequest): boolean => asked.record.from === undefined && asked.record.to === undefined;
 
   function takeWhole(record: Samples | undefined): void {
@@ -174,6 +195,7 @@ export function identifyView(
     if (t.length < 2) return;
     whole = { t, y, ...(u ? { u } : {}) };
     part.setExtent({ from: t[0]!, to: t[t.length - 1]! });
+    part.setSteps(u ? stepParts(t, u) : []);
   }
 
   function draw(): void {
@@ -181,6 +203,11 @@ export function identifyView(
       ? identifiedFrame(model, candidates.chosen(), units, whole, part.read())
       : whole && bareRecordFrame(whole, units, part.read());
     if (!frame) return;
+    frame.brush = (from, to) => {
+      part.set({ from, to });
+      draw();
+      ask();
+    };
     // With and without a model they are two different plots: other panes, another legend.
     if (plot && plotTitle === frame.title) return plot.update(frame);
     plot?.dispose();
@@ -210,7 +237,11 @@ export function identifyView(
   fields.load(given.record, given.identify);
   // A choice acts at once; what is typed waits until it is complete.
   reading.addEventListener("change", (event) => {
+    void look();
     if (event.target instanceof HTMLSelectElement) ask();
+  });
+  reading.querySelector("details")!.addEventListener("toggle", () => {
+    if (shown.childElementCount === 0) void look();
   });
   reading.addEventListener("submit", (event) => {
     event.preventDefault();

@@ -1,4 +1,4 @@
-// What stands above the league table: the limit on Ms, only stable rows, which columns, the table as a file.
+// What stands above the league table: the limit on Ms, only rows that settle, which columns, the table as a file.
 import { h, uniqueId } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import type { LeagueColumn } from "../words/league.ts";
@@ -8,7 +8,7 @@ export interface LeagueControls {
   element: HTMLElement;
   limit(): number;
   setLimit(Ms: number): void;
-  onlyStable(): boolean;
+  onlySettled(): boolean;
   setColumns(columns: LeagueColumn[]): void;
   /** Whether a column is to be seen. */
   shows(id: string): boolean;
@@ -33,7 +33,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     "aria-describedby": "rank-error",
   });
   const error = h("span", { class: "error", id: "rank-error", role: "status" });
-  const stable = h("input", { type: "checkbox", id: uniqueId("only-stable") });
+  const stable = h("input", { type: "checkbox", id: uniqueId("only-settled") });
   const list = h("div", { class: "menu-items columns" });
   const menu = h("details", { class: "menu" }, h("summary", {}, "Columns"), list);
 
@@ -62,10 +62,10 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     element: h(
       "div",
       { class: "league-controls" },
-      h("label", { for: input.id }, "ranked by load IAE among Ms ≤"),
+      h("label", { for: input.id }, "ranked by excess over the optimum*, among Ms ≤"),
       input,
       error,
-      h("span", { class: "check" }, stable, h("label", { for: stable.id }, "only stable")),
+      h("span", { class: "check" }, stable, h("label", { for: stable.id }, "only those that settle")),
       menu,
       h("button", { type: "button", class: "quiet", onclick: () => events.onExport() }, "Export CSV"),
     ),
@@ -74,7 +74,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
       limit = Ms;
       input.value = String(Ms);
     },
-    onlyStable: () => stable.checked,
+    onlySettled: () => stable.checked,
     setColumns(next) {
       const known = columns.map((column) => column.label).join();
       columns = next;

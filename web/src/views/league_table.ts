@@ -9,7 +9,7 @@ import type { Look } from "../plot/frame.ts";
 import { swatch } from "../plot/marks.ts";
 import { spark } from "../plot/spark.ts";
 import type { SparkScale } from "../plot/spark.ts";
-import { leagueRows, notesSummary, reasonOf, sortRows } from "../words/league.ts";
+import { leagueRows, notesSummary, reasonOf, settles, sortRows } from "../words/league.ts";
 import type { LeagueColumn, LeagueOrder, LeagueRow } from "../words/league.ts";
 import { DASH } from "../words/numbers.ts";
 
@@ -17,7 +17,7 @@ export interface LeagueTable {
   element: HTMLElement;
   /** Anew for this result and these columns. `step`: of the set point. */
   build(result: Result, columns: LeagueColumn[], step: number, address: (index: number) => string): void;
-  arrange(order: LeagueOrder, limit: number, onlyStable: boolean): void;
+  arrange(order: LeagueOrder, limit: number, onlySettled: boolean): void;
   /** Which rows the plots show. */
   mark(drawn: Drawn[]): void;
 }
@@ -113,7 +113,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     const list = leagueRows(result, Infinity);
     scales = sparkScales(list, step);
     head.replaceChildren(
-      heading("rank", "#", "by load IAE among those within the limit on Ms", "pin first"),
+      heading("rank", "#", "by the excess over the optimum at the same Ms, of those that settle within Ms", "pin first"),
       heading("method", "Method", "by name", "pin method-cell"),
       h("th", { scope: "col", class: "spark-head" }, "y, load step"),
       h("th", { scope: "col", class: "spark-head" }, "y, set-point step"),
@@ -134,14 +134,14 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     if (!same) body.replaceChildren(...elements);
   }
 
-  function arrange(order: LeagueOrder, limit: number, onlyStable: boolean): void {
+  function arrange(order: LeagueOrder, limit: number, onlySettled: boolean): void {
     const ranked = leagueRows(result, limit);
     for (const { index, rank, why } of ranked) {
       const cell = rows.get(index)!.rank;
       cell.textContent = rank === null ? "" : String(rank);
       cell.title = why;
     }
-    const shown = ranked.filter(({ entry }) => !onlyStable || entry.robustness?.stable);
+    const shown = ranked.filter(({ entry }) => !onlySettled || settles(entry));
     const sorted = sortRows(
       shown.filter(({ entry }) => !entry.error),
       order,

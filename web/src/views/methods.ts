@@ -74,7 +74,7 @@ function articleOf(method: Method, alone: boolean): HTMLElement {
         h(
           "tr",
           {},
-          ["Option", "What it may be", "As usual", "Meaning"].map((name) => h("th", { scope: "col" }, name)),
+          ["Option", "What it may be", "Default", "Meaning"].map((name) => h("th", { scope: "col" }, name)),
         ),
       ),
       h(

@@ -1,13 +1,12 @@
 // What was identified from the record: the model, how well it fits, the other candidates.
 import type { Model } from "../api/types.ts";
-import { h, mathElement } from "../dom.ts";
-import { plantFormula } from "../form/formula.ts";
+import { h } from "../dom.ts";
+import { plantFormula, rounded } from "../form/formula.ts";
 import { formatNumber } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { parameterUnit, plantTitle, plantWords } from "../words/plant.ts";
 
 export function modelResult(model: Model, units: UnitNames): HTMLElement {
-  const formula = plantFormula(rounded(model.plant));
   const parameters = Object.entries(model.plant).filter(
     (pair): pair is [string, number] => typeof pair[1] === "number",
   );
@@ -16,7 +15,7 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
     "section",
     { class: "card", "aria-labelledby": "model-title" },
     h("h2", { id: "model-title" }, "Model from the record"),
-    formula ? h("div", { class: "formula" }, mathElement(formula)) : null,
+    plantFormula(rounded(model.plant)),
     h(
       "table",
       { class: "figures" },
@@ -69,11 +68,4 @@ export function modelResult(model: Model, units: UnitNames): HTMLElement {
         )
       : null,
   );
-}
-
-/** Identified numbers are known to a few digits only; the formula shows no more. */
-function rounded(plant: Model["plant"]): Model["plant"] {
-  const round = (value: unknown): unknown =>
-    typeof value === "number" ? Number(value.toPrecision(4)) : Array.isArray(value) ? value.map(round) : value;
-  return Object.fromEntries(Object.entries(plant).map(([key, value]) => [key, round(value)])) as Model["plant"];
 }

@@ -164,7 +164,9 @@ export function ownController(
   }
 
   async function work(button: HTMLButtonElement, request: TuningRequest): Promise<void> {
+    const label = button.textContent;
     button.disabled = true;
+    button.textContent = "Designing…";
     trouble.hidden = true;
     side.setAttribute("aria-busy", "true");
     try {
@@ -173,6 +175,7 @@ export function ownController(
       complain(error);
     } finally {
       button.disabled = false;
+      button.textContent = label;
       side.removeAttribute("aria-busy");
     }
   }

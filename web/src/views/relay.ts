@@ -15,6 +15,7 @@ import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { planSentences } from "../words/relay_plan.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
+import { requestMenu } from "./request_menu.ts";
 import type { View } from "./start.ts";
 
 export interface RelayEvents {
@@ -52,7 +53,7 @@ const SETTINGS: {
   { name: "noise_std", label: "Noise of y", hint: "standard deviation; the relay sees it", unit: "y", value: "0" },
   {
     name: "relay_sample_time",
-    label: "Relay looks every",
+    label: "Relay sample time",
     hint: "0: switches at the very instant",
     unit: "time",
     value: "0",
@@ -98,7 +99,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   const slot = h("div", { class: "record-slot" });
   const identify = h("button", { type: "button", class: "primary", onclick: () => hand() }, "Identify this record");
   const remarks = h("ul", { class: "notes" });
-  const planTitle = h("h2", { id: uniqueId("plan") }, "A test worth making");
+  const planTitle = h("h2", { id: uniqueId("plan") }, "Recommended test");
   const planText = h("div", { class: "stack" });
   const planCard = h("section", { class: "card plan", "aria-labelledby": planTitle.id }, planTitle, planText);
   const cycle = cycleCard();
@@ -112,10 +113,12 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     h("div", { class: "cards two" }, planCard, cycle.element),
   );
   results.hidden = true;
+  const menu = requestMenu(announce);
+  menu.show("", null);
   const element = h(
     "main",
     { class: "identify relay", id: "main" },
-    h("div", { class: "identify-head" }, heading, busy),
+    h("div", { class: "identify-head" }, heading, busy, menu.element),
     errors.summary,
     h("div", { class: "relay-body" }, form, results),
   );
@@ -141,6 +144,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     onAnswer(next, asked) {
       errors.clear();
       answer = next;
+      menu.show("v1/experiments/relay", asked);
       results.hidden = false;
       identify.disabled = false;
       const frame = relayFrame(next, asked.relay.hysteresis ?? 0, units);

@@ -176,6 +176,7 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   async function tuneModel(all: boolean): Promise<void> {
     subject = "model";
+    await model.settled();
     await tunePlant(model.read(), all);
   }
 

@@ -1,8 +1,7 @@
 // The figures of an entry, in the order and with the names and units in which they are read.
 import type { Entry, WhyNull } from "../api/types.ts";
-import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
+import { formatNumber, formatPercent, formatShare, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
-import { percent } from "./verdict.ts";
 
 export interface FigureRow {
   label: string;
@@ -82,7 +81,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
   return [
     {
       title: "Controller",
-      main: true,
+      main: false,
       rows: [
         controller(withUnit("Kp", gain), "Kp", "proportional gain", NOT_GIVEN),
         controller(withUnit("Ti", units.time), "Ti", "integral time", "no integral action"),
@@ -191,7 +190,7 @@ function regionRows(): FigureRow[] {
       meaning: "of all that this plant may be: a set, its ranges, or what was identified",
       value: ({ region }) =>
         typeof region?.stable_fraction === "number"
-          ? { text: percent(region.stable_fraction), why: "" }
+          ? { text: formatShare(region.stable_fraction), why: "" }
           : missing(alone),
     },
     {

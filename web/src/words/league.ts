@@ -8,7 +8,7 @@ export interface LeagueRow {
   index: number;
   name: string;
   entry: Entry;
-  /** From 1 among the methods within the limit on Ms; null beyond it, for today's settings and without an answer. */
+  /** From 1 among the methods that settle within the limits on Ms; null for others and for today's settings. */
   rank: number | null;
   /** Why there is no rank, or "". */
   why: string;
@@ -57,6 +57,11 @@ export function excessText(percent: number): string {
 }
 
 const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
+/** Both responses come to rest where they should. */
+export const settles = (entry: Entry): boolean => entry.standing?.settles ?? stable(entry);
+/** Of the loop as it will run. */
+const rankedMs = (entry: Entry): number => (entry.standing ?? entry.robustness)?.Ms ?? Infinity;
+const excess = (entry: Entry): number => (entry.standing ?? entry.optimum_at_Ms)?.excess_percent ?? Infinity;
 const load = (entry: Entry): number => {
   const value = entry.performance?.load?.["IAE"];
   return typeof value === "number" ? value : Infinity;
@@ -167,28 +172,46 @@ export function leagueNames(entries: Entry[]): string[] {
   });
 }
 
-/** Rows in the order of their rank: within the limit on Ms by load IAE, then stable ones beyond it, unstable, unanswered. */
+/** Designs at a limit lie there to about 1e-5. */
+const AT_LIMIT = 1.0001;
+
+const GROUPS = ["holds", "beyond", "restless", "unstable", "unanswered"] as const;
+type Group = (typeof GROUPS)[number];
+
+function groupOf(entry: Entry, limit: number): Group {
+  if (entry.error) return "unanswered";
+  if (!stable(entry)) return "unstable";
+  if (!settles(entry)) return "restless";
+  return entry.standing?.within !== false && rankedMs(entry) <= AT_LIMIT * limit ? "holds" : "beyond";
+}
+
+/** Rows as the service ranks them, under this limit on Ms: what settles within the limits, by the excess over the
+ * optimum at the same Ms and then by load IAE; then what lies beyond them, does not settle, is unstable, has no answer. */
 export function leagueRows(result: Result, limit: number): LeagueRow[] {
   const names = leagueNames(result.controllers);
-  const group = (entry: Entry): number => {
-    if (entry.error) return 3;
-    if (!stable(entry)) return 2;
-    const Ms = entry.robustness?.Ms;
-    return typeof Ms === "number" && Ms <= limit ? 0 : 1;
-  };
-  const order = result.controllers.map((entry, index) => ({ entry, index, group: group(entry) }));
-  order.sort((a, b) => a.group - b.group || compare(load(a.entry), load(b.entry)) || a.index - b.index);
+  const order = result.controllers.map((entry, index) => ({ entry, index, group: groupOf(entry, limit) }));
+  order.sort(
+    (a, b) =>
+      GROUPS.indexOf(a.group) - GROUPS.indexOf(b.group) ||
+      compare(excess(a.entry), excess(b.entry)) ||
+      compare(load(a.entry), load(b.entry)) ||
+      a.index - b.index,
+  );
   let last = 0;
-  return order.map(({ entry, index, group: at }): LeagueRow => {
-    const ranked = at === 0 && entry.method !== "baseline";
+  return order.map(({ entry, index, group }): LeagueRow => {
+    const ranked = group === "holds" && entry.method !== "baseline";
     if (ranked) last += 1;
-    return { index, name: names[index]!, entry, rank: ranked ? last : null, why: ranked ? "" : noRank(at, limit) };
+    const why = ranked ? "" : noRank(entry, group, limit);
+    return { index, name: names[index]!, entry, rank: ranked ? last : null, why };
   });
 }
 
-function noRank(group: number, limit: number): string {
-  if (group === 0) return "Today's settings are no method.";
-  return group === 1 ? `Ms is above ${formatNumber(limit)}.` : group === 2 ? "The loop is unstable." : "No answer.";
+function noRank(entry: Entry, group: Group, limit: number): string {
+  if (group === "holds") return "Today's settings are no method.";
+  if (group === "unstable") return "The loop is unstable.";
+  if (group === "unanswered") return "No answer.";
+  if (group === "restless") return entry.standing?.why ?? "The response does not settle.";
+  return entry.standing?.within === false ? (entry.standing.why ?? "") : `Ms is above ${formatNumber(limit)}.`;
 }
 
 const compare = (a: number, b: number): number => (a === b ? 0 : a < b ? -1 : 1);

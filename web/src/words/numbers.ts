@@ -22,6 +22,13 @@ const NO_PERCENT = 0.005;
 
 export const formatPercent = (value: number): string => formatNumber(Math.abs(value) < NO_PERCENT ? 0 : value);
 
+/** A fraction as percent: never 100 for less than all, never 0 for more than nothing. */
+export const formatShare = (fraction: number): string =>
+  String(fraction > 0 ? Math.max(0.1, Math.floor(1000 * fraction + 1e-9) / 10) : 0);
+
+/** A sentence of the service, whose minus signs are hyphens. */
+export const withMinus = (sentence: string): string => sentence.replace(/(^|[\s(])-(?=\d)/g, `$1${MINUS}`);
+
 /** A parameter in running text: four digits at most, no trailing zeros. */
 export function formatParameter(value: number): string {
   const short = Number(value.toPrecision(4));

@@ -2,7 +2,8 @@
 import type { Model, Notice } from "../api/types.ts";
 import { formatNumber, formatParameter, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
-import type { Level } from "./verdict.ts";
+
+export type Level = "good" | "warn" | "bad";
 
 export interface QualityWords {
   level: Level;
@@ -28,7 +29,7 @@ export function qualityOf(model: Model, units: UnitNames): QualityWords {
     head: poor
       ? `Doubtful: the model explains ${formatNumber(fit)} % of the record's movement.`
       : warnings.length > 0
-        ? `Usable with care: ${counted(warnings.length, "thing")} to know.`
+        ? `Usable with care: ${counted(warnings.length, "warning")}.`
         : notes.length > 0
           ? `Good enough, with ${counted(notes.length, "remark")}.`
           : "Good enough.",

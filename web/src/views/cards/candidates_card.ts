@@ -1,7 +1,7 @@
 // The models that explain a record: one is chosen, with what speaks for it, and tuned.
 import type { Candidate, Model } from "../../api/types.ts";
-import { h, mathElement, uniqueId } from "../../dom.ts";
-import { plantFormula } from "../../form/formula.ts";
+import { h, uniqueId } from "../../dom.ts";
+import { plantFormula, rounded } from "../../form/formula.ts";
 import { serviceChoice } from "../../form/tuning_request.ts";
 import { formatNumber, formatParameter, formatUncertain } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
@@ -12,7 +12,7 @@ export interface CandidatesCard {
   show(model: Model, units: UnitNames): void;
   /** Null where the service lists no candidates. */
   chosen(): Candidate | null;
-  /** Whether limits shall hold on all that the record leaves possible. */
+  /** Whether limits shall hold for every model consistent with the record. */
   onRegion(): boolean;
   setBusy(busy: boolean): void;
 }
@@ -44,7 +44,7 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
       "div",
       { class: "check" },
       whole,
-      h("label", { for: whole.id }, "Hold the limits on all that the record leaves possible"),
+      h("label", { for: whole.id }, "Meet the limits for every model consistent with the record"),
     ),
     h("div", { class: "actions" }, tune),
     h("div", { class: "actions" }, all),
@@ -133,14 +133,8 @@ function poor(candidates: Candidate[], at: number): boolean {
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** Of structures that their parameters alone do not tell. */
-function formulaOf(candidate: Candidate): HTMLElement | null {
-  if (candidate.plant.type !== "transfer_function") return null;
-  const round = (value: unknown): unknown =>
-    typeof value === "number" ? Number(value.toPrecision(4)) : Array.isArray(value) ? value.map(round) : value;
-  const plant = Object.fromEntries(Object.entries(candidate.plant).map(([key, value]) => [key, round(value)]));
-  const tree = plantFormula(plant as Candidate["plant"]);
-  return tree ? h("span", { class: "formula small" }, mathElement(tree)) : null;
-}
+const formulaOf = (candidate: Candidate): HTMLElement | null =>
+  candidate.plant.type === "transfer_function" ? plantFormula(rounded(candidate.plant), "span", true) : null;
 
 /**
  * "K 1.25 ± 0.01 °C/%" of each parameter; of a transfer function only the errors of its coefficients. A time whose error

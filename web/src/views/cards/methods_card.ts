@@ -251,7 +251,7 @@ function optionField(spec: FieldSpec, pointer: () => string | null, errors: Form
     .filter(Boolean)
     .join(" ");
   const shared = { label: spec.label, hint, pointer };
-  const standard = spec.defaultText ? `as usual (${spec.defaultText})` : "as usual";
+  const standard = spec.defaultText ? `default (${spec.defaultText})` : "default";
   if (spec.kind === "choice")
     return choiceField(
       { ...shared, choices: [["", standard], ...spec.choices.map((item) => [item, item] as const)] },

@@ -1,4 +1,4 @@
-// "A model": the kind of plant, its parameters, the formula as it is typed.
+// "A model": in one line or by its kind and parameters, with the formula as it is typed.
 import type { Plant } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -9,6 +9,7 @@ import type { UnitNames } from "../../words/numbers.ts";
 export interface ModelCard {
   element: HTMLFormElement;
   read(): PlantReading;
+  settled(): Promise<void>;
   /** False where this card cannot show such a plant. */
   load(plant: Plant): boolean;
   loadTyped(form: string, values: Record<string, string>): void;
@@ -60,6 +61,7 @@ export function modelCard(errors: FormErrors, active: () => boolean, events: Mod
   return {
     element,
     read: fields.read,
+    settled: fields.settled,
     load: fields.load,
     loadTyped: fields.loadTyped,
     setUnits: fields.setUnits,

@@ -1,6 +1,6 @@
 // A nonlinear plant's operating point and the linear model there, on which methods and robustness rest.
 import type { Plant, Result, TuningRequest } from "../../api/types.ts";
-import { h, mathElement } from "../../dom.ts";
+import { h } from "../../dom.ts";
 import { plantFormula } from "../../form/formula.ts";
 import { rootsOf, rootWords, transferFunction } from "../../words/linear_model.ts";
 import { formatNumber, unitNames, withUnit } from "../../words/numbers.ts";
@@ -50,12 +50,11 @@ function linearModel(model: Plant | undefined, time: string): HTMLElement[] {
   const transfer = transferFunction(model);
   if (!transfer) return [];
   const four = (values: number[]): number[] => values.map((value) => Number(value.toPrecision(4)));
-  const formula = plantFormula({
-    type: "transfer_function",
-    num: four(transfer.num),
-    den: four(transfer.den),
-    L: model?.L ?? 0,
-  });
+  const formula = plantFormula(
+    { type: "transfer_function", num: four(transfer.num), den: four(transfer.den), L: model?.L ?? 0 },
+    "div",
+    true,
+  );
   const [poles, zeros] = [rootsOf(transfer.den), rootsOf(transfer.num)];
   const last = transfer.den[transfer.den.length - 1]!;
   const gain = last === 0 ? null : transfer.num[transfer.num.length - 1]! / last;
@@ -66,7 +65,7 @@ function linearModel(model: Plant | undefined, time: string): HTMLElement[] {
   ];
   return [
     h("h2", {}, "Linear model there"),
-    ...(formula ? [h("div", { class: "formula small" }, mathElement(formula))] : []),
+    formula,
     h(
       "dl",
       {},

@@ -9,15 +9,24 @@ export interface Part {
   to: number;
 }
 
+/** A move of u, and the part of the record in which it is the only one. */
+export interface Step extends Part {
+  at: number;
+}
+
 export interface PartCard {
   element: HTMLElement;
   setUnit(unit: string): void;
   /** The record's whole extent; the first time it is also what is chosen. */
   setExtent(whole: Part): void;
   set(part: Part): void;
+  /** The record's steps, each with the part that shows it alone. */
+  setSteps(steps: Step[]): void;
   /** Null: all of it. */
   read(): Part | null;
 }
+
+const MOST_STEPS = 12;
 
 export function partCard(errors: FormErrors, onMove: () => void, onRelease: () => void): PartCard {
   let extent: Part | null = null;
@@ -37,8 +46,9 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
   const from = edge("from", "Use from");
   const to = edge("to", "Use up to");
   const all = h("button", { type: "button", class: "quiet", onclick: () => useAll() }, "Use all of it");
+  const steps = h("div", { class: "steps", hidden: true });
   const title = h("h2", { id: uniqueId("part"), class: "visually-hidden" }, "Which part counts");
-  const element = h("section", { class: "part", "aria-labelledby": title.id }, title, from.element, to.element, all);
+  const element = h("section", { class: "part", "aria-labelledby": title.id }, title, from.element, to.element, all, steps);
 
   function useAll(): void {
     if (!extent) return;
@@ -47,8 +57,28 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
     onRelease();
   }
 
+  function useStep(step: Step): void {
+    from.set(step.from);
+    to.set(step.to);
+    onRelease();
+  }
+
   return {
     element,
+    setSteps(list) {
+      // One step needs no choice, and very many are another kind of test.
+      steps.hidden = list.length < 2 || list.length > MOST_STEPS;
+      steps.replaceChildren(
+        ...list.map((step) =>
+          h(
+            "button",
+            { type: "button", class: "quiet", onclick: () => useStep(step) },
+            "Use this step",
+            ` (${formatParameter(step.at)} ${unit})`,
+          ),
+        ),
+      );
+    },
     setUnit(next) {
       unit = next;
       from.field.setUnit(unit);

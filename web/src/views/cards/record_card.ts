@@ -1,10 +1,14 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
+import { ApiError } from "../../api/client.ts";
+import { previewFile, previewRecord } from "../../api/records.ts";
+import type { Preview } from "../../api/records.ts";
 import type { FieldError, RecordedTest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { areaField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { csvOf, recordFields } from "../../form/record_fields.ts";
 import type { Identify } from "../../form/record_fields.ts";
+import { previewPanel } from "../../form/record_preview.ts";
 
 export interface RecordCard {
   element: HTMLFormElement;
@@ -46,6 +50,13 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     errors,
   );
   const fields = recordFields(errors, false);
+  const shown = h("div", { class: "preview-slot" });
+  const reading = h(
+    "details",
+    {},
+    h("summary", {}, "Columns, kind of test, model"),
+    h("div", { class: "stack" }, shown, fields.elements),
+  );
   const element = h(
     "form",
     { class: "card", novalidate: true },
@@ -58,7 +69,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     drop,
     status,
     csv.element,
-    h("details", {}, h("summary", {}, "Columns, kind of test, model"), h("div", { class: "stack" }, fields.elements)),
+    reading,
     h(
       "div",
       { class: "actions" },
@@ -79,13 +90,46 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       status.textContent = `${chosen.name} has ${(chosen.size / 1024 / 1024).toFixed(1)} MiB; 8 MiB is the most that can be sent. Cut the record to the test itself.`;
       return;
     }
-    csv.input.value = await chosen.text();
-    csv.input.dispatchEvent(new Event("input"));
-    const rows = csv.input.value.split("\n").filter((line) => line.trim() !== "").length;
-    status.textContent = `${chosen.name}: ${rows} lines.`;
-    events.onIdentify();
+    errors.clear();
+    status.textContent = `Reading ${chosen.name}...`;
+    const read = await previewFile(chosen).catch((error: unknown) => {
+      const problem = error instanceof ApiError ? error.problem : {};
+      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+      status.textContent = `${chosen.name} could not be read.`;
+      return null;
+    });
+    if (!read) return;
+    csv.input.value = read.text;
+    // What was chosen of another file means nothing here.
+    fields.load({}, fields.read().identify);
+    status.textContent = `${chosen.name}: ${read.preview.rows} rows.`;
+    if (show(read.preview)) events.onIdentify();
   }
 
+  /** Whether the record can be read as it is; else it says what is missing, where it can be chosen. */
+  function show(preview: Preview): boolean {
+    shown.replaceChildren(previewPanel(preview));
+    fields.offer(preview);
+    if (preview.problems.length === 0) return true;
+    reading.open = true;
+    errors.show(preview.problems);
+    return false;
+  }
+
+  /** What is pasted, or read another way, is looked at again. */
+  async function look(): Promise<void> {
+    if (csv.input.value.trim() === "") return shown.replaceChildren();
+    try {
+      const preview = await previewRecord({ ...fields.read().record, csv: csv.input.value });
+      shown.replaceChildren(previewPanel(preview));
+      fields.offer(preview);
+    } catch {
+      // Identifying it says what is wrong.
+    }
+  }
+
+  csv.input.addEventListener("change", () => void look());
+  reading.addEventListener("change", () => void look());
   file.addEventListener("change", () => void take(file.files?.[0]));
   // The whole card takes the file: people do not aim.
   element.addEventListener("dragover", (event) => {
@@ -124,6 +168,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     load(record, identify) {
       csv.input.value = csvOf(record);
       fields.load(record, identify);
+      shown.replaceChildren();
       status.textContent = "";
     },
   };

@@ -23,6 +23,12 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   const times = gain ? `${gain} ${units.time}` : units.time;
   const filter: Setting[] =
     typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
+  const lag = controller.setpoint_filter?.T;
+  /** What acts on the set point alone, where it is not b = 1. */
+  const weights = (b: number | undefined): Setting[] => [
+    ...(typeof b === "number" && b !== 1 ? [{ name: "b", unit: "", value: b }] : []),
+    ...(typeof lag === "number" ? [{ name: "Set-point filter", unit: units.time, value: lag }] : []),
+  ];
   if (form === "ideal" || form === "npid") {
     const { delta_r } = controller;
     const delta: Setting[] =
@@ -33,6 +39,7 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
       { name: "Td", unit: units.time, value: controller.Td ?? 0 },
       ...delta,
       ...filter,
+      ...weights(controller.b),
     ];
   }
   const equivalent = entry.equivalents?.[form];
@@ -51,6 +58,7 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
       { name: "Ki", unit: per, value: equivalent.Ki ?? null },
       { name: "Kd", unit: times, value: equivalent.Kd ?? null },
       ...filter,
+      ...weights(equivalent.b),
     ];
   }
   return [
@@ -58,6 +66,7 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
     { name: "Ti", unit: units.time, value: equivalent.Ti ?? null },
     { name: "Td", unit: units.time, value: equivalent.Td ?? null },
     ...filter,
+    ...weights(equivalent.b),
   ];
 }
 
@@ -100,7 +109,7 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
     return h("label", {}, input, h("span", {}, name));
   });
   const segments = h("fieldset", { class: "segments" }, h("legend", { class: "visually-hidden" }, "Form"), radios);
-  const element = h("section", { class: "card settings", "aria-labelledby": titleId }, title, segments, body);
+  const element = h("section", { class: "card settings", "aria-labelledby": titleId }, h("div", { class: "head" }, title, copy), segments, body);
 
   const formOf = (entry: Entry): SettingsForm => (entry.controller?.form === "npid" ? "npid" : chosen);
 
@@ -110,6 +119,7 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
     const form = formOf(shown.entry);
     segments.hidden = form === "npid";
     const settings = settingsOf(shown.entry, form, shown.units);
+    copy.hidden = typeof settings === "string";
     if (typeof settings === "string") {
       body.replaceChildren(h("p", {}, settings));
       return;
@@ -139,7 +149,6 @@ export function settingsCard(announce: (sentence: string) => void): SettingsCard
         { class: "hint" },
         `${FORMULAS[form]}; set-point weights b ${formatSetting(weights?.b ?? 1)}, c ${formatSetting(weights?.c ?? 0)}; filter ${filterWords(filter?.type)}${weights?.action ? `; ${weights.action} action` : ""}.`,
       ),
-      h("div", { class: "actions" }, copy),
     );
   }
 

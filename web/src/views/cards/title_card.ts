@@ -1,11 +1,13 @@
 // What a job is about: its name, its plant, and ways to go on from it. Head of every screen that shows a job.
 import type { Job, Plant } from "../../api/types.ts";
-import { h, mathElement } from "../../dom.ts";
+import { h } from "../../dom.ts";
 import type { Child } from "../../dom.ts";
 import { plantFormula } from "../../form/formula.ts";
 import { formatRoute } from "../../routes.ts";
 import { unitNames } from "../../words/numbers.ts";
 import { plantTitle, plantWords } from "../../words/plant.ts";
+import { reportLink } from "../report_link.ts";
+import { requestMenu } from "../request_menu.ts";
 
 export interface TitleCard {
   element: HTMLElement;
@@ -14,19 +16,21 @@ export interface TitleCard {
 }
 
 /** `screen`: the heading of a job without a name. `actions`: beside the links that every job has. */
-export function titleCard(screen: string, ...actions: Child[]): TitleCard {
+export function titleCard(screen: string, announce: (sentence: string) => void, ...actions: Child[]): TitleCard {
+  const menu = requestMenu(announce);
   const heading = h("h1", { tabindex: -1 }, screen);
   const plantLine = h("p", { class: "hint" });
-  const formula = h("div", { class: "formula small" });
+  const formula = h("div");
   const editLink = h("a", { href: "#/" }, "Change the request");
   const recordLink = h("a", { href: "#/" }, "Look at the record");
+  const report = reportLink();
   const element = h(
     "section",
     { class: "card title" },
     heading,
     plantLine,
     formula,
-    h("p", { class: "actions" }, editLink, recordLink, actions),
+    h("p", { class: "actions" }, editLink, recordLink, report.element, actions, menu.element),
   );
   return {
     element,
@@ -40,12 +44,14 @@ export function titleCard(screen: string, ...actions: Child[]): TitleCard {
       plantLine.textContent = plant
         ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
         : "from a recorded test";
-      const tree = plant && !job.result?.model && hasFormulaOnly(plant) ? plantFormula(plant) : null;
-      formula.replaceChildren(...(tree ? [mathElement(tree)] : []));
-      formula.hidden = tree === null;
+      const shown = plant && !job.result?.model && hasFormulaOnly(plant) ? [plantFormula(plant, "div", true)] : [];
+      formula.replaceChildren(...shown);
+      formula.hidden = shown.length === 0;
+      menu.show("v1/jobs", request);
       editLink.href = formatRoute({ screen: "edit", job: job.id });
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
+      report.show(job);
     },
   };
 }

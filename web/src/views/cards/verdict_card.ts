@@ -1,33 +1,48 @@
 // The verdict of the chosen controller, or why a job has none.
-import type { Job, Result } from "../../api/types.ts";
+import type { Finding, Job, Result } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { reasonOf } from "../../words/league.ts";
-import { verdictOf } from "../../words/verdict.ts";
+import { withMinus } from "../../words/numbers.ts";
+
+/** The classes of the levels; a note looks like any text. */
+const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
+
+/** Of results that were kept before the service had verdicts. */
+const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an older version: tune again for a verdict." };
+
+const said = (finding: Finding): HTMLElement =>
+  h("span", { class: LEVEL_CLASS[finding.level], "data-code": finding.code }, `${withMinus(finding.text)} `);
 
 /** `listed`: the entries whose failures are worth a line here. */
 export function showVerdict(
   card: HTMLElement,
-  job: Job,
   result: Result,
   names: string[],
   selected: number,
   listed: number[],
 ): void {
   const entries = result.controllers;
-  const today = entries.find((candidate) => candidate.method === "baseline");
-  const words = verdictOf(entries[selected]!, today, job.request);
-  const sentences = [...words.sentences];
-  if (job.status === "cancelled" || result.partial)
-    sentences.unshift("Stopped early: this is the best found until then.");
+  const [head = NO_VERDICT, ...others] = entries[selected]!.verdict ?? [];
+  const stopped = result.verdict?.filter((finding) => finding.code === "stopped-early") ?? [];
   const who = entries.length > 1 ? h("span", { class: "who" }, `${names[selected]}: `) : null;
   const failures = entries.flatMap((entry, index) =>
     entry.error && index !== selected && listed.includes(index)
       ? [h("li", {}, h("strong", {}, `${names[index]}: `), reasonOf(entry))]
       : [],
   );
-  card.className = `verdict ${words.level}`;
-  card.replaceChildren(h("h2", {}, who, words.head), h("p", {}, sentences.join(" ")));
+  card.className = `verdict ${LEVEL_CLASS[head.level]}`;
+  card.replaceChildren(h("h2", {}, who, withMinus(head.text)), h("p", {}, [...stopped, ...others].map(said)));
   if (failures.length > 0) card.append(h("ul", {}, failures));
+}
+
+/** What the kinds of failures are called. */
+function failedHead(job: Job): string {
+  const kind = job.error?.type ?? "";
+  if (kind.endsWith("no-feasible-controller")) return "No controller meets these limits.";
+  if (kind.endsWith("unstable-plant")) return "No controller of this kind stabilises the plant.";
+  if (kind.endsWith("not-identifiable")) return "The record determines no model.";
+  if (kind.endsWith("timeout")) return "The time allowed was over.";
+  return "No controller was found.";
 }
 
 /** For a job that ended without any controller. */
@@ -37,7 +52,7 @@ export function showFailure(card: HTMLElement, job: Job): void {
   const faults = (job.error?.errors ?? []).filter((fault) => fault.detail !== job.error?.detail);
   card.className = "verdict bad";
   card.replaceChildren(
-    h("h2", {}, cancelled ? "Stopped before a controller was found." : "This could not be done."),
+    h("h2", {}, cancelled ? "Stopped before a controller was found." : failedHead(job)),
     h("p", {}, job.error?.detail ?? job.error?.title ?? silent),
   );
   if (faults.length > 0) {

@@ -1,0 +1,148 @@
+// Jobs: the list, a CSV of loops as a batch, and requests to take along.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+import { accessibilityViolations, browserTests, overflow, root } from "../harness.mjs";
+
+const tests = browserTests();
+const { withPage } = tests;
+
+const PLANT = { type: "fopdt", K: 2, T: 10, L: 3 };
+const post = async (address, body) =>
+  (
+    await fetch(`${tests.service.base}/${address}`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", Prefer: "wait=20" },
+      body: JSON.stringify(body),
+    })
+  ).json();
+const settings = { form: "ideal", Kp: 1, Ti: 20, Td: 0 };
+
+test("a job is found, duplicated and deleted after one question", async () => {
+  await post("v1/jobs", { name: "TIC-101", plant: PLANT, tune: [{ method: "simc" }], baseline: settings });
+  await post("v1/jobs", { name: "FIC-7", plant: { ...PLANT, T: 4 }, tune: [{ method: "amigo" }, { method: "simc" }] });
+  await withPage("#/jobs", {}, async (page) => {
+    const row = (name) => page.getByRole("row", { name: new RegExp(name) });
+    await row("TIC-101").waitFor();
+    assert.match(await row("TIC-101").innerText(), /2 e\^\(−3s\)\/\(10s \+ 1\)\s+simc\s.*succeeded/s);
+    await page.getByRole("textbox", { name: "Search jobs by name, method or id" }).fill("fic");
+    await row("TIC-101").waitFor({ state: "detached" });
+    assert.match(await row("FIC-7").innerText(), /best of 2/);
+    assert.match(page.url(), /#\/jobs\?q=fic$/);
+    await page.getByRole("button", { name: "Delete FIC-7", exact: true }).click();
+    await page.getByRole("button", { name: "Delete for good: Delete FIC-7" }).click();
+    await page.getByText('No job has "fic" in its name, method or id.').waitFor();
+    await page.getByRole("textbox", { name: "Search jobs by name, method or id" }).fill("");
+    await page.getByRole("link", { name: "Duplicate TIC-101" }).click();
+    await page.getByRole("heading", { name: "What do you have?" }).waitFor();
+    await page.getByRole("link", { name: "Jobs" }).click();
+    await page.getByRole("link", { name: "TIC-101", exact: true }).click();
+    await page.getByRole("heading", { name: "TIC-101" }).waitFor();
+  });
+});
+
+test("a CSV of loops becomes a batch with a table, an order and a CSV", async () => {
+  const loops = readFileSync(path.join(root, "docs/loops.csv"));
+  await withPage("#/jobs", {}, async (page) => {
+    await page.getByLabel("Largest Ms").fill("1.6");
+    await page
+      .getByLabel(/Drop a CSV of loops here/)
+      .setInputFiles({ name: "unit 7.csv", mimeType: "text/csv", buffer: loops });
+    await page.getByRole("heading", { name: "unit 7" }).waitFor();
+    await page.getByText("5 loops: 5 tuned", { exact: true }).waitFor();
+    await page.getByRole("link", { name: "PIC-12" }).waitFor();
+    await page.getByRole("columnheader", { name: "Load IAE" }).getByRole("button").click();
+    const names = await page.getByRole("rowheader").allInnerTexts();
+    assert.deepEqual(names, ["AIC-30", "TIC-101", "TIC-102", "PIC-12", "FIC-7"]);
+    assert.match(page.url(), /sort=-iae$/);
+    const [file] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "Download CSV" }).click(),
+    ]);
+    const lines = readFileSync(await file.path(), "utf8")
+      .trim()
+      .split("\n");
+    assert.equal(lines.length, 6);
+    assert.match(lines[0], /^index,id,name,status,method/);
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
+test("loops that failed say why; gain and risk order the table", async () => {
+  const batch = await post("v1/batches", {
+    name: "unit 8",
+    jobs: [
+      { name: "good", plant: PLANT, tune: [{ method: "simc" }], baseline: settings },
+      { name: "wild", plant: PLANT, tune: [{ method: "ziegler_nichols_step" }], baseline: { ...settings, Kp: 0.2 } },
+      { name: "impossible", plant: { type: "fopdt", K: 1, T: -10, L: 9 }, tune: [{ method: "cohen_coon" }] },
+      { name: "unread", plant: { type: "fopdt", K: 1 } },
+    ],
+  });
+  await withPage(`#/batches/${batch.id}`, { width: 834, height: 1194 }, async (page) => {
+    await page.getByText("4 loops: 2 tuned, 2 failed", { exact: true }).waitFor();
+    assert.match(await page.getByRole("row", { name: /unread/ }).innerText(), /T is missing/);
+    await page.getByRole("button", { name: "Greatest risk" }).click();
+    assert.equal((await page.getByRole("rowheader").allInnerTexts())[0], "wild");
+    await page.getByRole("button", { name: "Greatest gain over today" }).click();
+    assert.equal((await page.getByRole("rowheader").allInnerTexts())[0], "wild");
+    assert.equal(await overflow(page), 0);
+    // What could be read runs again, as a batch of its own.
+    await page.getByRole("button", { name: "Try the failed again" }).click();
+    await page.waitForFunction((old) => !location.hash.includes(old), batch.id);
+    await page.getByText("1 loop: 0 tuned, 1 failed", { exact: true }).waitFor();
+    assert.deepEqual(await page.getByRole("rowheader").allInnerTexts(), ["impossible"]);
+  });
+});
+
+test("a file that is no list of loops is refused where it was dropped", async () => {
+  await withPage(
+    "#/jobs",
+    {},
+    async (page) => {
+      await page
+        .getByLabel(/Drop a CSV of loops here/)
+        .setInputFiles({ name: "log.csv", mimeType: "text/csv", buffer: Buffer.from("a,b\n1,2\n") });
+      await page.getByRole("alert").filter({ hasText: /K/ }).waitFor();
+      await page.getByText("There is no job yet.").waitFor({ state: "detached" });
+    },
+    ["422"],
+  );
+});
+
+test("the limit that a refusal names is taken by a button", async () => {
+  const job = await post("v1/jobs", {
+    plant: { type: "fopdt", K: 1, T: -1, L: 0.2 },
+    tune: [{ method: "robust", Ms: 1.2, Mt: 1.2 }],
+  });
+  const { cure } = job.error;
+  assert.ok(cure.options.Ms > 1.2 && cure.options.Ms === cure.options.Mt);
+  await withPage(`#/jobs/${job.id}/design`, {}, async (page) => {
+    await page.getByRole("button", { name: cure.text }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    const id = /jobs\/([^/]+)\/design/.exec(page.url())[1];
+    const cured = await (await fetch(`${tests.service.base}/v1/jobs/${id}`)).json();
+    assert.equal(cured.request.tune[0].Ms, cure.options.Ms);
+    assert.equal(await page.getByRole("button", { name: cure.text }).count(), 0);
+  });
+});
+
+test("the request of what is shown can be taken along as JSON and as a call", async () => {
+  const job = await post("v1/jobs", { name: "Jim's loop", plant: PLANT, tune: [{ method: "simc" }] });
+  await withPage(`#/jobs/${job.id}/design`, {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.getByText("Request", { exact: true }).click();
+    const [file] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("button", { name: "Download JSON" }).click(),
+    ]);
+    assert.deepEqual(JSON.parse(readFileSync(await file.path(), "utf8")), job.request);
+    await page.getByRole("button", { name: "Copy as curl" }).click();
+    await page.getByRole("button", { name: "Copied" }).waitFor();
+    const call = await page.evaluate(() => navigator.clipboard.readText());
+    const { execFileSync } = await import("node:child_process");
+    const again = JSON.parse(execFileSync("sh", ["-c", call], { encoding: "utf8" }));
+    assert.equal(again.status, "succeeded");
+    assert.deepEqual(again.request, job.request);
+  });
+});

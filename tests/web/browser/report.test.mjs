@@ -1,0 +1,71 @@
+// The report as its reader meets it: led to from a result, without scripts, printed on A4 and Letter.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import test from "node:test";
+import { accessibilityViolations, browserTests, openPage } from "../harness.mjs";
+
+const tests = browserTests();
+
+const REQUEST = {
+  name: "TIC-101 <b>&",
+  units: { time: "s", u: "%", y: "°C" },
+  plant: "2 e^(-3s)/((10s+1)(2s+1))",
+  tune: [{ method: "robust" }, { method: "simc" }],
+  baseline: { form: "ideal", Kp: 0.6, Ti: 15 },
+};
+
+async function tuned(request) {
+  const response = await fetch(`${tests.service.base}/v1/jobs`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json", Prefer: "wait=60" },
+    body: JSON.stringify(request),
+  });
+  const job = await response.json();
+  assert.equal(job.status, "succeeded");
+  return job;
+}
+
+test("a screen with a result leads to the report of the entry that it shows", async () => {
+  const job = await tuned(REQUEST);
+  await tests.withPage(`#/jobs/${job.id}/design?entry=1`, {}, async (page) => {
+    const opened = page.waitForEvent("popup");
+    await page.getByRole("link", { name: "Report", exact: true }).click();
+    const report = await opened;
+    await report.getByRole("heading", { name: "TIC-101 <b>&: tuning report" }).waitFor();
+    assert.match(report.url(), /report\.html\?controller=1$/);
+  });
+});
+
+/** Pages of a PDF as the browser writes it. */
+const pageCount = (pdf) => (pdf.toString("latin1").match(/\/Type\s*\/Page[^s]/g) ?? []).length;
+
+test("the report prints on A4 and Letter, its style alone applies, and nothing is wrong with it", async () => {
+  const csv = readFileSync(new URL("../../../api/examples/tclab-step.csv", import.meta.url), "utf8");
+  const record = { record: { csv }, identify: { traces: true }, tune: [{ method: "robust" }] };
+  for (const [request, most] of [
+    [REQUEST, 5],
+    [record, 6],
+  ]) {
+    const job = await tuned(request);
+    const opened = await openPage(tests.browser, {});
+    await opened.page.goto(`${tests.service.base}/v1/jobs/${job.id}/report.html`);
+    assert.equal(await opened.page.evaluate(() => getComputedStyle(document.querySelector("table")).borderCollapse), "collapse");
+    assert.equal(await opened.page.locator("figure svg path").count().then((count) => count > 20), true);
+    for (const format of ["A4", "Letter"]) {
+      const pages = pageCount(await opened.page.pdf({ format, preferCSSPageSize: false }));
+      assert.ok(pages >= 2 && pages <= most, `${pages} pages of ${format}`);
+    }
+    assert.deepEqual(await opened.faults(), []);
+    await opened.close();
+  }
+});
+
+test("axe finds nothing in the report", async () => {
+  const job = await tuned(REQUEST);
+  // axe is a script, which the report's own policy keeps out: its markup is looked at without the policy.
+  const text = await (await fetch(`${tests.service.base}/v1/jobs/${job.id}/report.html`)).text();
+  const opened = await openPage(tests.browser, {});
+  await opened.page.setContent(text);
+  assert.deepEqual(await accessibilityViolations(opened.page), []);
+  await opened.close();
+});

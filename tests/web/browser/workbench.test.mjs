@@ -1,0 +1,209 @@
+// The design that moves: sliders, the front, steps back and forth, the address, a slow network and a busy service.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { browserTests, tracesShown } from "../harness.mjs";
+
+const { withPage, jobOf } = browserTests();
+
+const slider = (page, name) => page.locator(".controls").getByRole("slider", { name: `${name}, slider` });
+const setting = (page, name) =>
+  page
+    .locator(".settings tbody tr")
+    .filter({ has: page.locator("th", { hasText: new RegExp(`^${name}\\b`) }) })
+    .locator("td")
+    .innerText()
+    .then((text) => Number(text.replace("−", "-")));
+const shows = (page, name, value) =>
+  page.waitForFunction(
+    ([wanted, number]) =>
+      [...document.querySelectorAll(".settings tbody tr")].some(
+        (row) =>
+          row.querySelector("th").textContent.startsWith(wanted) &&
+          Math.abs(Number(row.querySelector("td").textContent.replace("−", "-")) / number - 1) < 1e-3,
+      ),
+    [name, value],
+  );
+
+async function openDesign(page, today = false) {
+  if (today) {
+    await page.getByLabel("Kp", { exact: true }).fill("1.2");
+    await page.getByLabel("Ti", { exact: true }).fill("40");
+  }
+  await page.getByRole("button", { name: "Tune this model" }).click();
+  await slider(page, "Robustness Ms").waitFor();
+}
+
+/** The service's own answer for that limit. */
+async function designAt(page, Ms) {
+  const { plant, tune } = (await jobOf(page)).request;
+  const answer = await page.request.post(`${new URL(page.url()).origin}/v1/design`, {
+    data: { plant, tune: [{ ...tune[0], Ms, Mt: Ms }] },
+  });
+  return (await answer.json()).controllers[0];
+}
+
+/** Drags a slider's thumb from one share of its way to another. */
+async function drag(page, target, from, to, steps, pause = 0) {
+  const box = await target.boundingBox();
+  const x = (share) => box.x + 8 + (box.width - 16) * share;
+  await page.mouse.move(x(from), box.y + box.height / 2);
+  await page.mouse.down();
+  for (let step = 1; step <= steps; step += 1) {
+    await page.mouse.move(x(from + ((to - from) * step) / steps), box.y + box.height / 2);
+    if (pause > 0) await page.waitForTimeout(pause);
+  }
+}
+
+const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
+
+test("the slider of Ms designs anew; undo, redo and the proposal lead back, the address and a reload bring it again", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page, true);
+    const proposal = await setting(page, "Kp");
+    await slider(page, "Robustness Ms").focus();
+    for (let press = 0; press < 3; press += 1) await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.53/);
+    const wanted = await designAt(page, 1.53);
+    await shows(page, "Kp", wanted.controller.Kp);
+    await page.waitForFunction(() => /^Ms 1\.53, load IAE \d/.test(document.querySelector(".controls input[type=range]").getAttribute("aria-valuetext")));
+    await tracesShown(page, "Nyquist curve of L", 2);
+    await page.reload();
+    await slider(page, "Robustness Ms").waitFor();
+    await shows(page, "Kp", wanted.controller.Kp);
+    await page.getByRole("button", { name: "Back to the proposal" }).click();
+    await shows(page, "Kp", proposal);
+    assert.doesNotMatch(page.url(), /Ms=/);
+    await page.keyboard.press("Control+z");
+    await shows(page, "Kp", wanted.controller.Kp);
+    await page.keyboard.press("Control+Shift+Z");
+    await shows(page, "Kp", proposal);
+  });
+});
+
+test("a gain by hand is evaluated as it stands, and typed values act when the field is left", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const field = page.locator(".controls").getByRole("textbox", { name: "Kp" });
+    await field.fill("3");
+    await field.press("Enter");
+    await shows(page, "Kp", 3);
+    const Ms = page.locator(".figures-card tr").filter({ has: page.getByRole("rowheader", { name: "Ms", exact: true }) });
+    const { plant } = (await jobOf(page)).request;
+    const values = new URLSearchParams(page.url().split("?")[1]);
+    assert.equal(values.get("Kp"), "3");
+    const answer = await page.request.post(`${new URL(page.url()).origin}/v1/evaluate`, {
+      data: {
+        plant,
+        controllers: [
+          {
+            form: "ideal",
+            Kp: 3,
+            Ti: Number(values.get("Ti")),
+            Td: Number(values.get("Td")),
+            filter: { type: "measurement_second_order", Tf: Number(values.get("Tf")) },
+          },
+        ],
+      },
+    });
+    const [entry] = (await answer.json()).controllers;
+    assert.equal(Number(await Ms.locator("td").first().innerText()), Number(entry.robustness.Ms.toPrecision(3)));
+  });
+});
+
+test("dragging draws all the time though every answer takes 60 ms, and is one step", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    await page.route("**/v1/design", async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 60));
+      await route.continue();
+    });
+    await page.evaluate(() => {
+      globalThis.redraws = 0;
+      const curve = document.querySelector(".main-column svg.canvas > g");
+      new MutationObserver(() => (globalThis.redraws += 1)).observe(curve, { childList: true });
+    });
+    const started = Date.now();
+    await drag(page, slider(page, "Robustness Ms"), 0.22, 0.8, 60, 16);
+    const seconds = (Date.now() - started) / 1000;
+    const redraws = await page.evaluate(() => globalThis.redraws);
+    await page.mouse.up();
+    assert.ok(redraws >= 5 && redraws / seconds >= 3, `${redraws} redraws while it was held for ${seconds} s`);
+    console.log(`# ${(redraws / seconds).toFixed(1)} redraws a second with 60 ms of latency`);
+    await page.getByRole("button", { name: "Undo" }).click();
+    await page.waitForURL((url) => !/Ms=/.test(url.href));
+    assert.ok(await page.getByRole("button", { name: "Undo" }).isDisabled(), "one step a drag");
+  });
+});
+
+test("the point on the front is taken and moves the limit", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const plot = page.locator(".front section.plot");
+    await plot.getByText("best PID").waitFor();
+    await page.waitForFunction(() => [...document.querySelectorAll(".front svg.canvas path")].some((item) => (item.getAttribute("d").match(/L/g) ?? []).length > 20));
+    // In one look: the front is drawn anew when its answers come.
+    const box = await page.evaluate(() => [...document.querySelectorAll(".front svg.canvas circle")].at(-1).getBoundingClientRect().toJSON());
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 60, box.y + 20, { steps: 8 });
+    await page.mouse.up();
+    await page.waitForURL(/Ms=1\.[5-9]|Ms=2/);
+    const Ms = Number(/Ms=([\d.]+)/.exec(page.url())[1]);
+    await shows(page, "Kp", (await designAt(page, Ms)).controller.Kp);
+  });
+});
+
+test("a busy service keeps the last plots and says so; the design follows when it answers again", async () => {
+  await withPage(
+    PLANT,
+    {},
+    async (page) => {
+      await openDesign(page);
+      let busy = true;
+      await page.route("**/v1/design", (route) =>
+        busy
+          ? route.fulfill({
+              status: 429,
+              headers: { "Retry-After": "1", "Content-Type": "application/problem+json" },
+              body: JSON.stringify({ title: "Too many", status: 429, detail: "Too many computations are waiting." }),
+            })
+          : route.continue(),
+      );
+      await slider(page, "Robustness Ms").focus();
+      await page.keyboard.press("PageUp");
+      await page.locator(".controls .trouble").getByText("The last plots stay; trying again in 1 s.").waitFor();
+      await tracesShown(page, "Nyquist curve of L", 1);
+      busy = false;
+      await page.locator(".controls .trouble").first().waitFor({ state: "hidden" });
+      await shows(page, "Kp", (await designAt(page, 1.5)).controller.Kp);
+    },
+    ["429"],
+  );
+});
+
+test("Design stands in one window of 1440 by 900 pixels", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page, true);
+    await page.getByText("best PID").waitFor();
+    assert.ok((await page.evaluate(() => document.documentElement.scrollHeight)) <= 900);
+  });
+});
+
+test("on a phone the responses stand first, and the sliders directly under them", async () => {
+  await withPage(PLANT, { width: 390, height: 844 }, async (page) => {
+    await openDesign(page);
+    const top = async (locator) => (await locator.first().boundingBox()).y;
+    const plot = (name) => page.locator(".main-column section.plot").filter({ hasText: name });
+    const order = [
+      await top(plot("Set-point step")),
+      await top(plot("Load step")),
+      await top(page.locator(".controls")),
+      await top(plot("Nyquist curve")),
+      await top(page.locator(".front")),
+      await top(page.locator(".settings")),
+    ];
+    assert.deepEqual(order, order.toSorted((a, b) => a - b));
+    assert.ok(order[0] < 500, `the first plot begins at ${order[0]}`);
+  });
+});

@@ -1,0 +1,144 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import type { Controller, Entry, Method, TuneEntry } from "../../../web/src/api/types.ts";
+import { frontFrame } from "../../../web/src/charts/front.ts";
+import { handKnobs, handValue, isTied, optionKnobs, withHand, withOption } from "../../../web/src/live/knobs.ts";
+import { firstStep, pointOf, stepBack, stepForward, stepTo, valuesOf } from "../../../web/src/live/point.ts";
+import type { Point } from "../../../web/src/live/point.ts";
+import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+import { unitNames } from "../../../web/src/words/numbers.ts";
+
+const units = unitNames({ time: "s", u: "%", y: "degC" });
+const controller: Controller = {
+  form: "ideal",
+  Kp: 2,
+  Ti: 10,
+  Td: 2,
+  filter: { type: "measurement_second_order", Tf: 0.2 },
+};
+const robustness = { stable: true, Ms: 1.4, Mks: 20, gain_crossover: 0.5 } as Entry["robustness"];
+const entryOf = (method: string, more: Partial<Entry> = {}): Entry => ({ method, controller, ...(robustness ? { robustness } : {}), ...more });
+const robust: Method = { id: "robust", title: "Robust", options: { properties: { setpoint: { type: "object" } } } };
+const idsOf = (tune: TuneEntry, entry = entryOf("robust"), method: Method = robust): string[] =>
+  optionKnobs(tune, entry, method, units).map((knob) => knob.id);
+
+test("a robust design is turned by its limits, its noise and its set point", () => {
+  assert.deepEqual(idsOf({ method: "robust" }), ["Ms", "filter.Tf_over_Td", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust", Ms: 1.4, Mt: 1.2 }), ["Ms", "Mt", "filter.Tf_over_Td", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust", Mks: 5, setpoint: { weight: 0.5 } }), ["Ms", "Mks", "setpoint.weight"]);
+  assert.deepEqual(idsOf({ method: "robust", filter: { Tf: 0.3 } }), ["Ms", "filter.Tf", "setpoint.overshoot"]);
+  const PI = entryOf("robust", { controller: { ...controller, Td: 0, filter: { type: "none" } } });
+  assert.deepEqual(idsOf({ method: "robust", controller: "PI" }, PI, { id: "robust", title: "" }), ["Ms", "Mks"]);
+  const [Ms] = optionKnobs({ method: "robust" }, entryOf("robust"), robust, units);
+  assert.deepEqual([Ms!.lo, Ms!.hi, Ms!.step, Ms!.value], [1.1, 2.5, 0.01, 1.4]);
+});
+
+test("other methods are turned by their numbers: between their ends, about their value, or about the loop's time", () => {
+  const method: Method = {
+    id: "m",
+    title: "",
+    options: {
+      properties: {
+        gain_margin: { type: "number", default: 3, maximum: 20, exclusiveMinimum: 1 },
+        tau_c: { type: "number", exclusiveMinimum: 0, "x-unit": "time" },
+        Ku: { type: "number" },
+        kind: { type: "string" },
+      },
+    },
+  };
+  const knobs = optionKnobs({ method: "m" }, entryOf("m"), method, units);
+  assert.deepEqual(
+    knobs.map(({ id, value, log, unit }) => [id, value, log, unit]),
+    [
+      ["gain_margin", 3, false, ""],
+      ["tau_c", null, true, "s"],
+    ],
+  );
+  assert.ok(knobs[1]!.lo < 2 && knobs[1]!.hi > 2, "about 1 over the crossover");
+  assert.equal(optionKnobs({ method: "m", tau_c: 7 }, entryOf("m"), method, units)[1]!.value, 7);
+  assert.deepEqual(idsOf({ method: "rimc" }, entryOf("rimc"), { ...method, id: "rimc" }), []);
+});
+
+test("limits go together while they are tied, and parts of an option replace each other", () => {
+  assert.ok(isTied({ method: "robust" }) && isTied({ method: "robust", Ms: 1.6, Mt: 1.6 }));
+  assert.ok(!isTied({ method: "robust", Ms: 1.6 }), "Mt is 1.4 then");
+  assert.deepEqual(withOption({ method: "robust" }, "Ms", 1.7, true), { method: "robust", Ms: 1.7, Mt: 1.7 });
+  assert.deepEqual(withOption({ method: "robust", Mt: 1.3 }, "Ms", 1.7, false), { method: "robust", Ms: 1.7, Mt: 1.3 });
+  const weighted: TuneEntry = { method: "robust", setpoint: { weight: 0.4 } };
+  assert.deepEqual(withOption(weighted, "setpoint.overshoot", 10, true)["setpoint"], { overshoot: 10 });
+});
+
+test("settings by hand are those that the controller has, on both sides of the proposal", () => {
+  assert.deepEqual(handKnobs(controller, units).map((knob) => knob.id), ["Kp", "Ti", "Td", "Tf"]);
+  const PI = { ...controller, Kp: -3, Td: 0, filter: { type: "none" } };
+  const [Kp, ...rest] = handKnobs(PI, units);
+  assert.deepEqual(rest.map((knob) => knob.id), ["Ti"]);
+  assert.ok(Kp!.lo < 0 && Kp!.hi < Kp!.lo, "further from 0 to the right");
+  assert.equal(handValue(withHand(controller, "Tf", 0.5), "Tf"), 0.5);
+  assert.equal(withHand(controller, "Tf", 0.5).filter!.type, "measurement_second_order");
+});
+
+test("steps go back and forth, a hundred of them, and a new one forgets what was undone", () => {
+  const at = (Ms: number): Point => ({ tune: { method: "robust", Ms }, hand: null });
+  let steps = firstStep(at(1.4));
+  steps = stepTo(steps, at(1.5));
+  assert.equal(stepTo(steps, at(1.5)), steps, "nothing moved");
+  steps = stepTo(steps, at(1.6));
+  steps = stepBack(steps);
+  assert.deepEqual(steps.now, at(1.5));
+  assert.deepEqual(stepForward(steps).now, at(1.6));
+  steps = stepTo(steps, at(2));
+  assert.equal(stepForward(steps), steps);
+  assert.deepEqual(stepBack(stepBack(steps)).now, at(1.4));
+  for (let index = 0; index < 150; index += 1) steps = stepTo(steps, at(1.1 + index / 1000));
+  assert.equal(steps.past.length, 100);
+});
+
+test("the address says where the sliders stand, and brings them back", () => {
+  const proposal: Point = { tune: { method: "robust", Ms: 1.4, Mt: 1.4 }, hand: null };
+  const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);
+  assert.deepEqual(valuesOf(proposal, proposal, knobs), {});
+  const turned: Point = {
+    tune: { method: "robust", Ms: 1.65, Mt: 1.65, filter: { Tf_over_Td: 0.3 }, setpoint: { overshoot: 12 } },
+    hand: null,
+  };
+  for (const point of [turned, { ...turned, hand: withHand(controller, "Kp", 2.5) }]) {
+    const values = valuesOf(point, proposal, knobs);
+    const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: 1, values }));
+    assert.ok(route.screen === "design");
+    assert.equal(route.entry, 1);
+    assert.deepEqual(pointOf(route.values ?? {}, proposal, controller, knobs), point);
+  }
+  assert.deepEqual(pointOf({ Ms: "nonsense", other: "3" }, proposal, controller, knobs), proposal);
+});
+
+test("the front has the design as a point that can be taken, today's settings, and the rules by name", () => {
+  const point = (Ms: number, IAE: number) => ({
+    Ms,
+    controller,
+    load_IAE: IAE,
+    overshoot_percent: 5,
+    Mks: 10,
+    achieved: { Ms, Mt: Ms },
+  });
+  const front = { points: [point(1.2, 20), point(2, 5)], infeasible_below: null };
+  const judged = (method: string, IAE: number): Entry => entryOf(method, { performance: { load: { IAE } } });
+  const shown = {
+    PID: front,
+    PI: null,
+    here: { entry: judged("robust", 12), at: 1.5 as number | null },
+    today: judged("baseline", 33),
+    rules: [judged("simc", 15), { method: "amigo", error: { detail: "no" } }],
+    load: 2,
+  };
+  const { panes } = frontFrame(shown, units);
+  assert.deepEqual(panes[0]!.traces[0]!.y, [40, 10], "fronts are of unit steps");
+  const marks = panes[0]!.marks!.filter((mark) => mark.kind === "point");
+  assert.deepEqual(marks.map((mark) => [mark.label, mark.x, mark.quiet ?? false, mark.handle ?? false]), [
+    ["simc", 1.4, true, false],
+    ["today", 1.4, false, false],
+    ["", 1.5, false, true],
+  ]);
+  const byHand = frontFrame({ ...shown, here: { ...shown.here, at: null } }, units).panes[0]!.marks!.at(-1)!;
+  assert.ok(byHand.kind === "point" && !byHand.handle, "settings by hand are no point of the front");
+});

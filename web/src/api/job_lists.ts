@@ -1,0 +1,113 @@
+// Lists of jobs, and batches: many jobs that were posted at once.
+import { call, getText } from "./client.ts";
+import type { TextFile } from "./client.ts";
+import { getJob } from "./jobs.ts";
+import type { JobStatus, Plant, TuningRequest, Units } from "./types.ts";
+import { isFinal } from "./types.ts";
+
+interface JobFigures {
+  Ms?: number | null;
+  load_IAE?: number | null;
+}
+
+/** What an ended job was about, and what came out. */
+export interface Outline extends JobFigures {
+  plant?: Plant;
+  /** The plant was found in a record. */
+  record?: boolean;
+  units?: Units;
+  /** How many controllers. */
+  entries?: number;
+  /** Of the best one, which the figures belong to. */
+  method?: string;
+  worst_Ms?: number | null;
+  excess_percent?: number | null;
+  today?: JobFigures;
+  error?: string;
+}
+
+export interface ListedJob {
+  id: string;
+  name: string | null;
+  status: JobStatus;
+  created_at: string;
+  batch?: string;
+  index?: number;
+  outline?: Outline;
+}
+
+export interface JobList {
+  jobs: ListedJob[];
+  /** The address of the next page. */
+  next: string | null;
+}
+
+export interface Batch {
+  id: string;
+  name: string | null;
+  status: "receiving" | "queued" | "running" | "ended";
+  total: number;
+  counts: Record<JobStatus, number>;
+  created_at: string;
+}
+
+const PAGE = 200;
+const batchPath = (id: string): string => `v1/batches/${encodeURIComponent(id)}`;
+
+export const hasEnded = (batch: Batch): boolean => batch.status === "ended";
+
+/** The first page of the newest jobs that have this text in their name, id or method; "" is every job. */
+export async function listJobs(text: string): Promise<JobList> {
+  const q = text === "" ? "" : `&q=${encodeURIComponent(text)}`;
+  return (await call("GET", `v1/jobs?limit=50${q}`)).data as JobList;
+}
+
+export const nextJobs = async (address: string): Promise<JobList> => (await call("GET", address)).data as JobList;
+
+export async function listBatches(): Promise<Batch[]> {
+  return ((await call("GET", "v1/batches?limit=20")).data as { batches: Batch[] }).batches;
+}
+
+export const getBatch = async (id: string): Promise<Batch> => (await call("GET", batchPath(id))).data as Batch;
+
+/** Its jobs in their order, at most so many. */
+export async function jobsOfBatch(id: string, most: number): Promise<ListedJob[]> {
+  const found: ListedJob[] = [];
+  let address: string | null = `v1/jobs?batch=${encodeURIComponent(id)}&limit=${PAGE}`;
+  while (address !== null && found.length < most) {
+    const page: JobList = await nextJobs(address);
+    found.push(...page.jobs);
+    address = page.next;
+  }
+  return found.reverse();
+}
+
+export async function cancelBatch(id: string): Promise<void> {
+  await call("POST", `${batchPath(id)}/cancel`);
+}
+
+/** One that has ended, with its jobs. */
+export async function deleteBatch(id: string): Promise<void> {
+  await call("DELETE", batchPath(id));
+}
+
+export const batchCsv = (id: string): Promise<TextFile> => getText(`${batchPath(id)}/results?format=csv`);
+
+/** A CSV with a loop a line. `options`: of the method, and the batch's name. */
+export async function postLoops(file: Blob, options: Record<string, string>): Promise<Batch> {
+  const query = new URLSearchParams(options).toString();
+  return (await call("POST", `v1/batches?${query}`, file, { "Content-Type": "text/csv" })).data as Batch;
+}
+
+/** The jobs of a batch that failed or were cancelled, as a batch of their own; those without a request cannot run. */
+export async function postAgain(batch: Batch, rows: ListedJob[]): Promise<Batch | null> {
+  const requests: TuningRequest[] = [];
+  for (const row of rows) {
+    if (!isFinal(row.status) || row.status === "succeeded") continue;
+    const request = (await getJob(row.id)).request;
+    if (request) requests.push(request);
+  }
+  if (requests.length === 0) return null;
+  const name = batch.name ? { name: batch.name } : {};
+  return (await call("POST", "v1/batches", { ...name, jobs: requests })).data as Batch;
+}

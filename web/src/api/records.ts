@@ -1,0 +1,66 @@
+// What a file of a recorded test is read as: the service tells it before anything is computed.
+import { call } from "./client.ts";
+import type { FieldError, RecordedTest } from "./types.ts";
+
+export interface PreviewColumn {
+  heading: string;
+  guess: "t" | "u" | "y" | "r" | "-";
+  confidence: number;
+  unit: string;
+  first: string;
+  min?: number;
+  max?: number;
+  thumbnail: number[];
+}
+
+export interface Preview {
+  columns: PreviewColumn[];
+  rows: number;
+  separator: string;
+  decimal: string;
+  encoding: string;
+  time?: {
+    unit: string;
+    assumed: boolean;
+    from: number;
+    to: number;
+    dt: number;
+    gaps: number;
+    duplicates: number;
+  };
+  skipped: { line: number; reason: string }[];
+  skipped_lines: number;
+  notes: string[];
+  problems: FieldError[];
+}
+
+/** The problems' pointers are those of a request with a record. */
+const previewed = (data: unknown): Preview => {
+  const preview = data as Preview;
+  return {
+    ...preview,
+    problems: preview.problems.map(({ pointer, detail }) => ({ pointer: `/record/${pointer}`, detail })),
+  };
+};
+
+export interface FileRead {
+  /** In the encoding that the service found. */
+  text: string;
+  preview: Preview;
+}
+
+/** The file goes as it is: its encoding is the service's to find. */
+export async function previewFile(file: Blob): Promise<FileRead> {
+  const [{ data }, bytes] = await Promise.all([
+    call("POST", "v1/records/preview", file, { "Content-Type": "text/csv" }),
+    file.arrayBuffer(),
+  ]);
+  const preview = previewed(data);
+  return { text: new TextDecoder(preview.encoding).decode(bytes), preview };
+}
+
+/** A record's text with what was chosen of it. */
+export async function previewRecord({ csv, columns, dt, time_unit }: RecordedTest): Promise<Preview> {
+  const request = { csv, ...(columns ? { columns } : {}), ...(dt ? { dt } : {}), ...(time_unit ? { time_unit } : {}) };
+  return previewed((await call("POST", "v1/records/preview", request)).data);
+}

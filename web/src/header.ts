@@ -1,0 +1,46 @@
+// The head of every screen: where one can go, and the colours.
+import { h } from "./dom.ts";
+import { addressOfJob, showsJob } from "./routes.ts";
+import type { Route } from "./routes.ts";
+import { shown } from "./store.ts";
+import type { Store } from "./store.ts";
+import { themeButton } from "./theme.ts";
+
+/** Marks the screen that is shown, and leads to those of the last job that was. */
+export function header(store: Store): HTMLElement {
+  const links = {
+    start: h("a", { href: "#/" }, "Start"),
+    identify: h("a", { href: "#/identify" }, "Identify"),
+    relay: h("a", { href: "#/relay" }, "Relay test"),
+    design: h("a", { href: "#/", hidden: true }, "Design"),
+    compare: h("a", { href: "#/", hidden: true }, "Compare"),
+    jobs: h("a", { href: "#/jobs" }, "Jobs"),
+    methods: h("a", { href: "#/methods" }, "Methods"),
+  };
+  const route = store.pick((workspace) => workspace.route);
+  shown(() => route.value, mark);
+
+  function mark(current: Route): void {
+    for (const [screen, link] of Object.entries(links)) {
+      const here =
+        current.screen === screen ||
+        (screen === "jobs" && current.screen === "batch") ||
+        (screen === "start" && current.screen !== "batch" && !(current.screen in links));
+      if (here) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+    }
+    if (!showsJob(current)) return;
+    for (const screen of ["design", "compare"] as const) {
+      links[screen].href = addressOfJob(current.job, screen);
+      links[screen].hidden = false;
+    }
+  }
+
+  return h(
+    "header",
+    { class: "top" },
+    h("a", { class: "brand", href: "#/" }, "Tunewright"),
+    h("nav", { "aria-label": "Screens" }, Object.values(links)),
+    h("div", { class: "tools" }, h("a", { href: "openapi.json" }, "API"), themeButton()),
+  );
+}

@@ -1,0 +1,80 @@
+// The job that the page follows: started, shown, replaced by another one in its place.
+import { postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { isFinal } from "./api/types.ts";
+import type { Job, TuningRequest } from "./api/types.ts";
+import { byAllMethods } from "./form/tuning_request.ts";
+import { addressOfJob, formatRoute, showsJob } from "./routes.ts";
+import type { JobScreen, Route } from "./routes.ts";
+import type { Store } from "./store.ts";
+
+export interface JobFlow {
+  /** Shows a job on that screen. */
+  open(job: Job, screen?: JobScreen): void;
+  /** A job of this request, shown as soon as it is accepted. */
+  tune(request: TuningRequest): Promise<void>;
+  /** Every method on what this request is about. */
+  compareAll(request: TuningRequest): Promise<void>;
+  /** A job in the place of the one that is shown: the screen stays, Back leads where it led before. Throws where the entry of that index gets no answer. */
+  retune(request: TuningRequest, index: number): Promise<void>;
+  /** Reports what becomes of a job until it has ended or another one is followed. */
+  follow(id: string): void;
+  take(job: Job): void;
+  stop(): void;
+}
+
+const LONGEST_WAIT_S = 20;
+
+export function jobFlow(store: Store): JobFlow {
+  let stopWatching: (() => void) | null = null;
+
+  function open(job: Job, screen: JobScreen = "design"): void {
+    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
+    location.hash = addressOfJob(job.id, screen);
+  }
+
+  async function retune(request: TuningRequest, index: number): Promise<void> {
+    const from = store.get().route;
+    const job = await postJobAndWait(request, LONGEST_WAIT_S);
+    const failure = job.error ?? job.result?.controllers[index]?.error;
+    if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
+    if (store.get().route !== from || from.screen !== "design") return;
+    const { values: _turned, ...kept } = from;
+    const route: Route = { ...kept, job: job.id };
+    store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
+    history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));
+    if (!isFinal(job.status)) follow(job.id);
+  }
+
+  function follow(id: string): void {
+    stop();
+    stopWatching = watchJob(id, {
+      onJob: take,
+      onTrouble: (sentence) => store.set((workspace) => ({ ...workspace, jobTrouble: sentence })),
+    });
+  }
+
+  function take(job: Job): void {
+    store.set((workspace) =>
+      showsJob(workspace.route) && workspace.route.job === job.id ? { ...workspace, job, jobTrouble: "" } : workspace,
+    );
+  }
+
+  function stop(): void {
+    stopWatching?.();
+    stopWatching = null;
+  }
+
+  return {
+    open,
+    async tune(request) {
+      open(await postJob(request));
+    },
+    async compareAll(request) {
+      open(await postJob(byAllMethods(request)), "compare");
+    },
+    retune,
+    follow,
+    take,
+    stop,
+  };
+}

@@ -1,0 +1,88 @@
+// Answers to where a slider may go next, asked for while nothing else is: they are drawn in the frame of the move itself.
+
+export interface Ahead<Question, Answer> {
+  /** The answer that is at hand. */
+  known(question: Question): Answer | undefined;
+  keep(question: Question, answer: Answer): void;
+  /** Where it may go, the likeliest first; what was wanted before is not any more. */
+  towards(questions: Iterable<Question>): void;
+  /** Nothing else is asked at the moment. */
+  resume(): void;
+  /** The questions mean something else from now on. */
+  drop(): void;
+}
+
+/** One at the service, one on its way: what is really asked never waits for more. */
+const UNDER_WAY = 2;
+/** Two long sliders in whole. */
+const MOST_KEPT = 700;
+
+/** `work` as for a question that is really asked; `busy`: such a question is under way, and comes first. */
+export function ahead<Question, Answer>(
+  work: (question: Question, signal: AbortSignal) => Promise<Answer>,
+  busy: () => boolean,
+): Ahead<Question, Answer> {
+  const answers = new Map<string, Answer>();
+  const asked = new Set<string>();
+  let wanted: Iterator<Question> | null = null;
+  let running = 0;
+  let calls = new AbortController();
+
+  function keep(question: Question, answer: Answer): void {
+    answers.set(JSON.stringify(question), answer);
+    if (answers.size > MOST_KEPT) answers.delete(answers.keys().next().value!);
+  }
+
+  function next(): Question | null {
+    for (let step = wanted?.next(); step && !step.done; step = wanted?.next()) {
+      const key = JSON.stringify(step.value);
+      if (!answers.has(key) && !asked.has(key)) return step.value;
+    }
+    wanted = null;
+    return null;
+  }
+
+  function resume(): void {
+    while (running < UNDER_WAY && !busy()) {
+      const question = next();
+      if (question === null) return;
+      void ask(question);
+    }
+  }
+
+  async function ask(question: Question): Promise<void> {
+    const mine = calls;
+    const key = JSON.stringify(question);
+    asked.add(key);
+    running += 1;
+    try {
+      const answer = await work(question, mine.signal);
+      if (mine === calls) keep(question, answer);
+    } catch {
+      // Too many questions, or no connection: the hand does not need these answers.
+      if (mine === calls) wanted = null;
+    }
+    if (mine !== calls) return;
+    asked.delete(key);
+    running -= 1;
+    resume();
+  }
+
+  return {
+    known: (question) => answers.get(JSON.stringify(question)),
+    keep,
+    towards(questions) {
+      wanted = questions[Symbol.iterator]();
+      resume();
+    },
+    resume,
+    drop() {
+      calls.abort();
+      calls = new AbortController();
+      answers.clear();
+      asked.clear();
+      wanted = null;
+      running = 0;
+    },
+  };
+}

@@ -1,0 +1,218 @@
+// The design that moves: what was turned last, the newest answer to it, and how it is asked. No element of the page.
+import { batch, computed, signal } from "@preact/signals-core";
+import type { ReadonlySignal } from "@preact/signals-core";
+import { ApiError } from "../api/client.ts";
+import { latest } from "../api/latest.ts";
+import { designOf, entriesOf } from "../api/live.ts";
+import type { LiveSubject } from "../api/live.ts";
+import type { Entry } from "../api/types.ts";
+import { ahead } from "./ahead.ts";
+import { firstStep, samePoint, stepBack, stepForward, stepTo } from "./point.ts";
+import type { Point, Steps } from "./point.ts";
+
+/** What the sliders start from: an entry of a job. */
+export interface Proposal {
+  subject: LiveSubject;
+  point: Point;
+  entry: Entry;
+}
+
+export interface Answer {
+  point: Point;
+  entry: Entry;
+  /** Today's settings under the same horizon. */
+  today: Entry | null;
+}
+
+export interface Live {
+  /** Where the sliders stand; null before there is a proposal. */
+  readonly point: ReadonlySignal<Point | null>;
+  /** The newest answer; null while the proposal itself is shown. */
+  readonly answer: ReadonlySignal<Answer | null>;
+  /** A slider or a mark is held. */
+  readonly held: ReadonlySignal<boolean>;
+  /** No answer has come for a while. */
+  readonly late: ReadonlySignal<boolean>;
+  /** Why there is no newer answer, or "". */
+  readonly trouble: ReadonlySignal<string>;
+  readonly canUndo: ReadonlySignal<boolean>;
+  readonly canRedo: ReadonlySignal<boolean>;
+  /** Starts from an entry; `at`: where the address says that the sliders stand. */
+  start(proposal: Proposal, at: Point): void;
+  /** While something is held. */
+  move(point: Point): void;
+  /** Where the hand may go next, the likeliest first. */
+  expect(points: Iterable<Point>): void;
+  /** It was let go, or a value typed: one step. */
+  settle(point: Point): void;
+  undo(): void;
+  redo(): void;
+  /** Back to the proposal. */
+  reset(): void;
+  /** Asks again at once. */
+  retry(): void;
+  dispose(): void;
+}
+
+const LATE_MS = 150;
+const RETRY_S = 2;
+
+interface Question {
+  point: Point;
+  held: boolean;
+}
+
+/** `onSettled`: a step was made, forth, back or to the proposal. */
+export function liveDesign(onSettled: (point: Point) => void): Live {
+  const proposal = signal<Proposal | null>(null);
+  const steps = signal<Steps | null>(null);
+  const point = signal<Point | null>(null);
+  const answer = signal<Answer | null>(null);
+  const held = signal(false);
+  const late = signal(false);
+  const trouble = signal("");
+  let lateTimer: ReturnType<typeof setTimeout> | undefined;
+  let retryTimer: ReturnType<typeof setTimeout> | undefined;
+
+  const work = ({ point: asked, held: coarse }: Question, abort: AbortSignal): Promise<Entry[]> => {
+    const { subject } = proposal.peek()!;
+    return asked.hand ? entriesOf(subject, asked.hand, coarse, abort) : designOf(subject, asked.tune!, coarse, abort);
+  };
+  let underWay = false;
+  const next = ahead<Point, Entry[]>((asked, abort) => work({ point: asked, held: true }, abort), () => underWay);
+  const calls = latest<Question, Entry[]>(
+    work,
+    {
+      onBusy: (busy) => {
+        underWay = busy;
+        if (busy) return;
+        expectNothing();
+        next.resume();
+      },
+      onAnswer(entries, question) {
+        const [entry, today] = entries;
+        if (question.held) next.keep(question.point, entries);
+        expectNothing();
+        if (!samePoint(question.point, point.peek()!)) expectSoon();
+        batch(() => {
+          trouble.value = entry?.error?.detail ?? "";
+          if (entry && !entry.error) answer.value = { point: question.point, entry: named(entry, question.point), today: today ?? null };
+        });
+      },
+      onError: fail,
+    },
+  );
+
+  /** Settings by hand keep the name of what they were moved from. */
+  function named(entry: Entry, asked: Point): Entry {
+    const from = proposal.peek()!.entry;
+    return asked.hand ? { ...entry, method: from.method, options: {}, title: `${from.title ?? from.method}, by hand` } : entry;
+  }
+
+  function fail(error: unknown): void {
+    expectNothing();
+    const busy = error instanceof ApiError && (error.status === 429 || error.status === 0 || error.status === 503);
+    const wait = (error instanceof ApiError ? error.retryAfter : null) ?? RETRY_S;
+    const sentence = error instanceof ApiError ? (error.problem.errors?.[0]?.detail ?? error.message) : String(error);
+    trouble.value = busy ? `${sentence} The last plots stay; trying again in ${wait} s.` : sentence;
+    clearTimeout(retryTimer);
+    if (busy) retryTimer = setTimeout(() => retry(), wait * 1000);
+  }
+
+  function expectSoon(): void {
+    lateTimer ??= setTimeout(() => (late.value = true), LATE_MS);
+  }
+
+  function expectNothing(): void {
+    clearTimeout(lateTimer);
+    lateTimer = undefined;
+    late.value = false;
+  }
+
+  function ask(question: Question): void {
+    clearTimeout(retryTimer);
+    const start = proposal.peek()!;
+    if (!question.held && samePoint(question.point, start.point)) {
+      calls.drop();
+      expectNothing();
+      batch(() => {
+        answer.value = null;
+        trouble.value = "";
+      });
+      return;
+    }
+    const known = question.held ? next.known(question.point) : undefined;
+    if (known) return calls.give(known, question);
+    expectSoon();
+    calls.send(question);
+  }
+
+  function retry(): void {
+    if (point.peek()) ask({ point: point.peek()!, held: held.peek() });
+  }
+
+  function go(to: Steps): void {
+    if (to === steps.peek()) return;
+    batch(() => {
+      held.value = false;
+      steps.value = to;
+      point.value = to.now;
+    });
+    ask({ point: to.now, held: false });
+    onSettled(to.now);
+  }
+
+  return {
+    point,
+    answer,
+    held,
+    late,
+    trouble,
+    canUndo: computed(() => (steps.value?.past.length ?? 0) > 0),
+    canRedo: computed(() => (steps.value?.future.length ?? 0) > 0),
+    start(from, at) {
+      calls.drop();
+      next.drop();
+      clearTimeout(retryTimer);
+      expectNothing();
+      batch(() => {
+        proposal.value = from;
+        steps.value = firstStep(at);
+        point.value = at;
+        answer.value = null;
+        held.value = false;
+        trouble.value = "";
+      });
+      if (!samePoint(at, from.point)) ask({ point: at, held: false });
+    },
+    move(to) {
+      batch(() => {
+        held.value = true;
+        point.value = to;
+      });
+      ask({ point: to, held: true });
+    },
+    expect: next.towards,
+    settle(to) {
+      next.towards([]);
+      const before = steps.peek();
+      if (!before) return;
+      if (samePoint(before.now, to)) {
+        held.value = false;
+        ask({ point: to, held: false });
+      } else go(stepTo(before, to));
+    },
+    undo: () => steps.peek() && go(stepBack(steps.peek()!)),
+    redo: () => steps.peek() && go(stepForward(steps.peek()!)),
+    reset() {
+      if (steps.peek() && proposal.peek()) go(stepTo(steps.peek()!, proposal.peek()!.point));
+    },
+    retry,
+    dispose() {
+      calls.drop();
+      next.drop();
+      expectNothing();
+      clearTimeout(retryTimer);
+    },
+  };
+}

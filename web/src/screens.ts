@@ -1,0 +1,236 @@
+// Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
+import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
+import type { Batch } from "./api/job_lists.ts";
+import type { FieldError, IdentifyRequest } from "./api/types.ts";
+import type { TuneSubject } from "./form/tuning_request.ts";
+import type { JobFlow } from "./job_flow.ts";
+import { formatRoute, parseRoute, showsJob } from "./routes.ts";
+import type { JobRoute, Route } from "./routes.ts";
+import type { Store } from "./store.ts";
+import { batchView } from "./views/batch.ts";
+import { compareView } from "./views/compare.ts";
+import { designView } from "./views/design.ts";
+import { identifyView, noRecordView } from "./views/identify.ts";
+import { jobsView } from "./views/jobs.ts";
+import { methodsView } from "./views/methods.ts";
+import { relayView } from "./views/relay.ts";
+import type { RelayView } from "./views/relay.ts";
+import { startView } from "./views/start.ts";
+import type { StartView, View } from "./views/start.ts";
+
+export interface Screens {
+  /** Shows what the address names. `first`: nothing was shown before, and the focus stays where it is. */
+  go(first: boolean): void;
+  focusHeading(): void;
+}
+
+/** `listed`: when methods and examples are known. */
+export function screens(
+  store: Store,
+  flow: JobFlow,
+  stage: HTMLElement,
+  announce: (sentence: string) => void,
+  listed: Promise<void>,
+): Screens {
+  let view: View | null = null;
+  let start: StartView | null = null;
+  let relay: RelayView | null = null;
+
+  function mount(next: View, title: string, focus: boolean): void {
+    if (view !== next) {
+      if (view && view !== start && view !== relay) view.dispose();
+      view = next;
+      stage.replaceChildren(next.element);
+      window.scrollTo(0, 0);
+      if (focus) next.heading.focus();
+    }
+    document.title = title;
+  }
+
+  /** The start screen is kept: what was typed is still there when one comes back. */
+  function startScreen(): StartView {
+    start ??= startView(store, {
+      onJob: (job, all) => flow.open(job, all ? "compare" : "design"),
+      onRecord: openRecord,
+      onRelay(form, values) {
+        location.hash = formatRoute({ screen: "relay", plant: form, values });
+      },
+      onModel(form, values) {
+        history.replaceState(null, "", formatRoute({ screen: "new", plant: form, values }));
+      },
+    });
+    return start;
+  }
+
+  /** Kept too, with what was typed. */
+  function relayScreen(): RelayView {
+    relay ??= relayView(announce, {
+      units: () => startScreen().units(),
+      onIdentify: openRecord,
+      onPlant(form, values) {
+        history.replaceState(null, "", formatRoute({ screen: "relay", plant: form, values }));
+      },
+    });
+    return relay;
+  }
+
+  function openRecord(test: IdentifyRequest): void {
+    store.set((workspace) => ({ ...workspace, test }));
+    const address = formatRoute({ screen: "identify", job: null });
+    if (location.hash === address) go(false);
+    else location.hash = address;
+  }
+
+  /** What Identify found goes to the tuner with the methods and settings that stand on Start. */
+  async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
+    const { request, faults } = startScreen().compose(subject, all);
+    if (faults.length > 0) return faults;
+    flow.open(await postJob(request), all ? "compare" : "design");
+    return [];
+  }
+
+  function identifyScreen(test: IdentifyRequest, region = false): View {
+    return identifyView(test, { methods: startScreen().methods(), region }, announce, {
+      onChange(changed) {
+        store.set((workspace) => ({ ...workspace, test: changed }));
+        startScreen().loadRecord(changed.record, changed.identify);
+      },
+      onTune: tuneSubject,
+    });
+  }
+
+  /** A job's record, with the methods and settings of its request. */
+  async function openJobRecord(id: string, focus: boolean): Promise<void> {
+    try {
+      const known = store.get().job;
+      const job = known?.id === id && known.request ? known : await getJob(id);
+      const { name, units, record, identify } = job.request ?? {};
+      const route = store.get().route;
+      if (route.screen !== "identify" || route.job !== id) return;
+      if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
+      startScreen().load(job.request);
+      const test: IdentifyRequest = {
+        ...(name ? { name } : {}),
+        ...(units ? { units } : {}),
+        record,
+        ...(identify ? { identify } : {}),
+      };
+      store.set((workspace) => ({ ...workspace, test }));
+      mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
+    } catch (error) {
+      mount(noRecordView(error instanceof Error ? error.message : String(error)), "Identify · Tunewright", focus);
+    }
+  }
+
+  async function refreshRecent(): Promise<void> {
+    try {
+      const recent = await getRecentJobs(6);
+      store.set((workspace) => ({ ...workspace, recent }));
+    } catch {
+      // The list is a convenience: without it the page works as before.
+    }
+  }
+
+  async function loadForm(route: Route): Promise<void> {
+    const form = startScreen();
+    if (route.screen === "new") form.loadTyped(route.plant, route.values);
+    try {
+      if (route.screen === "edit") {
+        const known = store.get().job;
+        const job = known?.id === route.job && known.request ? known : await getJob(route.job);
+        if (job.request) form.load(job.request);
+      }
+      if (route.screen === "example") {
+        await listed;
+        const example = store.get().examples.find((candidate) => candidate.id === route.id);
+        if (example) form.load(example.request);
+        else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
+      }
+    } catch (error) {
+      store.set((workspace) => ({
+        ...workspace,
+        serviceTrouble: error instanceof Error ? error.message : String(error),
+      }));
+    }
+  }
+
+  /** What is typed or sorted there goes into the address, but is no step of its own. */
+  function listScreen(route: Extract<Route, { screen: "jobs" | "batch" }>): View {
+    const rename = (next: Route): void => history.replaceState(null, "", formatRoute(next));
+    const onBatch = (batch: Batch): void => {
+      location.hash = formatRoute({ screen: "batch", id: batch.id, sort: "" });
+    };
+    if (route.screen === "batch")
+      return batchView(route.id, route.sort, announce, { onBatch, onSort: (sort) => rename({ ...route, sort }) });
+    const onSearch = (text: string): void => rename({ ...route, text });
+    return jobsView(store, route.text, announce, { onBatch, onSearch, onJob: (job) => flow.open(job) });
+  }
+
+  function openJobScreen(route: JobRoute, focus: boolean): void {
+    const before = store.get();
+    const same = before.job?.id === route.job;
+    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "" };
+    store.set((workspace) => ({
+      ...workspace,
+      job: kept.job,
+      jobTrouble: "",
+      selected: (route.screen === "design" ? route.entry : null) ?? kept.selected,
+      drawn: (route.screen === "compare" ? route.rows : null) ?? kept.drawn,
+      sort: route.screen === "compare" ? route.sort : kept.sort,
+    }));
+    if (route.screen === "design") {
+      const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
+      mount(designView(store, announce, events), "Design · Tunewright", focus);
+    } else {
+      mount(compareView(store, announce, { onJob: flow.take, onCompareAll: flow.compareAll }), "Compare · Tunewright", focus);
+    }
+    flow.follow(route.job);
+  }
+
+  function go(first: boolean): void {
+    const route = parseRoute(location.hash);
+    const before = store.get();
+    store.set((workspace) => ({ ...workspace, route }));
+    if (showsJob(route)) return openJobScreen(route, !first);
+    flow.stop();
+    if (route.screen === "identify") {
+      if (route.job !== null) return void openJobRecord(route.job, !first);
+      const test = before.test;
+      mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
+      return;
+    }
+    if (route.screen === "relay") {
+      const screen = relayScreen();
+      mount(screen, "Relay test · Tunewright", !first);
+      screen.open(route.plant, route.values);
+      return;
+    }
+    if (route.screen === "methods") {
+      mount(methodsView(store, route.id), "Methods · Tunewright", !first);
+      return;
+    }
+    if (route.screen === "jobs" || route.screen === "batch") return mount(listScreen(route), "Jobs · Tunewright", !first);
+    mount(startScreen(), "Tunewright", !first);
+    void loadForm(route);
+    void refreshRecent();
+  }
+
+  // The address follows what is chosen, and the title the loop's name.
+  store.subscribe((workspace, previous) => {
+    const route = workspace.route;
+    if (!showsJob(route)) return;
+    const { selected, drawn, sort } = workspace;
+    const changed = selected !== previous.selected || drawn !== previous.drawn || sort !== previous.sort;
+    if (changed && workspace.job?.id === previous.job?.id)
+      history.replaceState(
+        null,
+        "",
+        formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn }),
+      );
+    const name = workspace.job?.name || workspace.job?.request?.name;
+    const screen = route.screen === "design" ? "Design" : "Compare";
+    document.title = name ? `${name} · ${screen} · Tunewright` : `${screen} · Tunewright`;
+  });
+
+  return { go, focusHeading: () => view?.heading.focus() };
+}

@@ -1,0 +1,222 @@
+// A batch: how far it is, and a line for each of its loops, in the order of what should be looked at first.
+import { batchCsv, cancelBatch, getBatch, hasEnded, jobsOfBatch, postAgain } from "../api/job_lists.ts";
+import type { Batch, ListedJob } from "../api/job_lists.ts";
+import { h } from "../dom.ts";
+import { download } from "../plot/export.ts";
+import { formatRoute } from "../routes.ts";
+import { BATCH_COLUMNS, sorted } from "../words/job_list.ts";
+import type { BatchColumn } from "../words/job_list.ts";
+import { orderOf, sortText } from "../words/league.ts";
+import type { View } from "./start.ts";
+
+export interface BatchEvents {
+  /** Its loops stand in another order: a column's id, with a minus where it falls. */
+  onSort(sort: string): void;
+  onBatch(batch: Batch): void;
+}
+
+const LOOK_AGAIN_MS = 1000;
+/** So many loops are listed; the CSV has all of them. */
+const MOST_LISTED = 2000;
+/** A batch of more loops is read again only when it has ended. */
+const MOST_FOLLOWED = 400;
+const WORDS = ["name", "plant", "method", "status"];
+
+export function batchView(id: string, sort: string, announce: (sentence: string) => void, events: BatchEvents): View {
+  let disposed = false;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let batch: Batch | null = null;
+  let jobs: ListedJob[] = [];
+  let readAt = -1;
+  let order = orderOf(sort || "index");
+  const heading = h("h1", { tabindex: -1 }, "Batch");
+  const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
+  const counts = h("p", { role: "status" });
+  const bar = h("progress", { max: 1, "aria-label": "Loops done" });
+  const cancel = h("button", { type: "button", onclick: () => void work(() => cancelBatch(id)) }, "Cancel the rest");
+  const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Try the failed again");
+  const csv = h("button", { type: "button", onclick: () => void work(saveCsv) }, "Download CSV");
+  const note = h("p", { class: "hint", hidden: true });
+  const heads = BATCH_COLUMNS.map((column) => {
+    const button = h("button", { type: "button", class: "quiet", onclick: () => sortBy(column) }, column.label);
+    return { column, element: h("th", { scope: "col" }, button) };
+  });
+  const rows = h("tbody");
+  const table = h(
+    "div",
+    { class: "scroll", role: "region", "aria-label": "Loops of the batch", tabindex: 0 },
+    h(
+      "table",
+      { class: "figures job-list" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          heads.map((head) => head.element),
+        ),
+      ),
+      rows,
+    ),
+  );
+  const element = h(
+    "main",
+    { class: "jobs", id: "main" },
+    heading,
+    trouble,
+    h(
+      "section",
+      { class: "card", "aria-label": "Progress" },
+      counts,
+      bar,
+      h(
+        "p",
+        { class: "actions" },
+        csv,
+        cancel,
+        again,
+        h("a", { href: formatRoute({ screen: "jobs", text: "" }) }, "All jobs"),
+      ),
+    ),
+    h(
+      "section",
+      { class: "card", "aria-label": "Loops" },
+      h(
+        "p",
+        { class: "actions" },
+        "First:",
+        shortcut("gain", "Greatest gain over today"),
+        shortcut("risk", "Greatest risk"),
+        shortcut("excess", "Farthest above the optimum"),
+      ),
+      note,
+      table,
+    ),
+  );
+
+  function shortcut(column: string, label: string): HTMLButtonElement {
+    return h("button", { type: "button", class: "quiet", onclick: () => put({ column, falling: true }) }, label);
+  }
+
+  async function work(act: () => Promise<void>): Promise<void> {
+    trouble.hidden = true;
+    await act().catch(complain);
+    if (!disposed) await refresh();
+  }
+
+  function complain(error: unknown): void {
+    trouble.textContent = error instanceof Error ? error.message : String(error);
+    trouble.hidden = false;
+  }
+
+  async function saveCsv(): Promise<void> {
+    const file = await batchCsv(id);
+    download(new Blob([file.text], { type: "text/csv" }), file.name || `batch-${id}.csv`);
+  }
+
+  async function tryAgain(): Promise<void> {
+    const next = batch && (await postAgain(batch, jobs));
+    if (next) events.onBatch(next);
+    else
+      complain(
+        new Error(
+          "None of the loops that failed can run: their lines could not be read. Correct them in the file and send it again.",
+        ),
+      );
+  }
+
+  function sortBy(column: BatchColumn): void {
+    put({ column: column.id, falling: order.column === column.id ? !order.falling : (column.falls ?? false) });
+  }
+
+  function put(next: { column: string; falling: boolean }): void {
+    order = next;
+    events.onSort(sortText(order));
+    showRows();
+    const label = BATCH_COLUMNS.find((column) => column.id === order.column)?.label ?? "Loop";
+    announce(`Sorted by ${label}, ${order.falling ? "falling" : "rising"}.`);
+  }
+
+  function cell(job: ListedJob, column: BatchColumn): HTMLElement {
+    const text = column.text(job);
+    if (column.id === "name")
+      return h(
+        "th",
+        { scope: "row" },
+        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, text),
+      );
+    const error =
+      column.id === "status" && job.outline?.error ? h("span", { class: "hint job-error" }, job.outline.error) : null;
+    return h("td", { class: WORDS.includes(column.id) ? "words" : null }, text, error);
+  }
+
+  function showRows(): void {
+    for (const { column, element: head } of heads) {
+      if (column.id === order.column) head.setAttribute("aria-sort", order.falling ? "descending" : "ascending");
+      else head.removeAttribute("aria-sort");
+    }
+    const column = BATCH_COLUMNS.find((candidate) => candidate.id === order.column) ?? BATCH_COLUMNS[0]!;
+    rows.replaceChildren(
+      ...sorted(jobs, column, order.falling).map((job) =>
+        h(
+          "tr",
+          {},
+          BATCH_COLUMNS.map((one) => cell(job, one)),
+        ),
+      ),
+    );
+    note.hidden = !batch || batch.total <= jobs.length || jobs.length === 0;
+    note.textContent = `${jobs.length} of ${batch?.total ?? 0} loops are listed; the CSV has all of them.`;
+  }
+
+  function showHead(now: Batch): void {
+    const { succeeded, failed, cancelled, queued, running } = now.counts;
+    const parts = [
+      `${succeeded} tuned`,
+      failed && `${failed} failed`,
+      cancelled && `${cancelled} cancelled`,
+      running && `${running} running`,
+      queued && `${queued} waiting`,
+    ];
+    heading.textContent = now.name || `Batch ${now.id.slice(0, 8)}`;
+    document.title = `${heading.textContent} · Batch · Tunewright`;
+    const words = `${now.total} ${now.total === 1 ? "loop" : "loops"}: ${parts.filter(Boolean).join(", ")}`;
+    if (counts.textContent !== words) counts.textContent = words;
+    bar.value = now.total === 0 ? 0 : (succeeded + failed + cancelled) / now.total;
+    bar.hidden = hasEnded(now);
+    cancel.hidden = hasEnded(now);
+    again.hidden = !hasEnded(now) || failed + cancelled === 0;
+  }
+
+  async function refresh(): Promise<void> {
+    clearTimeout(timer);
+    try {
+      const now = await getBatch(id);
+      if (disposed) return;
+      batch = now;
+      showHead(now);
+      const done = now.counts.succeeded + now.counts.failed + now.counts.cancelled;
+      if (done !== readAt && (hasEnded(now) || now.total <= MOST_FOLLOWED)) {
+        const read = await jobsOfBatch(id, MOST_LISTED);
+        if (disposed) return;
+        jobs = read;
+        readAt = done;
+        showRows();
+      }
+      if (!hasEnded(now)) timer = setTimeout(() => void refresh(), LOOK_AGAIN_MS);
+    } catch (error) {
+      if (!disposed) complain(error);
+    }
+  }
+
+  void refresh();
+  return {
+    element,
+    heading,
+    dispose() {
+      disposed = true;
+      clearTimeout(timer);
+    },
+  };
+}

@@ -1,0 +1,131 @@
+// The front under the sliders: the design is a point on it that can be dragged.
+import { besideOf, frontOf } from "../../api/live.ts";
+import type { FrontTerms } from "../../api/live.ts";
+import type { Front } from "../../api/reports.ts";
+import type { Entry, Plant } from "../../api/types.ts";
+import { frontFrame } from "../../charts/front.ts";
+import { h } from "../../dom.ts";
+import { createPlot } from "../../plot/plot.ts";
+import type { Plot } from "../../plot/plot.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+
+/** What the curves belong to; others make them anew. */
+export interface FrontSubject {
+  plant: Plant;
+  /** Of the design, whose front there is for sure; null where it is no robust optimum, or one under other limits. */
+  kind: "PI" | "PID" | null;
+  terms: Omit<FrontTerms, "controller">;
+  load: number;
+  units: UnitNames;
+  /** Entries of the job, where there are several; else every rule is asked. */
+  entries: Entry[];
+}
+
+export interface FrontCard {
+  element: HTMLElement;
+  show(subject: FrontSubject): void;
+  /** Where the design is; `at`: the limit on Ms that it was made for. */
+  place(entry: Entry, at: number | null, today: Entry | null): void;
+  hold(held: boolean): void;
+  /** The lowest Ms that the plant allows, where that is known. */
+  lowest(): number | null;
+  dispose(): void;
+}
+
+/** From so many entries on a job's own are the rules to compare with. */
+const ENOUGH_ENTRIES = 6;
+
+export function frontCard(
+  announce: (sentence: string) => void,
+  onDrag: (Ms: number, released: boolean) => void,
+  onKnown: () => void,
+): FrontCard {
+  // Every rule is a search or a formula of its own: about as much work as everything else of this screen together.
+  const rulesButton = h("button", { type: "button", class: "quiet", onclick: () => void askRules() }, "Rules beside it");
+  const element = h("div", { class: "front" });
+  let plot: Plot | null = null;
+  let subject: FrontSubject | null = null;
+  let key = "";
+  let ruled = "";
+  let fronts: { PID: Front | null; PI: Front | null } = { PID: null, PI: null };
+  let rules: Entry[] = [];
+  let here: { entry: Entry; at: number | null; today: Entry | null } | null = null;
+  let calls = new AbortController();
+
+  function draw(): void {
+    if (!subject || !here) return;
+    const { entry, at, today } = here;
+    const frame = frontFrame({ ...fronts, here: { entry, at }, today, rules, load: subject.load }, subject.units);
+    if (plot) return plot.update(frame);
+    plot = createPlot(frame, announce, (x, _y, released) => onDrag(x, released));
+    element.append(plot.element);
+    plot.element.append(rulesButton);
+  }
+
+  /** Curves and rules come after the screen is there; without them the point stands alone. */
+  async function ask(next: FrontSubject, ending: AbortSignal): Promise<void> {
+    const take = (controller: "PI" | "PID", front: Front | null): void => {
+      if (ending.aborted) return;
+      fronts = { ...fronts, [controller]: front };
+      draw();
+      onKnown();
+    };
+    const { kind, plant, terms } = next;
+    if (kind) take(kind, await frontOf(plant, { controller: kind, ...terms }, ending));
+    if (ending.aborted) return;
+    const others = (["PID", "PI"] as const).filter((controller) => controller !== kind);
+    const beside = await besideOf(
+      plant,
+      others.map((controller) => ({ controller, ...terms })),
+      false,
+    );
+    others.forEach((controller, index) => take(controller, beside.fronts[index] ?? null));
+  }
+
+  async function askRules(): Promise<void> {
+    const about = ruled;
+    if (!subject) return;
+    rulesButton.disabled = true;
+    try {
+      const beside = await besideOf(subject.plant, [], true);
+      if (about !== ruled) return;
+      rules = beside.rules;
+      rulesButton.hidden = true;
+      draw();
+    } finally {
+      rulesButton.disabled = false;
+    }
+  }
+
+  return {
+    element,
+    show(next) {
+      const now = JSON.stringify([next.plant, next.terms, next.kind]);
+      const about = JSON.stringify(next.plant);
+      subject = next;
+      if (now === key) return;
+      key = now;
+      calls.abort();
+      calls = new AbortController();
+      const own = next.entries.length >= ENOUGH_ENTRIES;
+      if (about !== ruled) {
+        fronts = { PID: null, PI: null };
+        rules = own ? next.entries : [];
+        rulesButton.hidden = own;
+      }
+      ruled = about;
+      // Without them the point stands alone: why there is no front is no news beside a design that is there.
+      ask(next, calls.signal).catch(() => undefined);
+    },
+    place(entry, at, today) {
+      here = { entry, at, today };
+      draw();
+    },
+    hold: (held) => plot?.hold(held),
+    lowest: () => (subject?.kind ? (fronts[subject.kind]?.infeasible_below ?? null) : null),
+    dispose() {
+      calls.abort();
+      plot?.dispose();
+    },
+  };
+}

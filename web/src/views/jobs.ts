@@ -1,0 +1,389 @@
+// Jobs: what the service keeps, to be found again, duplicated, tried again or deleted; batches, and a CSV of loops as one.
+import { ApiError } from "../api/client.ts";
+import { deleteBatch, hasEnded, listBatches, listJobs, nextJobs, postLoops } from "../api/job_lists.ts";
+import type { Batch, JobList, ListedJob } from "../api/job_lists.ts";
+import { cancelJob, deleteJob, getJob, postJob } from "../api/jobs.ts";
+import { isFinal } from "../api/types.ts";
+import type { Job } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { formatRoute } from "../routes.ts";
+import type { Store } from "../store.ts";
+import { age, methodWords, shortPlant } from "../words/job_list.ts";
+import { formatNumber } from "../words/numbers.ts";
+import type { View } from "./start.ts";
+
+export interface JobsEvents {
+  onJob(job: Job): void;
+  onBatch(batch: Batch): void;
+  /** The text that is searched for, for the address. */
+  onSearch(text: string): void;
+}
+
+const LOOK_AGAIN_MS = 1000;
+const SEARCH_WAIT_MS = 150;
+const COLUMNS = ["Name", "Plant", "Method", "Load IAE", "Ms", "Age", "Status"];
+
+/** A button that asks once: the first press asks, the second does it, leaving it takes the question back. */
+export function askingButton(label: string, spoken: string, sure: string, act: () => void): HTMLButtonElement {
+  let asked = false;
+  const button = h("button", { type: "button", class: "quiet", "aria-label": spoken, onclick: press }, label);
+  const back = (): void => {
+    asked = false;
+    button.textContent = label;
+    button.setAttribute("aria-label", spoken);
+    button.classList.remove("danger");
+  };
+  function press(): void {
+    if (asked) return act();
+    asked = true;
+    button.textContent = sure;
+    button.setAttribute("aria-label", `${sure}: ${spoken}`);
+    button.classList.add("danger");
+  }
+  button.addEventListener("blur", back);
+  button.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") back();
+  });
+  return button;
+}
+
+const nameOf = (job: ListedJob): string => job.name || `Job ${job.id.slice(0, 8)}`;
+
+export function jobsView(store: Store, text: string, announce: (sentence: string) => void, events: JobsEvents): View {
+  let disposed = false;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let next: string | null = null;
+  let further: ListedJob[] = [];
+  const heading = h("h1", { tabindex: -1 }, "Jobs");
+  const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
+  const search = h("input", {
+    type: "text",
+    value: text,
+    "aria-label": "Search jobs by name, method or id",
+    placeholder: "Name, method or id",
+  });
+  const found = h("p", { class: "hint", role: "status" });
+  const rows = h("tbody");
+  const table = h(
+    "div",
+    { class: "scroll", role: "region", "aria-label": "List of jobs", tabindex: 0 },
+    h(
+      "table",
+      { class: "figures job-list" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          COLUMNS.map((label) => h("th", { scope: "col" }, label)),
+          h("th", { scope: "col" }, "Actions"),
+        ),
+      ),
+      rows,
+    ),
+  );
+  const more = h("button", { type: "button", hidden: true, onclick: () => void showMore() }, "Older jobs");
+  const batchRows = h("ul", { class: "batch-list" });
+  const batches = h(
+    "section",
+    { class: "card", "aria-labelledby": "batches-title", hidden: true },
+    h("h2", { id: "batches-title" }, "Batches"),
+    batchRows,
+  );
+  const known = new Map<string, { text: string; element: HTMLTableRowElement }>();
+  const loops = loopsCard(store, announce, events.onBatch);
+  const element = h(
+    "main",
+    { class: "jobs", id: "main" },
+    heading,
+    trouble,
+    h(
+      "section",
+      { class: "card", "aria-label": "Jobs" },
+      h("div", { class: "job-search", role: "search" }, search, found),
+      table,
+      more,
+    ),
+    batches,
+    loops.element,
+  );
+
+  function complain(error: unknown): void {
+    trouble.textContent = error instanceof Error ? error.message : String(error);
+    trouble.hidden = false;
+  }
+
+  /** Does something to a job, then looks what the list is now. */
+  async function change(work: () => Promise<void>, done: string): Promise<void> {
+    trouble.hidden = true;
+    try {
+      await work();
+      announce(done);
+    } catch (error) {
+      complain(error);
+    }
+    await refresh();
+  }
+
+  async function again(job: ListedJob): Promise<void> {
+    const request = (await getJob(job.id)).request;
+    if (request) events.onJob(await postJob(request));
+  }
+
+  async function remove(job: ListedJob): Promise<void> {
+    await deleteJob(job.id);
+    further = further.filter((other) => other.id !== job.id);
+    search.focus();
+  }
+
+  function actions(job: ListedJob): HTMLElement[] {
+    const name = nameOf(job);
+    const list: HTMLElement[] = [
+      h("a", { href: formatRoute({ screen: "edit", job: job.id }), "aria-label": `Duplicate ${name}` }, "Duplicate"),
+    ];
+    const button = (label: string, work: () => Promise<void>, done: string): HTMLButtonElement =>
+      h(
+        "button",
+        { type: "button", class: "quiet", "aria-label": `${label} ${name}`, onclick: () => void change(work, done) },
+        label,
+      );
+    if (job.status === "failed" || job.status === "cancelled")
+      list.push(button("Try again", () => again(job), `${name} runs again.`));
+    if (isFinal(job.status))
+      list.push(
+        askingButton(
+          "Delete",
+          `Delete ${name}`,
+          "Delete for good",
+          () => void change(() => remove(job), `${name} is deleted.`),
+        ),
+      );
+    else list.push(button("Cancel", async () => void (await cancelJob(job.id)), `${name} is cancelled.`));
+    return list;
+  }
+
+  function rowOf(job: ListedJob): HTMLTableRowElement {
+    const outline = job.outline;
+    const error = outline?.error ? h("span", { class: "hint job-error" }, outline.error) : null;
+    return h(
+      "tr",
+      {},
+      h(
+        "th",
+        { scope: "row" },
+        h("a", { href: formatRoute({ screen: "design", job: job.id, entry: null }) }, nameOf(job)),
+      ),
+      h("td", { class: "words" }, shortPlant(outline)),
+      h("td", { class: "words" }, methodWords(outline)),
+      h("td", {}, formatNumber(outline?.load_IAE)),
+      h("td", {}, formatNumber(outline?.Ms)),
+      h("td", {}, age(job.created_at, Date.now())),
+      h("td", { class: "words" }, job.status, error),
+      h("td", { class: "words" }, h("div", { class: "row-actions" }, actions(job))),
+    );
+  }
+
+  /** Rows that have not changed stay as they are, with the focus in them. */
+  function show(jobs: ListedJob[]): void {
+    const elements = jobs.map((job) => {
+      const words = JSON.stringify([job, age(job.created_at, Date.now())]);
+      const before = known.get(job.id);
+      if (before?.text === words) return before.element;
+      const made = rowOf(job);
+      known.set(job.id, { text: words, element: made });
+      return made;
+    });
+    const same = elements.length === rows.rows.length && elements.every((row, index) => row === rows.rows[index]);
+    if (!same) rows.replaceChildren(...elements);
+    table.hidden = jobs.length === 0;
+    more.hidden = next === null;
+    const words =
+      search.value.trim() === ""
+        ? "There is no job yet. Start has four ways to make one."
+        : `No job has "${search.value.trim()}" in its name, method or id.`;
+    found.textContent =
+      jobs.length === 0
+        ? words
+        : `${jobs.length}${next === null ? "" : " newest"} ${jobs.length === 1 ? "job" : "jobs"}`;
+  }
+
+  function showBatches(list: Batch[]): void {
+    batches.hidden = list.length === 0;
+    batchRows.replaceChildren(
+      ...list.map((batch) => {
+        const name = batch.name || `Batch ${batch.id.slice(0, 8)}`;
+        const failed = batch.counts.failed > 0 ? `, ${batch.counts.failed} failed` : "";
+        const ended = batch.counts.succeeded + batch.counts.failed + batch.counts.cancelled;
+        return h(
+          "li",
+          {},
+          h("a", { href: formatRoute({ screen: "batch", id: batch.id, sort: "" }) }, name),
+          h(
+            "span",
+            { class: "hint" },
+            `${ended} of ${batch.total} loops done${failed}, ${age(batch.created_at, Date.now())}`,
+          ),
+          hasEnded(batch)
+            ? askingButton(
+                "Delete",
+                `Delete ${name}`,
+                "Delete with all its jobs",
+                () => void change(() => deleteBatch(batch.id), `${name} is deleted.`),
+              )
+            : null,
+        );
+      }),
+    );
+  }
+
+  let shownBatches = "";
+  async function refresh(): Promise<void> {
+    clearTimeout(timer);
+    const asked = search.value.trim();
+    try {
+      const [page, list] = await Promise.all([listJobs(asked), listBatches()]);
+      if (disposed || asked !== search.value.trim()) return;
+      take(page);
+      const words = JSON.stringify(list);
+      if (words !== shownBatches) showBatches(list);
+      shownBatches = words;
+      const moving = page.jobs.some((job) => !isFinal(job.status)) || list.some((batch) => !hasEnded(batch));
+      if (moving) timer = setTimeout(() => void refresh(), LOOK_AGAIN_MS);
+    } catch (error) {
+      if (!disposed) complain(error);
+    }
+  }
+
+  function take(page: JobList): void {
+    const ids = new Set(page.jobs.map((job) => job.id));
+    further = further.filter((job) => !ids.has(job.id));
+    if (further.length === 0) next = page.next;
+    show([...page.jobs, ...further]);
+  }
+
+  async function showMore(): Promise<void> {
+    if (next === null) return;
+    const page = await nextJobs(next).catch(complain);
+    if (!page) return;
+    next = page.next;
+    further.push(...page.jobs);
+    await refresh();
+  }
+
+  search.addEventListener("input", () => {
+    clearTimeout(timer);
+    further = [];
+    events.onSearch(search.value.trim());
+    timer = setTimeout(() => void refresh(), SEARCH_WAIT_MS);
+  });
+  void refresh();
+  return {
+    element,
+    heading,
+    dispose() {
+      disposed = true;
+      loops.dispose();
+      clearTimeout(timer);
+    },
+  };
+}
+
+/** A CSV of loops, let go of here or chosen, becomes a batch. */
+function loopsCard(
+  store: Store,
+  announce: (sentence: string) => void,
+  onBatch: (batch: Batch) => void,
+): Pick<View, "element" | "dispose"> {
+  const method = h("select", { id: "loops-method" });
+  const limit = h("input", {
+    type: "text",
+    id: "loops-ms",
+    inputmode: "decimal",
+    value: "",
+    placeholder: "default (1.4)",
+  });
+  const limitField = h("div", { class: "field" }, h("label", { for: "loops-ms" }, "Largest Ms"), limit);
+  const file = h("input", {
+    type: "file",
+    accept: ".csv,.tsv,.txt,text/csv",
+    class: "visually-hidden",
+    id: "loops-file",
+  });
+  const fault = h("div", { class: "error", role: "alert" });
+  const drop = h(
+    "label",
+    { class: "drop", for: "loops-file" },
+    h("strong", {}, "Drop a CSV of loops here, or choose a file"),
+    h(
+      "span",
+      { class: "hint" },
+      "One loop a line: name, K, T, L. Every line is tuned; the answer is a table of settings.",
+    ),
+  );
+
+  async function take(chosen: File | undefined): Promise<void> {
+    if (!chosen) return;
+    fault.replaceChildren();
+    const options: Record<string, string> = {
+      method: method.value || "robust",
+      name: chosen.name.replace(/\.\w+$/, ""),
+    };
+    const Ms = limit.value.trim().replace(",", ".");
+    if (method.value === "robust" && Ms !== "") Object.assign(options, { Ms, Mt: Ms });
+    announce(`Sending ${chosen.name}.`);
+    try {
+      onBatch(await postLoops(chosen, options));
+    } catch (error) {
+      const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
+      fault.replaceChildren(
+        h("p", {}, error instanceof Error ? error.message : String(error)),
+        ...(listed.length > 0
+          ? [
+              h(
+                "ul",
+                {},
+                listed.map((item) => h("li", {}, item.detail)),
+              ),
+            ]
+          : []),
+      );
+    }
+    file.value = "";
+  }
+
+  const listMethods = (): void => {
+    const chosen = method.value || "robust";
+    method.replaceChildren(
+      ...store.get().methods.map((item) => h("option", { value: item.id, selected: item.id === chosen }, item.title)),
+    );
+  };
+  listMethods();
+  const dispose = store.subscribe((workspace, previous) => {
+    if (workspace.methods !== previous.methods) listMethods();
+  });
+  method.addEventListener("change", () => {
+    limitField.hidden = method.value !== "robust";
+  });
+  file.addEventListener("change", () => void take(file.files?.[0]));
+  const card = h(
+    "section",
+    { class: "card loops", "aria-labelledby": "loops-title" },
+    h("h2", { id: "loops-title" }, "Many loops at once"),
+    h(
+      "div",
+      { class: "loops-fields" },
+      h("div", { class: "field" }, h("label", { for: "loops-method" }, "Method"), method),
+      limitField,
+    ),
+    file,
+    drop,
+    fault,
+  );
+  for (const name of ["dragenter", "dragover"]) card.addEventListener(name, (event) => event.preventDefault());
+  card.addEventListener("drop", (event) => {
+    event.preventDefault();
+    void take(event.dataTransfer?.files[0]);
+  });
+  return { element: card, dispose };
+}

@@ -1,0 +1,49 @@
+// "Report": a job's page to print, of the entry that stands on the screen.
+import { getText } from "../api/client.ts";
+import { currentKey } from "../api/key.ts";
+import type { Job } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { download } from "../plot/export.ts";
+import { parseRoute } from "../routes.ts";
+
+export interface ReportLink {
+  element: HTMLAnchorElement;
+  /** Hidden for a job that has no result. */
+  show(job: Job): void;
+}
+
+export function reportLink(): ReportLink {
+  let address = "";
+  const element = h("a", { href: "#/", target: "_blank", hidden: true }, "Report");
+
+  /** The entry that is chosen now; the service takes the best where none is. */
+  function query(): string {
+    const route = parseRoute(location.hash);
+    return route.screen === "design" && route.entry !== null ? `?controller=${route.entry}` : "";
+  }
+
+  /** A link carries no key: where the service asks for one, the page is fetched with it and saved. */
+  async function save(): Promise<void> {
+    const { text } = await getText(address + query());
+    download(new Blob([text], { type: "text/html" }), "report.html");
+  }
+
+  element.addEventListener("click", (event) => {
+    element.href = address + query();
+    if (currentKey() === null) return;
+    event.preventDefault();
+    void save().catch((error: unknown) => {
+      element.textContent = `Report: ${error instanceof Error ? error.message : String(error)}`;
+    });
+  });
+
+  return {
+    element,
+    show(job) {
+      address = `v1/jobs/${encodeURIComponent(job.id)}/report.html`;
+      element.href = address;
+      element.textContent = "Report";
+      element.hidden = !job.result;
+    },
+  };
+}

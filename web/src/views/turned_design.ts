@@ -1,0 +1,235 @@
+// A job's entry that is turned by sliders: what they start from, and the job's result as it reads with the newest answer.
+import { effect, untracked } from "@preact/signals-core";
+import type { LiveSubject } from "../api/live.ts";
+import { isFinal } from "../api/types.ts";
+import type { Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
+import { h } from "../dom.ts";
+import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
+import type { Knob } from "../live/knobs.ts";
+import { liveDesign } from "../live/live.ts";
+import type { Answer } from "../live/live.ts";
+import { pointOf, tiedAt, valuesOf } from "../live/point.ts";
+import type { Point } from "../live/point.ts";
+import { formatRoute } from "../routes.ts";
+import type { Store } from "../store.ts";
+import { unitNames } from "../words/numbers.ts";
+import { controlsCard } from "./cards/controls_card.ts";
+import { frontCard } from "./cards/front_card.ts";
+import type { FrontSubject } from "./cards/front_card.ts";
+
+export interface TurnedDesign {
+  controls: HTMLElement;
+  front: HTMLElement;
+  /** Sliders for that entry of the job. */
+  show(job: Job, result: Result, index: number): void;
+  /** The result with the newest answer in the entry's place. */
+  effective(result: Result): Result;
+  /** The newest answer, if the entry was turned. */
+  answer(): Answer | null;
+  dispose(): void;
+}
+
+export interface TurnedEvents {
+  /** A newer answer, or the proposal again; `held`: more will follow at once. */
+  onAnswer(held: boolean): void;
+  /** Plots are old: an answer is awaited for long. */
+  onLate(late: boolean): void;
+  onHold(held: boolean): void;
+  onRetune(request: TuningRequest, index: number): Promise<void>;
+}
+
+/** Measured points have no responses over time, hence no front. */
+const hasFront = (plant: Plant): boolean => plant.type !== "frequency_response";
+
+export function turnedDesign(
+  store: Store,
+  announce: (sentence: string) => void,
+  events: TurnedEvents,
+): TurnedDesign {
+  let shown: { job: Job; result: Result; index: number } | null = null;
+  let knobs: Knob[] = [];
+  let proposal: Point | null = null;
+  /** The address speaks of the entry that was shown first. */
+  let addressed = true;
+  const live = liveDesign(settled);
+  const controls = controlsCard(live);
+  const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
+  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const again = h("button", { type: "button", onclick: () => void overRegion() }, "Hold the limits for every model");
+  const region = h(
+    "div",
+    { class: "trouble", hidden: true },
+    h("p", {}, "Turned for the best model alone, not for every model consistent with the record."),
+    h("p", { class: "actions" }, again),
+  );
+  controls.element.append(trouble, region);
+
+  const base = (): Entry | undefined => shown?.result.controllers[shown.index];
+  const todayOf = (result: Result): Entry | undefined =>
+    result.controllers.find((entry) => entry.method === "baseline" && !entry.error);
+
+  function subjectOf(job: Job, result: Result): LiveSubject | null {
+    const plant = result.model?.plant ?? job.request?.plant;
+    if (!plant) return null;
+    return { plant, request: job.request ?? {}, today: todayOf(result)?.controller ?? null };
+  }
+
+  /** One step was made: the address has it. */
+  function settled(point: Point): void {
+    const route = store.get().route;
+    if (route.screen !== "design" || !proposal) return;
+    const { values: _before, ...bare } = route;
+    const values = valuesOf(point, proposal, knobs);
+    const next = { ...bare, entry: store.get().selected, ...(Object.keys(values).length > 0 ? { values } : {}) };
+    store.set((workspace) => ({ ...workspace, route: next }));
+    history.replaceState(null, "", formatRoute(next));
+    showFront();
+  }
+
+  async function overRegion(): Promise<void> {
+    const tune = live.point.peek()?.tune;
+    if (!shown?.job.request || !tune) return;
+    again.disabled = true;
+    try {
+      await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
+    } catch (error) {
+      trouble.textContent = error instanceof Error ? error.message : String(error);
+      trouble.hidden = false;
+    } finally {
+      again.disabled = false;
+    }
+  }
+
+  /** The limit on Ms that a design was made for; null by hand and for rules. */
+  function limitAt(point: Point | null): number | null {
+    const tune = point?.tune;
+    if (!tune || point.hand || tune.method !== "robust") return null;
+    return typeof tune["Ms"] === "number" ? tune["Ms"] : (knobs.find((knob) => knob.id === "Ms")?.value ?? null);
+  }
+
+  /** What the curves hold to, besides Ms. */
+  function frontTerms({ tune }: Point): Pick<FrontSubject, "kind" | "terms"> {
+    if (tune?.method !== "robust") return { kind: null, terms: { Mt: "tied" } };
+    const { Mt, Mks, filter, objective = "load_iae", controller } = tune;
+    const alone = Mks === undefined && objective === "load_iae";
+    const kind = controller === "PI" ? "PI" : "PID";
+    const tied = tiedAt({ tune, hand: null }) || typeof Mt !== "number";
+    return { kind: alone ? kind : null, terms: { Mt: tied ? "tied" : Mt, ...(filter ? { filter } : {}) } };
+  }
+
+  function showFront(): void {
+    const entry = base();
+    const plant = shown ? (shown.result.model?.plant ?? shown.result.linear_model ?? shown.job.request?.plant) : null;
+    const possible = Boolean(entry?.performance?.load && plant && hasFront(plant));
+    front.element.hidden = !possible;
+    if (!possible || !shown || !plant) return;
+    front.show({
+      plant,
+      ...frontTerms(live.point.peek() ?? proposal!),
+      load: shown.job.request?.evaluate?.load_step ?? 1,
+      units: unitNames(shown.job.request?.units),
+      entries: shown.result.controllers,
+    });
+    placeOnFront();
+  }
+
+  function placeOnFront(): void {
+    const entry = live.answer.peek()?.entry ?? base();
+    if (!entry || front.element.hidden || !shown) return;
+    const answered = live.answer.peek()?.point ?? proposal;
+    front.place(entry, limitAt(answered), live.answer.peek()?.today ?? todayOf(shown.result) ?? null);
+  }
+
+  const leaving = [
+    effect(() => {
+      const answer = live.answer.value;
+      const held = live.held.value;
+      untracked(() => {
+        front.hold(held);
+        events.onHold(held);
+        if (!shown) return;
+        placeOnFront();
+        const entry = answer?.entry ?? base();
+        if (entry) controls.follow(entry);
+        events.onAnswer(held);
+      });
+    }),
+    effect(() => events.onLate(live.late.value)),
+    effect(() => {
+      trouble.textContent = live.trouble.value;
+      trouble.hidden = live.trouble.value === "";
+    }),
+    effect(() => {
+      const turned = Boolean(live.answer.value && !live.answer.value.point.hand);
+      region.hidden = !(turned && shown?.job.request?.["uncertainty"] === "identified");
+    }),
+  ];
+
+  /** Not where a text is typed: there it takes back letters. */
+  function onKey(event: KeyboardEvent): void {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
+    const target = event.target as HTMLElement | null;
+    if (target instanceof HTMLTextAreaElement || (target instanceof HTMLInputElement && target.type === "text")) return;
+    event.preventDefault();
+    if (event.shiftKey) live.redo();
+    else live.undo();
+  }
+  document.addEventListener("keydown", onKey);
+
+  const methodOf = (entry: Entry): Method | undefined => store.get().methods.find((item) => item.id === entry.method);
+
+  function begin(): void {
+    const entry = base();
+    if (!shown || !entry) return;
+    const { job, result, index } = shown;
+    const subject = subjectOf(job, result);
+    const usable = Boolean(subject && entry.controller && !entry.error && isFinal(job.status));
+    controls.element.hidden = !usable;
+    front.element.hidden = !usable;
+    if (!usable || !subject) return;
+    proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
+    knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
+    const route = store.get().route;
+    const values = addressed && route.screen === "design" ? (route.values ?? {}) : {};
+    live.start({ subject, point: proposal, entry }, pointOf(values, proposal, entry.controller, knobs));
+    showFront();
+  }
+
+  // The sliders of a method need its options, which may come later than the job.
+  const methods = store.pick((workspace) => workspace.methods);
+  let known = methods.peek();
+  leaving.push(
+    effect(() => {
+      const now = methods.value;
+      if (now !== known && shown) untracked(begin);
+      known = now;
+    }),
+  );
+
+  return {
+    controls: controls.element,
+    front: front.element,
+    show(job, result, index) {
+      if (shown?.result === result && shown.index === index) return;
+      addressed = shown === null;
+      shown = { job, result, index };
+      begin();
+    },
+    effective(result) {
+      const answer = live.answer.peek();
+      if (!answer || !shown || shown.result !== result) return result;
+      const controllers = result.controllers.map((entry, at) =>
+        at === shown!.index ? answer.entry : entry.method === "baseline" && answer.today ? { ...answer.today, method: "baseline" } : entry,
+      );
+      return { ...result, controllers };
+    },
+    answer: () => live.answer.peek(),
+    dispose() {
+      document.removeEventListener("keydown", onKey);
+      for (const leave of leaving) leave();
+      controls.dispose();
+      front.dispose();
+      live.dispose();
+    },
+  };
+}

@@ -1,0 +1,138 @@
+// Jobs in lists: their cells in words, and the orders that a batch can stand in.
+import type { ListedJob, Outline } from "../api/job_lists.ts";
+import { DASH, formatNumber, formatParameter, unitNames } from "./numbers.ts";
+import { plantTitle, plantWords } from "./plant.ts";
+import type { Plant } from "../api/types.ts";
+
+const MINUTE = 60;
+const HOUR = 60 * MINUTE;
+const DAY = 24 * HOUR;
+
+/** "3 min": how long ago that was. */
+export function age(created: string, now: number): string {
+  const seconds = Math.max(0, (now - Date.parse(created)) / 1000);
+  if (!Number.isFinite(seconds)) return DASH;
+  if (seconds < MINUTE) return "now";
+  if (seconds < HOUR) return `${Math.floor(seconds / MINUTE)} min`;
+  if (seconds < DAY) return `${Math.floor(seconds / HOUR)} h`;
+  return `${Math.floor(seconds / DAY)} d`;
+}
+
+const lag = (value: unknown): string =>
+  typeof value === "number" && value !== 0 ? `(${shownFactor(value)}s + 1)` : "";
+const shownFactor = (value: number): string => (value === 1 ? "" : formatParameter(value));
+
+/** "2 e^(−3s)/(10s + 1)"; of plants without a short formula their kind. */
+export function shortPlant(outline: Outline | undefined): string {
+  const plant = outline?.plant;
+  if (!plant) return DASH;
+  const below = denominator(plant);
+  if (below === null || typeof plant["K"] !== "number")
+    return plant.type === "nonlinear" ? plantWords(plant, unitNames(outline.units)) : plantTitle(plant.type);
+  const delay = plant.L ? ` e^(−${shownFactor(plant.L)}s)` : "";
+  return `${formatParameter(plant["K"])}${delay}${below === "" ? "" : `/${below}`}`;
+}
+
+function denominator(plant: Plant): string | null {
+  if (plant.type === "fopdt") return lag(plant["T"]);
+  if (plant.type === "ipdt") return plant["T"] ? `(s${lag(plant["T"])})` : "s";
+  if (plant.type !== "sopdt" || typeof plant["T1"] !== "number") return null;
+  const factors = [lag(plant["T1"]), lag(plant["T2"])].filter(Boolean);
+  return factors.length > 1 ? `(${factors.join("")})` : (factors[0] ?? "");
+}
+
+/** "robust", "robust of 12": the best of several. */
+export function methodWords(outline: Outline | undefined): string {
+  if (!outline?.method) return DASH;
+  const name = outline.method.replaceAll("_", " ");
+  return (outline.entries ?? 1) > 1 ? `${name}, best of ${outline.entries}` : name;
+}
+
+/** By how much the load IAE falls from today's, in percent; null where it is not known. */
+export function gain(job: ListedJob): number | null {
+  const [today, now] = [job.outline?.today?.load_IAE, job.outline?.load_IAE];
+  return typeof today === "number" && typeof now === "number" && today > 0 ? 100 * (1 - now / today) : null;
+}
+
+/** The largest Ms on any plant that the loop may meet; a tuned loop without one is the greatest risk. */
+export function risk(job: ListedJob): number | null {
+  const outline = job.outline;
+  if (job.status !== "succeeded" || !outline?.method) return null;
+  const figure = outline.worst_Ms === undefined ? outline.Ms : outline.worst_Ms;
+  return typeof figure === "number" ? figure : Infinity;
+}
+
+export interface BatchColumn {
+  id: string;
+  label: string;
+  /** What stands in the cell. */
+  text(job: ListedJob): string;
+  /** What it is sorted by; null stands last in both directions. */
+  value(job: ListedJob): number | string | null;
+  /** The first press sorts with the largest on top. */
+  falls?: boolean;
+}
+
+const numbered = (
+  id: string,
+  label: string,
+  read: (job: ListedJob) => number | null | undefined,
+  falls = false,
+): BatchColumn => ({
+  id,
+  label,
+  falls,
+  text: (job) => {
+    const value = read(job);
+    return value === Infinity ? "no margin" : formatNumber(value);
+  },
+  value: (job) => read(job) ?? null,
+});
+
+export const BATCH_COLUMNS: BatchColumn[] = [
+  { id: "index", label: "Loop", text: (job) => String((job.index ?? 0) + 1), value: (job) => job.index ?? 0 },
+  { id: "name", label: "Name", text: (job) => job.name ?? `Loop ${(job.index ?? 0) + 1}`, value: (job) => job.name },
+  { id: "plant", label: "Plant", text: (job) => shortPlant(job.outline), value: (job) => shortPlant(job.outline) },
+  {
+    id: "method",
+    label: "Method",
+    text: (job) => methodWords(job.outline),
+    value: (job) => job.outline?.method ?? null,
+  },
+  numbered("iae", "Load IAE", (job) => job.outline?.load_IAE, true),
+  {
+    id: "gain",
+    label: "Gain over today",
+    falls: true,
+    text: (job) => {
+      const value = gain(job);
+      return value === null ? DASH : `${formatNumber(value)} %`;
+    },
+    value: gain,
+  },
+  {
+    id: "excess",
+    label: "Above optimum",
+    falls: true,
+    text: (job) => {
+      const value = job.outline?.excess_percent;
+      return typeof value === "number" ? `${formatNumber(value)} %` : DASH;
+    },
+    value: (job) => job.outline?.excess_percent ?? null,
+  },
+  numbered("Ms", "Ms", (job) => job.outline?.Ms, true),
+  numbered("risk", "Worst Ms", risk, true),
+  { id: "status", label: "Status", text: (job) => job.status, value: (job) => job.status },
+];
+
+/** In the order of a column; equal ones and those without a value keep the order of the batch. */
+export function sorted(jobs: ListedJob[], column: BatchColumn, falling: boolean): ListedJob[] {
+  const sign = falling ? -1 : 1;
+  return [...jobs].sort((a, b) => {
+    const [left, right] = [column.value(a), column.value(b)];
+    if (left === null || right === null) return Number(left === null) - Number(right === null);
+    if (typeof left === "string" || typeof right === "string")
+      return sign * String(left).localeCompare(String(right), undefined, { numeric: true });
+    return left === right ? 0 : sign * (left < right ? -1 : 1);
+  });
+}

@@ -1,5 +1,6 @@
 // libFuzzer on a plant's texts: whatever bytes come, either an error that can be shown to anybody, or a plant whose
-// numbers are finite. Lines: output, dx/dt, dz/dt, a parameter.
+// numbers are finite. Lines: output, dx/dt, dz/dt, a parameter. The same bytes are read as a typed plant too, whose
+// text must be read back.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +11,7 @@
 
 #include "engine/plant/nonlinear/lie_derivatives.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
+#include "engine/plant/typed/typed_plant.h"
 
 namespace {
 
@@ -71,10 +73,19 @@ void examine(const NonlinearSystem& system) {
             "a reason for leaving the domain");
 }
 
+void read_as_typed(const std::string& text) {
+    const auto typed = read_plant(text);
+    if (!typed) return require(can_be_shown(typed.error().message), "a readable error", typed.error().message);
+    const std::string written = plant_text(typed->plant);
+    require(read_plant(written).has_value(), "a text that is read back", written);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto system = NonlinearSystem::make(plant_of(std::string(reinterpret_cast<const char*>(data), size)));
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    read_as_typed(text);
+    const auto system = NonlinearSystem::make(plant_of(text));
     if (system)
         examine(*system);
     else

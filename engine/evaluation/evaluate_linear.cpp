@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/controller/pid.h"
+#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/measured_response.h"
 #include "engine/evaluation/performance_figures.h"
@@ -79,8 +80,8 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
                      const Peaks& peaks) {
     const auto* npid = std::get_if<Npid>(&evaluation.controller);
     const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
-    const MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
-                           of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
+    MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
+                     of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
     const StepResponse &setpoint = of_setpoint.response, &load = of_load.response;
     const bool to_infinity = !o.horizon.has_value();
     evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
@@ -105,10 +106,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
         warn_of_limits(evaluation, load, *o.actuator, "load");
     }
     if (!setpoint.settles || !load.settles) warn_of_no_rest(evaluation);
-    if (o.points < 2) return;
-    const double horizon = o.horizon ? *o.horizon : o.trace_horizon.value_or(covering_horizon(setpoint, load));
-    evaluation.responses = Responses{trace_of(setpoint, horizon, o.points), trace_of(load, horizon, o.points),
-                                     setpoint.settles && load.settles};
+    evaluation.responses = drawn(Run::of(std::move(of_setpoint.response)), Run::of(std::move(of_load.response)), o);
 }
 
 /// In percent, rounded down and never to all or to nothing.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluate_linear.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/performance_figures.h"
@@ -79,13 +80,19 @@ void warn_of_distance(Evaluation& evaluation) {
              differences + "."});
 }
 
-void add_responses(Evaluation& evaluation, const Runs& runs, double horizon, int points) {
-    const auto trace = [&](const NonlinearResponse& run) {
-        const bool whole = !Runs::incomplete(run) || run.t_end >= horizon;
-        return trace_of(run.loop, whole ? horizon : run.t_end, points);
+/// The linearisation's responses go as far as the plant's own, beside which they are read.
+void add_responses(Evaluation& evaluation, Runs runs, const EvaluateOptions& options) {
+    if (runs.setpoint.loop.nodes.empty() || runs.load.loop.nodes.empty()) return;
+    const auto run_of = [](NonlinearResponse& run) {
+        Run known = Run::of(std::move(run.loop));
+        if (Runs::incomplete(run)) known.known_to = run.t_end;
+        return known;
     };
-    evaluation.responses =
-        Responses{trace(runs.setpoint), trace(runs.load), runs.setpoint.loop.settles && runs.load.loop.settles};
+    const bool complete = runs.complete();
+    evaluation.responses = drawn(run_of(runs.setpoint), run_of(runs.load), options);
+    if (!complete || !evaluation.responses || !evaluation.responses->course) return;
+    if (auto& linear = evaluation.linear->responses; linear && linear->course)
+        linear = responses_of(linear->course, evaluation.responses->course->horizon);
 }
 
 void add_performance(Evaluation& evaluation, const Runs& runs, const EvaluateOptions& o) {
@@ -119,15 +126,11 @@ Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const C
     const bool stable = count_unstable_poles(*loop).stable();
     std::optional<double> horizon = options.horizon;
     if (!horizon && !stable) horizon = kUnstableHorizon * own_time(subject.linear);
-    const Runs runs = simulate(system, resolved(controller, options), options, horizon);
+    Runs runs = simulate(system, resolved(controller, options), options, horizon);
     if (auto error = stopped(options)) return *error;
 
-    EvaluateOptions of_linear = limited_as(system, options);
-    if (!horizon && runs.complete()) {
-        horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
-        of_linear.trace_horizon = horizon;
-    }
-    auto evaluation = evaluate_linear({family_of(Plant(system.linearised())), subject.linear}, controller, of_linear);
+    auto evaluation = evaluate_linear({family_of(Plant(system.linearised())), subject.linear}, controller,
+                                      limited_as(system, options));
     if (!evaluation) return evaluation;
     evaluation->linear = LinearisedResponse{evaluation->performance, std::move(evaluation->responses)};
     evaluation->responses.reset();
@@ -145,10 +148,9 @@ Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const C
         }
     }
     warn_of_runs(*evaluation, runs);
-    if (options.points >= 2 && !runs.setpoint.loop.nodes.empty() && !runs.load.loop.nodes.empty()) {
-        if (!horizon) horizon = covering_horizon(runs.setpoint.loop, runs.load.loop);
-        add_responses(*evaluation, runs, *horizon, options.points);
-    }
+    EvaluateOptions as_run = options;
+    as_run.horizon = horizon;
+    add_responses(*evaluation, std::move(runs), as_run);
     return evaluation;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluate_nonlinear.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/performance_figures.h"
@@ -25,28 +26,33 @@ constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms ma
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
 
+/// Resolutions and dead bands keep a loop moving about its rest.
+bool rests(const ProgramLimits& limits) {
+    return limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
+}
+
+Run run_of(StepResponse response, const ProgramLimits& limits) {
+    Run run = Run::of(std::move(response));
+    if (!rests(limits)) run.known_to = run.response.nodes.back().t;
+    return run;
+}
+
 StepResponse respond(const Simulate& simulate, const ProgramLimits& limits, const StepInputs& inputs,
                      const EvaluateOptions& options) {
     std::optional<double> horizon = options.horizon;
-    const bool rests = limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
-    if (rests || horizon) return simulate(limits, inputs, horizon);
+    if (rests(limits) || horizon) return simulate(limits, inputs, horizon);
     const StepResponse without = simulate({limits.output, 0, 0, 0}, inputs, horizon);
     return simulate(limits, inputs, without.nodes.back().t);
 }
 
 void add_performance(BuiltLoop& built, const Simulate& simulate, const ProgramLimits& limits,
                      const EvaluateOptions& options) {
-    const StepResponse setpoint = respond(simulate, limits, {options.setpoint_step, 0}, options),
-                       load = respond(simulate, limits, {0, options.load_step}, options);
-    const bool to_infinity =
-        !options.horizon && limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
+    StepResponse setpoint = respond(simulate, limits, {options.setpoint_step, 0}, options),
+                 load = respond(simulate, limits, {0, options.load_step}, options);
+    const bool to_infinity = !options.horizon && rests(limits);
     built.performance.setpoint = setpoint_figures(setpoint, options.setpoint_step, to_infinity);
     built.performance.load = load_figures(load, to_infinity);
-    if (options.points < 2) return;
-    const double horizon =
-        options.horizon ? *options.horizon : options.trace_horizon.value_or(covering_horizon(setpoint, load));
-    built.responses = Responses{trace_of(setpoint, horizon, options.points), trace_of(load, horizon, options.points),
-                                setpoint.settles && load.settles};
+    built.responses = drawn(run_of(std::move(setpoint), limits), run_of(std::move(load), limits), options);
 }
 
 }  // namespace

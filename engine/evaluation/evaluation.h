@@ -1,6 +1,7 @@
 // Everything known about one controller on one plant: robustness, performance, traces; and what is asked for.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -19,11 +20,10 @@ struct NoiseOptions {
 };
 
 struct EvaluateOptions {
-    double setpoint_step = 1;             ///< != 0
-    double load_step = 1;                 ///< != 0
-    std::optional<double> horizon;        ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
-    int points = 400;                     ///< of each trace: 0 (none) or 2 to 20,000
-    std::optional<double> trace_horizon;  ///< of the traces alone, where `horizon` is empty; empty: chosen by the loop
+    double setpoint_step = 1;       ///< != 0
+    double load_step = 1;           ///< != 0
+    std::optional<double> horizon;  ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
+    int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
     double rank_Ms = 2.0;               ///< entries with Ms above it rank last
@@ -69,9 +69,12 @@ struct Trace {
     std::vector<double> t, y, u;
 };
 
+struct Course;  // course.h
+
 struct Responses {
     Trace setpoint, load;
     bool settles = true;
+    std::shared_ptr<const Course> course = {};  ///< until all of an answer are drawn together; no part of the answer
 };
 
 struct FrequencyTraces {

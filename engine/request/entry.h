@@ -52,4 +52,7 @@ struct TuningEntry {
     }
 };
 
+/// One horizon for the responses of all entries, ideal and as built, equations' own and their linearisation's.
+void draw_together(std::vector<TuningEntry>& entries);
+
 }  // namespace tunewright

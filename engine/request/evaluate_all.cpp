@@ -68,6 +68,7 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         entry.evaluation = std::move(*evaluation);
     }
     const verdict::Context context{subject, options, labels, implement ? implement->Ts : 0};
+    draw_together(result.controllers);
     verdict::judge(result.controllers, context);
     result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);
     return result;

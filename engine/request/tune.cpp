@@ -361,6 +361,7 @@ Expected<TuningResult> TuningRun::result() {
             result_.controllers.push_back(baseline());
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
+    draw_together(result_.controllers);
     const RankingTerms terms{request_.evaluate.rank_Ms, subject_->linear() != nullptr};
     result_.ranking = ranked(result_.controllers, terms);
     if (result_.model && !result_.ranking.empty())

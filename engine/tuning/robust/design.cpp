@@ -42,7 +42,8 @@ double reference_frequency(const DesignProblem& problem) {
     };
     double w = slowest / kBeyondCorners, before = std::arg(lagging(w)),
            unwrapped = -0.5 * std::numbers::pi * plant.integrators();
-    double total_before = unwrapped - w * L;
+    double total_before = unwrapped - w * L, fallen = 0;
+    constexpr double kFallen = -0.75 * std::numbers::pi;
     const double ratio = std::pow(10, 1.0 / kLagPointsPerDecade);
     for (; w < fastest * kBeyondCorners; w *= ratio) {
         const double wrapped = std::arg(lagging(w));
@@ -50,9 +51,11 @@ double reference_frequency(const DesignProblem& problem) {
         before = wrapped;
         const double total = unwrapped - w * L;
         if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;
+        if (total_before > kFallen && total <= kFallen) fallen = w;
         total_before = total;
     }
     if (L > 0) return 1 / L;
+    if (fallen > 0) return fallen;
     return Tf > 0 ? 1 / Tf : slowest;
 }
 

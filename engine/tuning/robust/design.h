@@ -83,7 +83,8 @@ inline IdealPid controller_at(const DesignProblem& problem, const DesignPoint& x
 }
 
 /// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
-/// falls through -180 degrees; else 1/L; else the filter's or the slowest lag's corner.
+/// falls through -180 degrees; else 1/L; else where it last falls through -135 degrees, as two lags far apart do at the
+/// faster one; else the filter's or the slowest lag's corner.
 double reference_frequency(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

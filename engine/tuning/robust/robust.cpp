@@ -71,6 +71,9 @@ void add_warnings(TunedController& result, const DesignProblem& problem, const D
         result.warnings.push_back(
             {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + text(Ti) +
                                       "): a smaller Ms or a longer filter time gives an ordinary PID."});
+    if (problem.pid && !std::isfinite(x[2]))
+        result.warnings.push_back(
+            {"no-derivative", "No derivative time was found with which a PID does better than this PI: Td is 0."});
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
 constexpr double kFilterDecade = 30;     // times 1/Tf: where a fixed filter has ended the loop
 constexpr double kTiedDecade = 10;       // times 1/(Tf of the least Td)
+constexpr double kFallen = 3;            // times the plant's fastest root: where it falls as steeply as it ever will
+constexpr double kHighest = 1e12;        // times the reference
 constexpr double kResonant = 0.3;        // damping below which a root gets points of its own
 constexpr double kLeastWidth = 1e-5;     // of a resonance, over its frequency
 constexpr int kResonancePoints = 12;     // to either side, ever wider apart
@@ -29,6 +31,13 @@ constexpr double kSameValue = 1e-10;     // ln M
 constexpr double kBeyondAll = 50;        // ln of a ratio that has no end
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+double fastest_root(const LinearPlant& plant) {
+    double fastest = 0;
+    for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
+    for (const auto zero : plant.zeros()) fastest = std::max(fastest, std::abs(zero));
+    return fastest;
+}
+
 std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant& plant, double reference,
                                 double resolved_to) {
     const double L = plant.dead_time();
@@ -36,8 +45,12 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, kFilterDecade / *problem.filter.Tf);
     // Where the plant itself does not fall a tied filter alone ends the loop, and |C S| peaks near 1/Tf on any plant:
     // up to beyond the shortest Tf, which belongs to the least Td.
-    if (problem.pid && problem.filter.Tf_over_Td && (plant.pole_excess() == 0 || problem.limits.Mks))
-        high = std::max(high, kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd));
+    double ended = kInfinity;
+    if (problem.pid && problem.filter.Tf_over_Td)
+        ended = kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd);
+    if (std::isfinite(ended) && (plant.pole_excess() == 0 || problem.limits.Mks)) high = std::max(high, ended);
+    // And until its fastest lag it may not fall: a derivative without end makes L grow there.
+    high = std::max(high, std::min({ended, kFallen * fastest_root(plant), kHighest * reference}));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
     std::vector<double> omega;

@@ -180,19 +180,18 @@ constexpr int kRounds = 4;                 // searches under tighter limits
 constexpr double kLeastTightening = 1e-6;  // of ln M - 1: what moves a design at all
 constexpr double kMostTightening = 0.5;
 
-}  // namespace
+constexpr double kShortLags = 0.01;            // of the dead time
+constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
 
-Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const DesignPoint* before) {
-    const double reference = reference_frequency(problem);
+/// The search and its check. `promising`: a search from the usual starts may find something.
+Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
+                               const PlaneStart& start, CostSurface* surface, const RunControl& control,
+                               const DesignPoint* before) {
     ProgressReport progress(problem, control);
     const Report report = [&](const DesignPoint& x, double cost) { return progress(x, cost); };
-    const Sweep sweep(problem, reference);
     std::optional<Found> found;
-    if (has_reference_optima(problem, sweep)) {
-        if (before != nullptr) found = search_again(sweep, problem, *before, report);
-        if (!found) found = search(kind, sweep, problem, start, surface, report);
-    }
+    if (promising && before != nullptr) found = search_again(sweep, problem, *before, report);
+    if (promising && !found) found = search(kind, sweep, problem, start, surface, report);
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
     if (!found) found = search_from_least_peak(problem, report);
@@ -204,7 +203,7 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
         const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
-        const Sweep narrow_sweep(narrowed, reference);
+        const Sweep narrow_sweep(narrowed, sweep.reference());
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
         found->x = again.x;
         found->log_cost = again.log_cost;
@@ -212,6 +211,42 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
     return Error{ErrorKind::numerical_failure, "",
                  "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
                  "Try another search or a filter with a longer Tf."};
+}
+
+/// Lags so short beside the dead time leave a derivative next to nothing to gain, and valleys where it costs much.
+bool all_dead_time(const DesignProblem& problem) {
+    if (problem.plant == nullptr || problem.plant->integrators() > 0) return false;
+    double lags = 0;
+    for (const auto pole : problem.plant->poles()) lags += 1 / std::abs(pole);
+    return lags < kShortLags * problem.plant->dead_time();
+}
+
+/// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what
+/// the derivative makes of lags far shorter than it; and it is the one that is left where no PID passes the check.
+Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, const RunControl& control) {
+    if (!problem.pid || (found && found->stopped)) return found;
+    const bool doubtful =
+        found ? all_dead_time(problem) || std::exp(found->x[2]) * reference_frequency(problem) <= kShortestTd
+              : found.error().kind == ErrorKind::numerical_failure;
+    if (!doubtful) return found;
+    DesignProblem without = problem;
+    without.pid = false;
+    const Sweep sweep(without, reference_frequency(without));
+    auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control, nullptr);
+    if (!other || (found && found->log_cost <= other->log_cost)) return found;
+    other->x[2] = -INFINITY;
+    return other;
+}
+
+}  // namespace
+
+Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
+                                const RunControl& control, const DesignPoint* before) {
+    const Sweep sweep(problem, reference_frequency(problem));
+    const DesignPoint* near = before != nullptr && std::isfinite((*before)[2]) ? before : nullptr;
+    const bool promising = has_reference_optima(problem, sweep);
+    return or_without_derivative(checked_search(kind, sweep, problem, promising, start, surface, control, near),
+                                 problem, control);
 }
 
 namespace {

@@ -23,7 +23,8 @@ std::optional<double> named_limit(const Error& error);
 
 /// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
 /// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
-/// is searched; where that finds nothing, the whole search is made. `problem` receives the reference optima of a
+/// is searched; where that finds nothing, the whole search is made. A PID's ln Td is -infinity where a PI does better
+/// than any derivative. `problem` receives the reference optima of a
 /// weighted objective and the sign of Kp that was found to work.
 ///
 /// Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that

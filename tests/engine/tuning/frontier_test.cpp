@@ -55,6 +55,22 @@ TEST(Frontier, HoldsItsLimitsAndItsOrderOverTheAmigoBatch) {
     }
 }
 
+// The derivative has nothing to work on, and the dead time repeats whatever it does until the lag, far away, ends it.
+TEST(Frontier, UnderADeadTimeAloneAPidIsNoWorseThanAPi) {
+    for (const double T : {1e-3, 1e-4, 1e-6, 1e-9, 1e-12}) {
+        SCOPED_TRACE(T);
+        const TuningProblem problem = problem_of(Fopdt{.K = 1, .T = T, .L = 10});
+        const FrontierOptions options{.Ms = {.points = 5}};
+        const auto pid = frontier(problem, options, {});
+        const auto pi = frontier(problem, {.controller = ControllerKind::PI, .Ms = {.points = 5}}, {});
+        ASSERT_TRUE(pid && pi) << (pid ? "" : pid.error().message);
+        ASSERT_EQ(pid->points.size(), 5u);
+        expect_front(*pid, options);
+        for (std::size_t i = 0; i < 5; ++i)
+            EXPECT_LE(*pid->points[i].load_IAE, *pi->points[i].load_IAE * (1 + 1e-5)) << pid->points[i].Ms;
+    }
+}
+
 TEST(Frontier, EachPointIsTheOptimumAlone) {
     std::size_t index = 0;
     for (const auto& row : test::reference_rows()) {

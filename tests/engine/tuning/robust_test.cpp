@@ -257,6 +257,21 @@ TEST(LocalMinimum, BothSearchesFindRosenbrocksValley) {
     }
 }
 
+// Far above 1/T1 the plant is 1/(T1 s (T2 s + 1)): times scale with T2, the gain with T1/T2, the load IAE with T2^2/T1.
+TEST(Robust, OnLagsFarApartAPiLivesAtTheFasterOne) {
+    MethodOptions options;
+    options.set("Ms", 2.5);
+    options.set("Mt", 2.5);
+    options.set("controller", std::string("PI"));
+    for (const double T2 : {1e-4, 1e-6, 1e-9}) {
+        const Plant plant = Sopdt{.K = 1, .T1 = 1, .T2 = T2, .L = 0};
+        const auto tuned = robust_method().tune({plant, *LinearPlant::make(plant), {}, {}}, options, {});
+        ASSERT_TRUE(tuned) << tuned.error().message;
+        EXPECT_NEAR(tuned->controller.Kp * T2, 2.411, 0.01) << T2;
+        EXPECT_NEAR(tuned->controller.Ti / T2, 3.828, 0.02) << T2;
+    }
+}
+
 TEST(Sweep, GradientsAgreeWithDifferences) {
     using namespace robust;
     const auto plant = LinearPlant::make(Sopdt{.K = 1, .T1 = 2, .T2 = 1, .L = 0.5});

@@ -10,6 +10,7 @@ import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
 import { formatNumber } from "../words/numbers.ts";
+import { reportLink } from "./report_link.ts";
 import type { View } from "./start.ts";
 
 export interface JobsEvents {
@@ -142,6 +143,12 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     const list: HTMLElement[] = [
       h("a", { href: formatRoute({ screen: "edit", job: job.id }), "aria-label": `Duplicate ${name}` }, "Duplicate"),
     ];
+    if (job.status === "succeeded") {
+      const report = reportLink();
+      report.show(job.id);
+      report.element.setAttribute("aria-label", `Report of ${name}`);
+      list.push(report.element);
+    }
     const button = (label: string, work: () => Promise<void>, done: string): HTMLButtonElement =>
       h(
         "button",

@@ -1,15 +1,14 @@
 // "Report": a job's page to print, of the entry that stands on the screen.
 import { getText } from "../api/client.ts";
 import { currentKey } from "../api/key.ts";
-import type { Job } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { parseRoute } from "../routes.ts";
 
 export interface ReportLink {
   element: HTMLAnchorElement;
-  /** Hidden for a job that has no result. */
-  show(job: Job): void;
+  /** Of this job; hidden where there is none with a result. */
+  show(id: string | null): void;
 }
 
 export function reportLink(): ReportLink {
@@ -39,11 +38,11 @@ export function reportLink(): ReportLink {
 
   return {
     element,
-    show(job) {
-      address = `v1/jobs/${encodeURIComponent(job.id)}/report.html`;
+    show(id) {
+      address = `v1/jobs/${encodeURIComponent(id ?? "")}/report.html`;
       element.href = address;
       element.textContent = "Report";
-      element.hidden = !job.result;
+      element.hidden = id === null;
     },
   };
 }

@@ -51,7 +51,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       editLink.href = formatRoute({ screen: "edit", job: job.id });
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
-      report.show(job);
+      report.show(job.result ? job.id : null);
     },
   };
 }

@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMostOfShortest = 5;
+constexpr double kMostOfShortest = 3;
 
 Trace trace(const Run& run, double horizon, int points) {
     return trace_of(run.response, std::min(horizon, run.known_to), points);

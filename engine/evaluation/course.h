@@ -33,7 +33,7 @@ std::optional<Responses> drawn(Run setpoint, Run load, const EvaluateOptions& op
 Responses responses_of(std::shared_ptr<const Course> course, double horizon);
 
 /// Draws all that have a course up to one horizon, so that they can be compared by eye, and lets their courses go: the
-/// longest that one of them asks for, but not beyond five times the shortest, where the quick ones would be a line at
+/// longest that one of them asks for, but not beyond three times the shortest, where the quick ones would be a line at
 /// the left edge. What does not settle has no say.
 void draw_together(const std::vector<Responses*>& all);
 

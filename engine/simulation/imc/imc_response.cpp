@@ -171,7 +171,7 @@ private:
 
     /// y or y_m as it was `t` from the start without dead time; 0 before.
     Memory past(double t, bool after) {
-        if (t < -slack_ || (t <= slack_ && !after)) return {};
+        if (memory_.empty() || t < -slack_ || (t <= slack_ && !after)) return {};
         const auto right = std::ranges::upper_bound(memory_, t + slack_, {}, &Memory::t);
         if (right == memory_.begin()) return memory_.front();
         const Memory& a = *(right - 1);

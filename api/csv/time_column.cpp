@@ -101,6 +101,36 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
     return std::nullopt;
 }
 
+// A log with a clock of its own, as of a serial monitor, beside a counter: how fast the one runs by the other.
+std::optional<std::string> TimeColumn::unit_by_clock(std::string_view text, const CsvLayout& layout,
+                                                     std::size_t column) const {
+    constexpr int kLooked = 2000, kWithoutClock = 20;
+    constexpr double kLeast = 20, kApart = 0.1;  // seconds; relative
+    CsvLines lines(text, layout);
+    CsvLine line;
+    double first = 0, last = 0, began = 0, ended = 0;
+    std::optional<std::size_t> clock;
+    for (int n = 0; n < kLooked && lines.next(line); ++n) {
+        if (column >= line.cells.size() || !read_cell_number(line.cells[column], last, sign_, suffix_)) continue;
+        for (std::size_t other = 0; !clock && other < line.cells.size(); ++other) {
+            const auto stamp = other == column ? std::nullopt : read_time_stamp(line.cells[other]);
+            if (!stamp || !stamp->has_clock) continue;
+            clock = other;
+            began = stamp->seconds;
+            first = last;
+        }
+        if (!clock && n >= kWithoutClock) return std::nullopt;
+        if (!clock || *clock >= line.cells.size()) continue;
+        if (const auto stamp = read_time_stamp(line.cells[*clock])) ended = stamp->seconds;
+    }
+    if (!clock || ended - began < kLeast) return std::nullopt;
+    const double a_second = (last - first) / (ended - began);
+    for (const auto& [unit, scale] :
+         {std::pair{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"min", 1 / 60.0}, {"h", 1 / kHour}})
+        if (std::abs(a_second / scale - 1) < kApart) return unit;
+    return std::nullopt;
+}
+
 void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                            const ColumnProfile& profile, const CsvOptions& options) {
     const std::size_t column = *columns.at[kTimeRole];
@@ -126,6 +156,13 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
             by_size = from_zero_ = true;
         }
     }
+    bool by_clock = false;
+    if (!seconds_per(unit)) {
+        if (const auto found = unit_by_clock(text, layout, column)) {
+            unit = *found;
+            by_clock = true;
+        }
+    }
     const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
     unit_known_ = given.has_value() || options.time_unit_given;
     if (!unit_known_) note_unknown_unit(profile, options);
@@ -133,6 +170,7 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     if (by_size)
         notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
                          ", by their size; they are taken from the first one on.");
+    if (by_clock) notes_.push_back("Times count " + unit + ", by the clock beside them.");
     if (*given == *answer) return;
     factor_ = *given / *answer;
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit + ".");

@@ -34,6 +34,7 @@ private:
     void find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                    const ColumnProfile& profile, const CsvOptions& options);
     std::optional<std::string> unit_by_size(std::string_view text, const CsvLayout& layout, std::size_t column) const;
+    std::optional<std::string> unit_by_clock(std::string_view text, const CsvLayout& layout, std::size_t column) const;
     std::optional<TimeStamp> stamp(std::string_view cell, std::string_view clock, DateOrder order) const;
     double continued(const TimeStamp& stamp, int line);
 

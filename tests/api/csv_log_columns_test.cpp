@@ -150,6 +150,30 @@ TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
     EXPECT_THAT(notes(given), IsEmpty());
 }
 
+// Serial monitors print their own clock before what the program prints.
+TEST(Csv, ACounterWithoutUnitIsReadByTheClockBesideIt) {
+    for (const auto& [unit, in_a_second] : {std::pair{"ms", 1000}, {"s", 1}}) {
+        std::string log, table = "stamp,t,pwm,temp\n";
+        for (int k = 0; k < 40; ++k) {
+            const std::string clock =
+                "07:5" + std::to_string(8 + k / 30) + ":" + (k % 30 < 5 ? "0" : "") + std::to_string(2 * (k % 30));
+            const std::string t = std::to_string(2 * k * in_a_second), pwm = k < 10 ? "76" : "128",
+                              temp = "4" + std::to_string(k % 7) + ".5";
+            log += clock + " -> t:" + t + " pwm:" + pwm + " temp:" + temp + "\n";
+            table += clock + "," + t + "," + pwm + "," + temp + "\n";
+        }
+        CsvOptions by_counter;
+        by_counter.columns.t = "t";
+        for (const auto& read : {read_csv_record(log, {}), read_csv_record(table, by_counter)}) {
+            const auto* record = std::get_if<CsvRecord>(&read);
+            ASSERT_NE(record, nullptr);
+            EXPECT_EQ(record->t.back() - record->t.front(), 78) << unit;
+            EXPECT_TRUE(record->time_unit_known);
+            EXPECT_THAT(record->notes, Contains("Times count " + std::string(unit) + ", by the clock beside them."));
+        }
+    }
+}
+
 TEST(Csv, PlainTablesGetNoRemarks) {
     EXPECT_THAT(std::get<CsvRecord>(read_csv_record("t,u,y\n0,1,2\n1,1,3\n", {})).notes, IsEmpty());
 }

@@ -178,3 +178,21 @@ test("the part that counts is chosen by dragging over the plot; with Shift dragg
     assert.equal(step.to, 499);
   });
 });
+
+test("a record of 100,000 rows is used whole, though only its beginning is shown as text", async () => {
+  const count = 100_000;
+  const slow = (i) => (300 * i) / count;
+  const log = ["t,u,y", ...rows((i) => `${slow(i).toFixed(4)},${u(slow(i))},${fixed(y(slow(i)))}`, count)].join("\n");
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "long.csv", log);
+    const { K, T } = await tuned(page);
+    assert.ok(Math.abs(K / 2 - 1) < 0.02 && Math.abs(T / 30 - 1) < 0.05, `K ${K}, T ${T}`);
+    await page.getByRole("link", { name: "Change the request" }).click();
+    const text = page.getByLabel("or paste it");
+    await page.getByText("The first 30 of 100001 lines; all of them are used.").waitFor();
+    assert.equal((await text.inputValue()).split("\n").length, 30);
+    await page.getByRole("button", { name: "Remove it" }).click();
+    assert.equal(await text.inputValue(), "");
+    assert.ok(await text.isEditable());
+  });
+});

@@ -8,10 +8,10 @@ import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
 import { stepParts } from "../charts/record.ts";
 import type { Samples } from "../charts/record.ts";
 import { h } from "../dom.ts";
-import { areaField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
 import { csvOf, recordFields, samplesOf } from "../form/record_fields.ts";
 import { previewPanel } from "../form/record_preview.ts";
+import { recordText } from "../form/record_text.ts";
 import { tuneSubject } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { createPlot } from "../plot/plot.ts";
@@ -60,7 +60,7 @@ export function identifyView(
 
   const heading = h("h1", { tabindex: -1 }, given.name ? `Identify: ${given.name}` : "Identify");
   const busy = h("p", { class: "hint busy", hidden: true }, "Fitting models to the record...");
-  const text = areaField(
+  const text = recordText(
     {
       label: "The record as text",
       hint: "One row a sample: time, controller output u, measurement y.",
@@ -124,7 +124,7 @@ export function identifyView(
     const read = fields.read();
     const chosen = part.read();
     // Text that nobody touched stands for the record as it came.
-    const base = text.input.value === givenText ? samples : { csv: text.input.value };
+    const base = text.read() === givenText ? samples : { csv: text.read() };
     return {
       request: { ...given, record: { ...base, ...read.record, ...(chosen ?? {}) }, identify: read.identify },
       errors: read.errors,
@@ -178,9 +178,9 @@ export function identifyView(
 
   /** What the text is read as, once somebody wants to know. */
   async function look(): Promise<void> {
-    if (text.input.value.trim() === "") return;
+    if (text.read().trim() === "") return;
     try {
-      const preview = await previewRecord({ ...fields.read().record, csv: text.input.value });
+      const preview = await previewRecord({ ...fields.read().record, csv: text.read() });
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
@@ -246,7 +246,7 @@ export function identifyView(
   reading.addEventListener("submit", (event) => {
     event.preventDefault();
     // Another record has another extent.
-    if (text.input.value !== givenText) whole = null;
+    if (text.read() !== givenText) whole = null;
     ask();
   });
 

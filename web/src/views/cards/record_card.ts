@@ -4,11 +4,11 @@ import { previewFile, previewRecord } from "../../api/records.ts";
 import type { Preview } from "../../api/records.ts";
 import type { FieldError, RecordedTest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
-import { areaField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { csvOf, recordFields } from "../../form/record_fields.ts";
 import type { Identify } from "../../form/record_fields.ts";
 import { previewPanel } from "../../form/record_preview.ts";
+import { recordText } from "../../form/record_text.ts";
 
 export interface RecordCard {
   element: HTMLFormElement;
@@ -38,7 +38,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   });
   const choose = h("button", { type: "button", onclick: () => file.click() }, "Choose file");
   const drop = h("div", { class: "drop" }, h("p", {}, "Drop a CSV file here, or"), choose, file);
-  const csv = areaField(
+  const csv = recordText(
     {
       label: "or paste it",
       hint: "One row a sample: time, controller output u, measurement y.",
@@ -99,7 +99,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       return null;
     });
     if (!read) return;
-    csv.input.value = read.text;
+    csv.write(read.text);
     // What was chosen of another file means nothing here.
     fields.load({}, fields.read().identify);
     status.textContent = `${chosen.name}: ${read.preview.rows} rows.`;
@@ -118,9 +118,9 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
 
   /** What is pasted, or read another way, is looked at again. */
   async function look(): Promise<void> {
-    if (csv.input.value.trim() === "") return shown.replaceChildren();
+    if (csv.read().trim() === "") return shown.replaceChildren();
     try {
-      const preview = await previewRecord({ ...fields.read().record, csv: csv.input.value });
+      const preview = await previewRecord({ ...fields.read().record, csv: csv.read() });
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
@@ -128,7 +128,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     }
   }
 
-  csv.input.addEventListener("change", () => void look());
+  csv.onChange(() => void look());
   reading.addEventListener("change", () => void look());
   file.addEventListener("change", () => void take(file.files?.[0]));
   // The whole card takes the file: people do not aim.
@@ -151,9 +151,9 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     element,
     read() {
       const read = fields.read();
-      const missing = csv.input.value.trim() === "";
+      const missing = csv.read().trim() === "";
       return {
-        record: { ...read.record, csv: csv.input.value },
+        record: { ...read.record, csv: csv.read() },
         identify: read.identify,
         errors: missing
           ? [
@@ -166,7 +166,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       };
     },
     load(record, identify) {
-      csv.input.value = csvOf(record);
+      csv.write(csvOf(record));
       fields.load(record, identify);
       shown.replaceChildren();
       status.textContent = "";

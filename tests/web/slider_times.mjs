@@ -86,7 +86,7 @@ function watch(range) {
       };
       port2.postMessage(0);
     });
-  }).observe(document.querySelector(".main-column svg.canvas > g"), { childList: true });
+  }).observe(document.querySelector(".main-column svg.canvas > g"), { childList: true, subtree: true, attributes: true });
   // A move by less than a step draws nothing.
   globalThis.drawn = () =>
     new Promise((resolve) => {

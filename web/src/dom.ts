@@ -56,6 +56,44 @@ function build(tree: TreeNode, namespace: string): Element {
 export const svgElement = (tree: TreeNode): SVGElement => build(tree, SVG) as SVGElement;
 export const mathElement = (tree: TreeNode): MathMLElement => build(tree, MATHML) as MathMLElement;
 
+/** Writes descriptions into an SVG element, one after another: what is as it was is not touched, so that nothing but what
+    moves is laid out again. */
+export function svgWriter(parent: Element): (children: TreeNode[]) => void {
+  let before: (TreeNode | string)[] = [];
+  return (children) => {
+    rewrite(parent, before, children);
+    before = children;
+  };
+}
+
+function rewrite(parent: Element, before: (TreeNode | string)[], after: (TreeNode | string)[]): void {
+  for (let index = before.length - 1; index >= after.length; index -= 1) parent.childNodes[index]!.remove();
+  after.forEach((child, index) => {
+    const old = before[index];
+    if (old === undefined) parent.append(typeof child === "string" ? child : svgElement(child));
+    else if (typeof child !== "string" && typeof old !== "string" && child.tag === old.tag)
+      rewriteNode(parent.childNodes[index] as Element, old, child);
+    else if (child !== old) parent.childNodes[index]!.replaceWith(typeof child === "string" ? child : svgElement(child));
+  });
+}
+
+function rewriteNode(element: Element, before: TreeNode, after: TreeNode): void {
+  const [old, now] = [before.attributes ?? {}, after.attributes ?? {}];
+  for (const name of Object.keys(old)) if (!(name in now)) element.removeAttribute(name);
+  for (const [name, value] of Object.entries(now)) if (old[name] !== value) element.setAttribute(name, String(value));
+  rewrite(element, before.children ?? [], after.children ?? []);
+}
+
+/** Sets a text that may be there already: the same text set again would be laid out again. */
+export function say(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+/** The same of an attribute. */
+export function setAttribute(element: Element, name: string, value: string): void {
+  if (element.getAttribute(name) !== value) element.setAttribute(name, value);
+}
+
 let counter = 0;
 /** An id that no other element of the page has. */
 export function uniqueId(prefix: string): string {

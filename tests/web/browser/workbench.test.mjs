@@ -121,7 +121,7 @@ test("dragging draws all the time though every answer takes 60 ms, and is one st
     await page.evaluate(() => {
       globalThis.redraws = 0;
       const curve = document.querySelector(".main-column svg.canvas > g");
-      new MutationObserver(() => (globalThis.redraws += 1)).observe(curve, { childList: true });
+      new MutationObserver(() => (globalThis.redraws += 1)).observe(curve, { childList: true, subtree: true, attributes: true });
     });
     const started = Date.now();
     await drag(page, slider(page, "Robustness Ms"), 0.22, 0.8, 60, 16);

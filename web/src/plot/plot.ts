@@ -1,5 +1,5 @@
 // One plot on the page: stacked panes over one x axis, with cursor, zoom, keys, data table and exports.
-import { h, node, svgElement, uniqueId } from "../dom.ts";
+import { h, node, say, setAttribute, svgElement, svgWriter, uniqueId } from "../dom.ts";
 import { joinLink, moveCursor, zoomTogether } from "./cursor.ts";
 import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
@@ -50,6 +50,7 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
   const title = h("h3", { id: uniqueId("plot-title") }, frame.title);
   const description = h("p", { class: "visually-hidden", id: uniqueId("plot-text") });
   const drawing = svgElement(node("g"));
+  const write = svgWriter(drawing);
   const overlay = svgElement(node("g", { "pointer-events": "none" }));
   const svg = svgElement(
     node("svg", {
@@ -121,9 +122,9 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
 
   function draw(): void {
     const { width, height } = size;
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    setAttribute(svg, "viewBox", `0 0 ${width} ${height}`);
     layout = layoutFrame(frame, width, height, view, held ? layout : null);
-    drawing.replaceChildren(...drawLayout(frame, layout, clip).map(svgElement));
+    write(drawLayout(frame, layout, clip));
     resetButton.hidden = view.x === null && view.y.every((range) => range === null);
     drawCursor();
   }
@@ -338,14 +339,14 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
   });
   observer.observe(svg);
   const writeTexts = (): void => {
-    title.textContent = frame.title;
-    tableOf.textContent = ` of ${frame.title}`;
-    exportOf.textContent = ` ${frame.title}`;
-    table.setAttribute("aria-label", `Data of ${frame.title}`);
+    say(title, frame.title);
+    say(tableOf, ` of ${frame.title}`);
+    say(exportOf, ` ${frame.title}`);
+    setAttribute(table, "aria-label", `Data of ${frame.title}`);
     const beside = other ? given : given.alternative;
     otherButton.hidden = !given.alternative;
-    otherButton.textContent = beside?.title ?? "";
-    description.textContent = `${frame.description} ${KEYS}`;
+    say(otherButton, beside?.title ?? "");
+    say(description, `${frame.description} ${KEYS}`);
     if (frame.ownLegend) legend.replaceChildren(paneLegend(frame));
   };
   writeTexts();

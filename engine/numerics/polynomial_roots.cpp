@@ -15,9 +15,8 @@ using Complex = std::complex<double>;
 using Index = std::size_t;
 
 constexpr double kRounding = 4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
-constexpr double kSpread = 4;            // a torn root's distance from its centre, in eps^(1/m)
-constexpr int kNewtonSteps = 3;          // a simple root is good to half its digits: they double at each step
-constexpr double kLargestPolish = 1e-6;  // of the root: a longer step means a cluster, not rounding
+constexpr double kSpread = 4;    // a torn root's distance from its centre, in eps^(1/m)
+constexpr int kNewtonSteps = 3;  // a simple root is good to half its digits: they double at each step
 
 Complex horner(std::span<const double> coefficients, Complex x) {
     Complex value = 0;
@@ -30,26 +29,6 @@ Complex horner_derivative(std::span<const double> coefficients, Complex x) {
     const auto degree = coefficients.size() - 1;
     for (std::size_t i = 0; i < degree; ++i) value = value * x + coefficients[i] * static_cast<double>(degree - i);
     return value;
-}
-
-void polish(std::span<const double> coefficients, std::vector<Complex>& roots) {
-    for (std::size_t i = 0; i < roots.size(); ++i) {
-        for (int iteration = 0; iteration < kNewtonSteps; ++iteration) {
-            const Complex value = horner(coefficients, roots[i]);
-            const Complex slope = horner_derivative(coefficients, roots[i]);
-            if (std::abs(slope) == 0) break;
-            Complex better = roots[i] - value / slope;
-            // Newton's method on one root of a cluster spoils the product.
-            if (std::abs(better - roots[i]) > kLargestPolish * std::abs(roots[i])) break;
-            if (roots[i].imag() == 0) better = better.real();
-            if (!(std::abs(horner(coefficients, better)) < std::abs(value))) break;
-            roots[i] = better;
-        }
-        if (roots[i].imag() > 0 && i + 1 < roots.size()) {
-            roots[i + 1] = std::conj(roots[i]);
-            ++i;
-        }
-    }
 }
 
 /// Of the monic polynomial with these roots, scaled so that the roots have size one; with the sums of absolute terms.
@@ -69,15 +48,71 @@ struct Product {
     }
 };
 
-class Merger {
+/// The polynomial itself, monic and in the roots' own geometric mean: powers of it neither over- nor underflow.
+class Given {
 public:
-    Merger(std::span<const double> coefficients, std::vector<Complex>& roots) : roots_(roots), degree_(roots.size()) {
-        // Time in the roots' own geometric mean: powers of it neither over- nor underflow.
+    explicit Given(std::span<const double> coefficients) : degree_(coefficients.size() - 1) {
         const double last = std::abs(coefficients[degree_] / coefficients[0]);
         scale_ = last > 0 ? std::pow(last, 1.0 / static_cast<double>(degree_)) : 1;
         for (Index i = 0; i <= degree_; ++i)
-            given_.push_back(coefficients[i] / coefficients[0] / std::pow(scale_, static_cast<double>(i)));
+            monic_.push_back(coefficients[i] / coefficients[0] / std::pow(scale_, static_cast<double>(i)));
     }
+
+    /// How far the coefficients of these roots' polynomial are off, relative to the terms that they are sums of.
+    double error_of(const std::vector<Complex>& roots) const {
+        const Product product(roots, scale_);
+        double worst = 0;
+        for (Index i = 0; i <= degree_; ++i)
+            if (const double off = std::abs(product.coefficients[i] - monic_[i]); !(off <= worst * product.sizes[i]))
+                worst = product.sizes[i] > 0 ? off / product.sizes[i] : off;
+        return worst;
+    }
+
+    Index degree() const { return degree_; }
+    double scale() const { return scale_; }
+    const std::vector<double>& monic() const { return monic_; }
+
+private:
+    Index degree_;
+    double scale_ = 1;
+    std::vector<double> monic_;
+};
+
+Complex newton(std::span<const double> coefficients, Complex root) {
+    for (int iteration = 0; iteration < kNewtonSteps; ++iteration) {
+        const Complex value = horner(coefficients, root);
+        const Complex slope = horner_derivative(coefficients, root);
+        if (std::abs(slope) == 0) break;
+        Complex better = root - value / slope;
+        if (root.imag() == 0) better = better.real();
+        if (!(std::abs(horner(coefficients, better)) < std::abs(value))) break;
+        root = better;
+    }
+    return root;
+}
+
+/// Each root on its own, pairs together, where that brings the polynomial nearer: Newton's method on one root of a
+/// cluster spoils the product, and could make the two of a narrow pair change places.
+void polish(std::span<const double> coefficients, const Given& given, std::vector<Complex>& roots) {
+    double error = given.error_of(roots);
+    for (Index i = 0; i < roots.size(); ++i) {
+        const bool pair = roots[i].imag() > 0 && i + 1 < roots.size();
+        const Complex better = newton(coefficients, roots[i]);
+        std::vector<Complex> moved = roots;
+        moved[i] = better;
+        if (pair) moved[i + 1] = std::conj(better);
+        if (!pair || better.imag() > 0)
+            if (const double now = given.error_of(moved); now < error) {
+                roots = std::move(moved);
+                error = now;
+            }
+        if (pair) ++i;
+    }
+}
+
+class Merger {
+public:
+    Merger(const Given& given, std::vector<Complex>& roots) : given_(given), roots_(roots), degree_(roots.size()) {}
 
     void run() {
         // All groups at once, since a torn one beside it spoils the test of any; else those that stand by themselves.
@@ -137,12 +172,12 @@ private:
 
     /// Newton's method on the (m - 1)th derivative, whose root at the centre is simple.
     Complex refined(Complex centre, Index m) const {
-        std::vector<double> p = given_;
+        std::vector<double> p = given_.monic();
         for (Index k = 1; k < m; ++k) {
             p.pop_back();
             for (Index i = 0; i < p.size(); ++i) p[i] *= static_cast<double>(p.size() - i);
         }
-        Complex s = centre / scale_;
+        Complex s = centre / given_.scale();
         for (int step = 0; step < kNewtonSteps; ++step) {
             Complex value = 0, slope = 0;
             for (const double c : p) {
@@ -152,29 +187,22 @@ private:
             if (slope == 0.0) break;
             s -= value / slope;
         }
-        return s * scale_;
+        return s * given_.scale();
     }
 
-    bool is_given(const std::vector<Complex>& roots) const {
-        const Product product(roots, scale_);
-        for (Index i = 0; i <= degree_; ++i)
-            if (!(std::abs(product.coefficients[i] - given_[i]) <= kRounding * product.sizes[i])) return false;
-        return true;
-    }
+    bool is_given(const std::vector<Complex>& roots) const { return given_.error_of(roots) <= kRounding; }
 
+    const Given& given_;
     std::vector<Complex>& roots_;
     Index degree_;
-    double scale_ = 1;
-    std::vector<double> given_;
 };
 
 /// Rounding of coefficients tears an m-fold root apart to about eps^(1/m) of itself, differently for every scale of s.
 /// Groups of roots that close are put on one point, their centre as a root of the (m - 1)th derivative, where the
 /// polynomial of the roots so changed is the given one to the rounding of its coefficients; others stay as they are.
 /// `roots`: conjugate pairs as neighbours.
-void merge_multiple_roots(std::span<const double> coefficients, std::vector<Complex>& roots) {
-    if (roots.size() < 2 || roots.size() + 1 != coefficients.size()) return;
-    Merger(coefficients, roots).run();
+void merge_multiple_roots(const Given& given, std::vector<Complex>& roots) {
+    if (roots.size() >= 2) Merger(given, roots).run();
 }
 
 }  // namespace
@@ -194,8 +222,10 @@ std::vector<Complex> polynomial_roots(std::span<const double> coefficients) {
     for (Index i = 1; i < size; ++i) companion[i * size + i - 1] = 1;
     std::vector<Complex> roots = eigenvalues(companion, n);
     for (auto& root : roots) root *= scale;
-    polish(coefficients, roots);
-    merge_multiple_roots(coefficients, roots);
+    if (roots.size() != size) return roots;
+    const Given given(coefficients);
+    polish(coefficients, given, roots);
+    merge_multiple_roots(given, roots);
     return roots;
 }
 

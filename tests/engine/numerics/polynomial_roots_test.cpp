@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "engine/numerics/polynomial_roots.h"
 
@@ -42,6 +43,46 @@ TEST(MultipleRoots, AreFoundBesideOthersAndInPairs) {
         });
         EXPECT_LE(std::abs(*nearest - wanted), 1e-12 * std::abs(wanted));
         roots.erase(nearest);
+    }
+}
+
+// (s + 1)(0.005 s + 1)^2 multiplied out: one coefficient is off by one unit in its last place, which makes a pair of
+// the double root so narrow that a Newton step would turn it over.
+TEST(MultipleRoots, ARoundedCoefficientLeavesTheOthersTheirs) {
+    const auto roots = polynomial_roots(std::vector<double>{2.5e-05, 0.010025, 1.0099999999999998, 1.0});
+    EXPECT_EQ(std::ranges::count_if(roots, [](Complex root) { return std::abs(root + 1.0) < 1e-12; }), 1);
+    EXPECT_EQ(std::ranges::count_if(roots, [](Complex root) { return std::abs(root + 200.0) < 1e-3; }), 2);
+}
+
+TEST(PolynomialRoots, TheirProductIsThePolynomialWhateverItsRounding) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<> decades(-3, 3), damping(0.01, 1);
+    std::uniform_int_distribution<> ulps(-4, 4), kind(0, 3), degree(3, 6);
+    for (int n = 0; n < 20000; ++n) {
+        std::vector<Complex> given;
+        for (const auto size = std::size_t(degree(random)); given.size() < size;) {
+            const double at = std::pow(10, decades(random)), zeta = damping(random);
+            const Complex pair = -at * Complex(zeta, std::sqrt(1 - zeta * zeta));
+            for (int times = kind(random) == 0 ? 1 : 2; times > 0; --times) {
+                if (kind(random) > 0) {
+                    given.push_back(-at);
+                } else {
+                    given.push_back(pair);
+                    given.push_back(std::conj(pair));
+                }
+            }
+        }
+        std::vector<double> coefficients = product_of(given);
+        for (double& c : coefficients) c *= 1 + ulps(random) * 1.1e-16;
+        const auto roots = polynomial_roots(coefficients);
+        ASSERT_EQ(roots.size(), given.size());
+        std::vector<Complex> p{1.0};
+        for (const Complex root : roots) {
+            p.push_back(0);
+            for (std::size_t i = p.size() - 1; i > 0; --i) p[i] -= root * p[i - 1];
+        }
+        for (std::size_t i = 0; i < p.size(); ++i)
+            ASSERT_LE(std::abs(p[i] / coefficients[i] - 1.0), 1e-10) << "polynomial " << n << ", coefficient " << i;
     }
 }
 

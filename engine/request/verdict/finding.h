@@ -38,7 +38,7 @@ public:
     /// With three digits, the unit behind it, and in full precision among the figures.
     Draft& number(const std::string& name, double value, const std::string& unit = "") {
         finding_.figures[name] = value;
-        return say(figure_text(value)).say(unit.empty() || unit == "%" ? unit : " " + unit);
+        return say(figure_text(value)).say(unit.empty() ? unit : " " + unit);
     }
     /// Among the figures alone.
     Draft& figure(const std::string& name, double value) {

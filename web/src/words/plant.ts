@@ -34,8 +34,18 @@ export function structureTitle(plant: Plant): string {
   if (plant.type === "fopdt" && typeof T === "number" && T < 0) return "unstable first order with dead time";
   if (plant.type === "ipdt" && typeof T === "number" && T !== 0) return "integrating with lag and dead time";
   if (plant.type === "sopdt" && plant["zeta"] !== undefined) return "second order that oscillates";
-  if (plant.type === "transfer_function") return "second order with a zero";
+  if (plant.type === "transfer_function") return rationalTitle(plant);
   return plantTitle(plant.type);
+}
+
+const ORDERS = ["", "first", "second", "third", "fourth", "fifth"];
+
+function rationalTitle(plant: Plant): string {
+  const degree = (name: "num" | "den"): number => ((plant[name] as unknown[] | undefined)?.length ?? 1) - 1;
+  const order = ORDERS[degree("den")];
+  if (!order) return plantTitle(plant.type);
+  const zeros = ["", " with a zero"][degree("num")] ?? " with zeros";
+  return `${order} order${zeros}`;
 }
 
 /** Parameter name -> unit. */

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,5 +24,13 @@ SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
 /// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
 /// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
 double balanced_norm(std::span<const double> matrix, int n);
+
+/// Finite zeros of C (sI - A)^-1 B + D: generalised eigenvalues of the system pencil. Empty optional: the transfer
+/// function is 0. A is n x n, row by row; B and C have n numbers. Complex zeros come in exact conjugate pairs, positive
+/// imaginary part first. In transmission_zeros.cpp, because Eigen's generalised solver takes as long to compile as all
+/// of the others.
+std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<const double> A,
+                                                                    std::span<const double> B,
+                                                                    std::span<const double> C, double D, int n);
 
 }  // namespace tunewright

@@ -1,4 +1,4 @@
-#include "engine/numerics/transmission_zeros.h"
+#include "engine/numerics/eigenvalues.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -10,7 +10,6 @@
 #include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/numerics/polynomial_roots.h"
-#include "engine/numerics/transmission_zeros.h"
 
 namespace tunewright {
 namespace {

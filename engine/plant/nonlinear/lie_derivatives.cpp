@@ -8,7 +8,6 @@
 #include "engine/error.h"
 #include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
-#include "engine/numerics/transmission_zeros.h"
 #include "engine/plant/expression/taylor.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
 

@@ -104,7 +104,11 @@ void check_config(const Config& config) {
 std::string default_web_folder() {
     std::error_code error;
     const std::filesystem::path binary = std::filesystem::read_symlink("/proc/self/exe", error);
-    return error ? std::string{} : (binary.parent_path().parent_path() / "web").string();
+    if (error) return {};
+    // As built and in the container, or as a package has it.
+    const std::filesystem::path prefix = binary.parent_path().parent_path();
+    const std::filesystem::path packaged = prefix / "share" / "tunewright" / "web";
+    return (std::filesystem::exists(packaged / "index.html", error) ? packaged : prefix / "web").string();
 }
 
 std::size_t core_count() { return std::max<std::size_t>(1, std::thread::hardware_concurrency()); }

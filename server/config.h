@@ -61,7 +61,7 @@ double parse_duration(const std::string& text);
 /// the default one.
 void check_config(const Config& config);
 
-/// build/release/tunewright -> build/web
+/// build/release/tunewright -> build/web; /usr/bin/tunewright -> /usr/share/tunewright/web
 std::string default_web_folder();
 
 std::size_t core_count();

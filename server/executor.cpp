@@ -53,6 +53,11 @@ bool Executor::run(std::function<void()> task) {
     return true;
 }
 
+std::size_t Executor::waiting() const {
+    const std::lock_guard lock(mutex_);
+    return tasks_.size();
+}
+
 void Executor::work() {
     for (;;) {
         std::function<void()> task;

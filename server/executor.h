@@ -26,10 +26,13 @@ public:
     /// Runs the task there and waits for it. False where none is taken any more. Throws what the task throws.
     bool run(std::function<void()> task);
 
+    /// Posted and not begun.
+    std::size_t waiting() const;
+
 private:
     void work();
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<std::function<void()>> tasks_;
     bool stopping_ = false;

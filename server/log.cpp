@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "server/http/router.h"
+#include "server/jobs/running/ends.h"
 #include "server/json_text.h"
-#include "server/store/store.h"
 
 namespace tunewright::server {
 namespace {
@@ -53,6 +53,11 @@ void start_log(const std::string& format, const std::string& level) {
 
 void stop_log() { spdlog::shutdown(); }
 
+std::size_t dropped_log_lines() {
+    const auto lines = spdlog::thread_pool();
+    return lines ? lines->overrun_counter() : 0;
+}
+
 void log_info(std::string_view message) { log_message(spdlog::level::info, message); }
 
 void log_error(std::string_view message) { log_message(spdlog::level::err, message); }
@@ -73,13 +78,18 @@ void log_answer(const http::Answered& answered) {
                     target, answered.status, ms, answered.bytes, answered.client);
 }
 
-void log_job(const JobEnd& job, double seconds) {
+void log_job(const Ended& ended) {
+    const JobEnd& end = ended.end;
+    const JobRecord& job = ended.held->job;
+    const double ms = ended.seconds * 1e3;
     if (as_json)
-        spdlog::info(R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{})", job.id,
-                     to_string(job.status), seconds * 1e3, job.attempts);
+        spdlog::info(
+            R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{},"method":{},"owner":{},"batch":"{}")",
+            end.id, to_string(end.status), ms, end.attempts, json_string(ended.method), json_string(job.owner),
+            job.batch);
     else
-        spdlog::info("job {} {} after {:.2f} ms, attempt {}", job.id, to_string(job.status), seconds * 1e3,
-                     job.attempts);
+        spdlog::info("job {} {} after {:.2f} ms, attempt {}{}{}", end.id, to_string(end.status), ms, end.attempts,
+                     job.owner.empty() ? "" : ", of " + job.owner, job.batch.empty() ? "" : ", batch " + job.batch);
 }
 
 }  // namespace tunewright::server

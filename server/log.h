@@ -11,12 +11,15 @@ namespace tunewright::server {
 namespace http {
 struct Answered;
 }
-struct JobEnd;
+struct Ended;
 
 /// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
 /// Writes the lines that still wait, and ends the thread.
 void stop_log();
+
+/// How many lines have been dropped since the start.
+std::size_t dropped_log_lines();
 
 /// What happens to the service itself, in one line; the line breaks of a text log are not escaped.
 void log_info(std::string_view message);
@@ -25,7 +28,7 @@ void log_error(std::string_view message);
 /// One answered request: at the level warn where the status is 500 or more, debug for probes (/healthz, /readyz,
 /// /metrics), info otherwise.
 void log_answer(const http::Answered& answered);
-/// One job that a worker has ended, after so many seconds of computing.
-void log_job(const JobEnd& job, double seconds);
+/// One job that a worker has ended.
+void log_job(const Ended& ended);
 
 }  // namespace tunewright::server

@@ -6,9 +6,12 @@
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <tuple>
+
+#include "server/process_figures.h"
 
 namespace tunewright::server {
 
@@ -26,10 +29,24 @@ auto& family(Builder builder, prometheus::Registry& registry, const char* name, 
     return builder.Name(name).Help(help).Register(registry);
 }
 
+/// Of what may take an hour.
+const Histogram::BucketBoundaries kLongTimes{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3600};
+
+double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
+    return then ? std::max(0.0, static_cast<double>(now - *then) * 1e-3) : 0;
+}
+
+/// A counter that somebody else counts.
+void set(Counter& counter, double value) {
+    if (const double more = value - counter.Value(); more > 0) counter.Increment(more);
+}
+
 }  // namespace
 
 struct Metrics::Families {
     prometheus::Registry registry;
+    Gauge& gauge(const char* name, const char* help) { return family(BuildGauge(), registry, name, help).Add({}); }
+
     prometheus::Family<Counter>& requests = family(BuildCounter(), registry, "tunewright_http_requests_total",
                                                    "Answered requests by route, method and status");
     prometheus::Family<Histogram>& latency =
@@ -47,10 +64,41 @@ struct Metrics::Families {
     Counter& dropped = family(BuildCounter(), registry, "tunewright_jobs_dropped_total",
                               "Results that came too late: the job's lease had gone to another process")
                            .Add({});
-    Gauge& queued =
-        family(BuildGauge(), registry, "tunewright_jobs_queued", "Accepted jobs that no worker has yet").Add({});
-    Gauge& running = family(BuildGauge(), registry, "tunewright_jobs_running", "Jobs that workers have").Add({});
-    Gauge& workers = family(BuildGauge(), registry, "tunewright_workers", "Threads that compute jobs").Add({});
+    Counter& interrupted = family(BuildCounter(), registry, "tunewright_jobs_interrupted_total",
+                                  "Jobs found running without a process, which wait again")
+                               .Add({});
+    Counter& given_up = family(BuildCounter(), registry, "tunewright_jobs_given_up_total",
+                               "Jobs that were interrupted too often and have failed")
+                            .Add({});
+    prometheus::Family<Histogram>& wait_family =
+        family(BuildHistogram(), registry, "tunewright_job_wait_seconds",
+               "Time from a job's acceptance to the begin of its computation, by class: single, or entry of a batch");
+    Histogram& single_wait = wait_family.Add({{"class", "single"}}, kLongTimes);
+    Histogram& entry_wait = wait_family.Add({{"class", "entry"}}, kLongTimes);
+    Gauge& queued = gauge("tunewright_jobs_queued", "Accepted jobs that no worker has yet, in all processes together");
+    prometheus::Family<Gauge>& age_family =
+        family(BuildGauge(), registry, "tunewright_queue_age_seconds",
+               "How long the job that is next has waited, by class, in all processes together; 0 where none waits");
+    Gauge& single_age = age_family.Add({{"class", "single"}});
+    Gauge& entry_age = age_family.Add({{"class", "entry"}});
+    Gauge& running = gauge("tunewright_jobs_running", "Jobs that workers have");
+    Gauge& workers = gauge("tunewright_workers", "Threads that compute jobs");
+    Gauge& connections = gauge("tunewright_http_connections", "Open connections of clients");
+    Gauge& body_bytes = gauge("tunewright_http_body_bytes", "Bytes of requests that are not answered yet");
+    Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients do not take");
+    Gauge& streams = gauge("tunewright_event_streams", "Followers of jobs by server-sent events");
+    Gauge& synchronous = gauge("tunewright_synchronous_waiting", "Synchronous calls that wait to be computed");
+    Gauge& batch_tasks = gauge("tunewright_batch_tasks_waiting", "Pieces of batches that wait for a thread");
+    Counter& log_dropped = family(BuildCounter(), registry, "tunewright_log_lines_dropped_total",
+                                  "Lines that a slow reader of the log made room for")
+                               .Add({});
+    Counter& cpu = family(BuildCounter(), registry, "process_cpu_seconds_total", "User and system time").Add({});
+    Gauge& resident = gauge("process_resident_memory_bytes", "Resident memory");
+    Gauge& address_space = gauge("process_virtual_memory_bytes", "Virtual memory");
+    Gauge& files = gauge("process_open_fds", "Open file descriptors");
+    Gauge& most_files = gauge("process_max_fds", "Most file descriptors that may be open");
+    Gauge& threads = gauge("process_threads", "Threads of this process");
+    Gauge& started = gauge("process_start_time_seconds", "Start of this process, in seconds since 1970");
 
     // The families look a metric up by building a map of labels; for each request that is too slow.
     std::mutex mutex;
@@ -60,7 +108,11 @@ struct Metrics::Families {
     std::map<std::string, Histogram*, std::less<>> time_by_operation;
 };
 
-Metrics::Metrics() : families_(std::make_unique<Families>()) {}
+Metrics::Metrics(const std::string& version) : families_(std::make_unique<Families>()) {
+    family(BuildGauge(), families_->registry, "tunewright_build_info", "1, with the version of the program as a label")
+        .Add({{"version", version}})
+        .Set(1);
+}
 Metrics::~Metrics() = default;
 
 void Metrics::count(const http::Answered& answered) {
@@ -96,9 +148,7 @@ void Metrics::count(JobStatus status, const std::string& method, double seconds)
     all.jobs.Add({{"status", std::string(to_string(status))}}).Increment();
     const std::lock_guard lock(all.mutex);
     Histogram*& slot = all.time_by_method[method];
-    if (slot == nullptr)
-        slot = &all.job_time_family.Add(
-            {{"method", method}}, Histogram::BucketBoundaries{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100});
+    if (slot == nullptr) slot = &all.job_time_family.Add({{"method", method}}, kLongTimes);
     slot->Observe(seconds);
 }
 
@@ -116,11 +166,39 @@ void Metrics::count_store(std::string_view operation, double seconds, bool done)
 
 void Metrics::count_dropped() { families_->dropped.Increment(); }
 
-std::string Metrics::text(const JobService& jobs) {
-    families_->queued.Set(static_cast<double>(jobs.queued()));
-    families_->running.Set(static_cast<double>(jobs.running()));
-    families_->workers.Set(static_cast<double>(jobs.workers()));
-    return prometheus::TextSerializer().Serialize(families_->registry.Collect());
+void Metrics::count_begun(bool entry_of_batch, double waited_s) {
+    (entry_of_batch ? families_->entry_wait : families_->single_wait).Observe(waited_s);
+}
+
+void Metrics::count(const Recovery& found) {
+    families_->interrupted.Increment(static_cast<double>(found.interrupted));
+    families_->given_up.Increment(static_cast<double>(found.given_up));
+}
+
+std::string Metrics::text(const Standing& standing) {
+    Families& all = *families_;
+    const auto put = [](Gauge& gauge, std::size_t value) { gauge.Set(static_cast<double>(value)); };
+    put(all.queued, standing.queue.single + standing.queue.entries);
+    all.single_age.Set(seconds_since(standing.queue.next_single, standing.now));
+    all.entry_age.Set(seconds_since(standing.queue.next_entry, standing.now));
+    put(all.running, standing.running);
+    put(all.workers, standing.workers);
+    put(all.connections, standing.clients.connections);
+    put(all.body_bytes, standing.clients.body_bytes);
+    put(all.unsent_bytes, standing.clients.unsent_bytes);
+    put(all.streams, standing.event_streams);
+    put(all.synchronous, standing.synchronous_waiting);
+    put(all.batch_tasks, standing.batch_tasks_waiting);
+    set(all.log_dropped, static_cast<double>(standing.log_lines_dropped));
+    const ProcessFigures process = process_figures();
+    set(all.cpu, process.cpu_seconds);
+    put(all.resident, process.resident_bytes);
+    put(all.address_space, process.virtual_bytes);
+    put(all.files, process.open_files);
+    put(all.most_files, process.most_files);
+    put(all.threads, process.threads);
+    all.started.Set(process.start_time);
+    return prometheus::TextSerializer().Serialize(all.registry.Collect());
 }
 
 }  // namespace tunewright::server

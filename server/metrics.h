@@ -6,13 +6,27 @@
 #include <string_view>
 
 #include "server/http/router.h"
+#include "server/http/server.h"
 #include "server/jobs/service.h"
 
 namespace tunewright::server {
 
+/// How things stand when somebody looks. Nothing in it waits for the store: what the queue holds is as last counted.
+struct Standing {
+    JobStore::Depth queue;
+    UnixMs now = 0;  ///< of the clock that the queue's moments are of
+    std::size_t running = 0, workers = 0;
+    http::Occupancy clients;
+    std::size_t event_streams = 0;
+    std::size_t synchronous_waiting = 0;  ///< calls that wait for their turn to be computed
+    std::size_t batch_tasks_waiting = 0;  ///< pieces of batches that wait for a thread
+    std::size_t log_lines_dropped = 0;
+};
+
 class Metrics {
 public:
-    Metrics();
+    /// `version`: of the program.
+    explicit Metrics(const std::string& version);
     ~Metrics();
     Metrics(const Metrics&) = delete;
     Metrics& operator=(const Metrics&) = delete;
@@ -21,11 +35,14 @@ public:
     /// `method` as in api::JobOutcome.
     void count(JobStatus status, const std::string& method, double seconds);
     void count_dropped();
+    /// A worker begins with a job that was accepted so long ago.
+    void count_begun(bool entry_of_batch, double waited_s);
+    void count(const Recovery& found);
     /// An operation of the store; its name must be one of a few.
     void count_store(std::string_view operation, double seconds, bool done);
 
-    /// Everything counted so far and the queue as it is now.
-    std::string text(const JobService& jobs);
+    /// Everything counted so far, and how things stand.
+    std::string text(const Standing& standing);
 
 private:
     struct Families;

@@ -89,7 +89,7 @@ public:
           server_(limits(config), application(router_)) {
         add_routes();
         if (config.metrics_listen.empty()) return;
-        add_health_routes(metrics_router_, jobs_, *store_, gate_, metrics_);
+        add_health_routes(metrics_router_, jobs_, *store_, gate_, [this] { return metrics_.text(standing()); });
         metrics_server_ = std::make_unique<http::Server>(http::Limits(), application(metrics_router_));
     }
 
@@ -148,14 +148,32 @@ private:
         made.now = [this] { return now(); };
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
-            log_job(ended.end, ended.seconds);
+            log_job(ended);
         };
         made.observer.dropped = [this] { metrics_.count_dropped(); };
+        made.observer.begun = [this](const JobRecord& job) {
+            metrics_.count_begun(!job.batch.empty(), std::max(0.0, static_cast<double>(now() - job.created_at) * 1e-3));
+        };
+        made.observer.recovered = [this](const Recovery& found) { metrics_.count(found); };
         return made;
     }
 
     /// By the store's clock, which the machines of a shared one have in common.
     UnixMs now() const { return wall_clock() + store_->clock_ahead().count(); }
+
+    Standing standing() const {
+        Standing made;
+        made.queue = jobs_.depth();
+        made.now = now();
+        made.running = jobs_.running();
+        made.workers = jobs_.workers();
+        made.clients = server_.occupancy();
+        made.event_streams = jobs_.followers();
+        made.synchronous_waiting = turns_.waiting();
+        made.batch_tasks_waiting = batch_lane_.waiting();
+        made.log_lines_dropped = dropped_log_lines();
+        return made;
+    }
 
     static http::Limits limits(const Config& config) {
         http::Limits made;
@@ -179,7 +197,7 @@ private:
 
     void add_routes() {
         router_.guard([this](http::Request& request) { return gate_.admit(request); });
-        add_health_routes(router_, jobs_, *store_, gate_, metrics_);
+        add_health_routes(router_, jobs_, *store_, gate_, [this] { return metrics_.text(standing()); });
         if (parse_role(config_.role) != Role::worker) add_public_routes();
         router_.observe([this](const http::Answered& answered) {
             metrics_.count(answered);
@@ -233,7 +251,7 @@ private:
     Config config_;
     std::stop_source closing_;
     Timer timer_;
-    Metrics metrics_;
+    Metrics metrics_{TUNEWRIGHT_VERSION};
     std::unique_ptr<JobStore> store_;
     JobService jobs_;
     Turns turns_;

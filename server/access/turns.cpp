@@ -37,6 +37,11 @@ void Turns::give_back() {
     grant();
 }
 
+std::size_t Turns::waiting() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_;
+}
+
 /// Gives what is free to the client whose turn it is.
 void Turns::grant() {
     while (free_ > 0 && !order_.empty()) {

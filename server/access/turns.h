@@ -29,6 +29,7 @@ public:
     /// Waits for a turn; where it is granted, give_back() must follow. `left` is asked now and then.
     Wait take(const std::string& client, Clock::time_point deadline, const std::function<bool()>& left);
     void give_back();
+    std::size_t waiting() const;
 
 private:
     struct Ticket {
@@ -38,7 +39,7 @@ private:
     void grant();
     void withdraw(const std::string& client, Ticket& ticket);
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::size_t free_;
     const std::size_t most_waiting_;
     std::size_t waiting_ = 0;

@@ -43,6 +43,11 @@ public:
         return true;
     }
 
+    std::size_t taken() const {
+        const std::lock_guard lock(mutex_);
+        return whole_ - left_;
+    }
+
 private:
     void give_back(std::size_t bytes) {
         {
@@ -52,7 +57,7 @@ private:
         freed_.notify_all();
     }
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable freed_;
     std::size_t left_;
     const std::size_t whole_;

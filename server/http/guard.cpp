@@ -221,6 +221,17 @@ bool Server::Guard::gives_way(const Connection& connection) {
     return oldest && sum > limits_.unsent;
 }
 
+Occupancy Server::Guard::occupancy() const {
+    Occupancy now{.body_bytes = bodies_.taken()};
+    const std::lock_guard lock(mutex_);
+    now.connections = connections_;
+    any([&](const Connection* connection) {
+        now.unsent_bytes += connection->unsent;
+        return false;
+    });
+    return now;
+}
+
 bool Server::Guard::process_and_close_socket(socket_t socket) {
     const sockaddr_storage peer = peer_of(socket);
     Connection connection(socket, text_of(peer), network_of(peer), limits_,
@@ -255,6 +266,8 @@ Server::~Server() = default;
 int Server::listen(const std::string& host, int port) { return guard_->open(host, port); }
 
 void Server::run() { guard_->serve(); }
+
+Occupancy Server::occupancy() const { return guard_->occupancy(); }
 
 void Server::stop() { guard_->close(); }
 

@@ -23,6 +23,7 @@ public:
     int open(const std::string& host, int port);
     void serve();
     void close();
+    Occupancy occupancy() const;
     bool idle_within(std::chrono::milliseconds patience) { return crew_.stop_within(patience); }
 
 private:
@@ -49,7 +50,7 @@ private:
     std::atomic<bool> stopping_ = false;  ///< answers say that they are the last
     std::atomic<bool> closed_ = false;    ///< nobody is accepted any more
     int listener_ = -1;                   ///< the port, open for longer than the library holds it
-    std::mutex mutex_;                    ///< of what follows
+    mutable std::mutex mutex_;            ///< of what follows
     std::map<std::string, Neighbours, std::less<>> neighbours_;  ///< by network; none is empty
     bool over_ = false;                                          ///< who comes now is not served
     std::size_t connections_ = 0;                                ///< accepted, whether they have a thread yet or not

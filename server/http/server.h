@@ -45,6 +45,13 @@ struct Application {
     std::function<Response(int status, const std::string& detail, const std::string& remote_addr)> refuse;
 };
 
+/// What clients hold at this moment.
+struct Occupancy {
+    std::size_t connections = 0;
+    std::size_t body_bytes = 0;    ///< of requests that are not answered yet
+    std::size_t unsent_bytes = 0;  ///< of answers that clients do not take
+};
+
 class Server {
 public:
     Server(const Limits& limits, Application application);
@@ -62,6 +69,8 @@ public:
 
     /// From any thread.
     void stop();
+
+    Occupancy occupancy() const;
 
     /// After run(): true where the handlers have ended by then. Without that this must not be destroyed.
     bool idle_within(std::chrono::milliseconds patience);

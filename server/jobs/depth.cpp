@@ -63,7 +63,11 @@ void Depth::refresh(JobStore& store) {
 
 JobStore::Depth Depth::now() const {
     const std::lock_guard lock(mutex_);
-    return {waiting_.single + accepting_, waiting_.entries, waiting_.suspects};
+    JobStore::Depth now = waiting_;
+    now.single += accepting_;
+    if (waiting_.single == 0) now.next_single.reset();
+    if (waiting_.entries == 0) now.next_entry.reset();
+    return now;
 }
 
 }  // namespace tunewright::server

@@ -51,6 +51,7 @@ JobService::~JobService() { drain(std::chrono::seconds(0)); }
 Recovery JobService::start() {
     Recovery recovery =
         store_.recover(settings_.now(), settings_.most_attempts, given_up_problem(settings_.most_attempts));
+    if (settings_.observer.recovered) settings_.observer.recovered(recovery);
     depth_.refresh(store_);
     looking_ = std::make_unique<Pulse>([this] { return look(); });
     store_.watch([this](const StoreNotice& notice) { hear(notice); });
@@ -214,6 +215,7 @@ LeaseSettings JobService::lease_settings() {
     made.reclaimed = [this](const Recovery& found) {
         log_info(std::to_string(found.interrupted) + " jobs of a process that has gone wait again, " +
                  std::to_string(found.given_up) + " were given up");
+        if (settings_.observer.recovered) settings_.observer.recovered(found);
         for (const std::string& id : found.ended) tell_ended(id);
         claims_.arrived();
     };
@@ -226,6 +228,7 @@ WorkerSettings JobService::worker_settings() {
     made.version = settings_.version;
     made.run = settings_.run;
     made.now = settings_.now;
+    made.begun = settings_.observer.begun;
     made.lost = [this](const std::shared_ptr<HeldJob>& held) { forget(held); };
     return made;
 }

@@ -31,6 +31,8 @@ namespace tunewright::server {
 struct JobObserver {
     std::function<void(const Ended& ended)> ended;  ///< once for each job that a worker ended, when the store has it
     std::function<void()> dropped;  ///< a result came too late: another process has the job, or had ended it
+    std::function<void(const JobRecord& job)> begun;       ///< a worker begins with it
+    std::function<void(const Recovery& found)> recovered;  ///< jobs whose process had gone, at the start and later
 };
 
 struct JobSettings {
@@ -127,6 +129,8 @@ public:
     /// Held by this process.
     std::size_t running() const { return held_.size(); }
     std::size_t workers() const { return settings_.workers; }
+    /// Who follows jobs here.
+    std::size_t followers() const { return followers_.count(); }
 
 private:
     ClaimSettings claim_settings();

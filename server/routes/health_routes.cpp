@@ -20,13 +20,13 @@ Response ready(const JobService& jobs, const JobStore& store, Gate& gate) {
 }  // namespace
 
 void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       Metrics& metrics) {
+                       std::function<std::string()> metrics) {
     const std::string alive = std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
     router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
     router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate); });
-    router.add("GET", "/metrics", [&](const Call&) {
+    router.add("GET", "/metrics", [metrics = std::move(metrics)](const Call&) {
         Response response;
-        response.body = metrics.text(jobs);
+        response.body = metrics();
         return response.set("Content-Type", "text/plain; version=0.0.4; charset=utf-8");
     });
 }

@@ -1,7 +1,9 @@
 // What the service answers: the routes of the contract, each translated between HTTP and the facade of api/.
 #pragma once
 
+#include <functional>
 #include <stop_token>
+#include <string>
 
 #include "server/access/gate.h"
 #include "server/access/places.h"
@@ -11,7 +13,6 @@
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
-#include "server/metrics.h"
 
 namespace tunewright::server {
 
@@ -47,8 +48,8 @@ void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, co
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.
 void add_description_routes(http::Router& router);
 
-/// /healthz, /readyz, /metrics.
+/// /healthz, /readyz, /metrics. None of them asks the store: they answer while it hangs.
 void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       Metrics& metrics);
+                       std::function<std::string()> metrics);
 
 }  // namespace tunewright::server

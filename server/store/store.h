@@ -268,9 +268,10 @@ public:
     virtual std::vector<JobState> states(const std::vector<std::string>& ids) = 0;
     virtual JobPage list(const JobQuery& query) = 0;
     struct Depth {
-        std::size_t single = 0;    ///< waiting jobs that were posted one by one
-        std::size_t entries = 0;   ///< waiting jobs of batches
-        std::size_t suspects = 0;  ///< of both: those that Claim::suspects would give now
+        std::size_t single = 0;                         ///< waiting jobs that were posted one by one
+        std::size_t entries = 0;                        ///< waiting jobs of batches
+        std::size_t suspects = 0;                       ///< of both: those that Claim::suspects would give now
+        std::optional<UnixMs> next_single, next_entry;  ///< when the job of each class that is next was accepted
     };
     virtual Depth depth() = 0;
 

@@ -1,17 +1,18 @@
 #!/usr/bin/python3
-"""Runs every *_test.py beside it and prints the counts that script/test adds up."""
+"""Runs every *_test.py beside it and in deploy/, and prints the counts that script/test adds up."""
 
 import pathlib
 import sys
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
+ROOMS = [HERE, HERE / "deploy"]
+sys.path[:0] = map(str, ROOMS)
 
 
 def main():
     names = sys.argv[1:]
-    suite = unittest.defaultTestLoader.discover(str(HERE), pattern="*_test.py")
+    suite = unittest.TestSuite(unittest.TestLoader().discover(str(room), pattern="*_test.py") for room in ROOMS)
     if names:
         suite = unittest.defaultTestLoader.loadTestsFromNames(names)
     result = unittest.TextTestRunner(verbosity=2).run(suite)

@@ -40,6 +40,7 @@ void Workers::work(const std::stop_token& stop) {
 void Workers::run(const std::shared_ptr<HeldJob>& held) {
     held->enter(HeldJob::Stage::computing);
     if (held->why() != Stop::none) return end_unbegun(held);
+    if (settings_.begun) settings_.begun(held->job);
     // The time that it waited, claimed, for a worker is not its own.
     const Timer::Key deadline =
         timer_.after(std::chrono::duration<double>(held->job.timeout_s), [held] { held->request(Stop::timeout); });

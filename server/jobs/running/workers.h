@@ -21,6 +21,7 @@ struct WorkerSettings {
     std::string version;
     std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
     std::function<UnixMs()> now;
+    std::function<void(const JobRecord& job)> begun;            ///< may be empty
     std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another has it
 };
 

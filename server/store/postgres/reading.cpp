@@ -180,8 +180,15 @@ Counted count_waiting(Session& session) {
         "(SELECT coalesce(sum(c.queued), 0) FROM batch_counts c JOIN batches b ON b.seq = c.batch "
         "WHERE b.state <> 'leaving'), "
         "(SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= clock_timestamp()), "
-        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint")[0];
-    return {{row[0].as<std::size_t>(), row[1].as<std::size_t>(), row[2].as<std::size_t>()}, row[3].as<UnixMs>()};
+        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint, "
+        "(SELECT created_at FROM jobs WHERE status = 'queued' AND class = 0 ORDER BY class, turn, seq LIMIT 1), "
+        "(SELECT created_at FROM jobs WHERE status = 'queued' AND class = 1 ORDER BY class, turn, seq LIMIT 1)")[0];
+    const auto moment = [](const pqxx::field& field) {
+        return field.is_null() ? std::nullopt : std::optional(field.as<UnixMs>());
+    };
+    return {
+        {row[0].as<std::size_t>(), row[1].as<std::size_t>(), row[2].as<std::size_t>(), moment(row[4]), moment(row[5])},
+        row[3].as<UnixMs>()};
 }
 
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id) {

@@ -134,8 +134,21 @@ JobPage list_jobs(Connection& store, const JobQuery& query) {
     return page;
 }
 
+namespace {
+
+std::optional<UnixMs> next_accepted(Connection& store, int job_class) {
+    Connection::Use row =
+        store.use("SELECT created_at FROM jobs WHERE status = 'queued' AND class = ?1 ORDER BY turn, seq LIMIT 1");
+    if (!row.with(job_class).next()) return std::nullopt;
+    return row.integer(0);
+}
+
+}  // namespace
+
 JobStore::Depth count_waiting(Connection& store) {
     JobStore::Depth depth;
+    depth.next_single = next_accepted(store, 0);
+    depth.next_entry = next_accepted(store, 1);
     depth.single =
         static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0"));
     // Batches count their entries themselves; those of one that is leaving wait no longer.

@@ -125,6 +125,49 @@ class KubernetesTest(unittest.TestCase):
         self.assertEqual(named, there)
 
 
+class OptionalManifestsTest(unittest.TestCase):
+    """What belongs to a cluster's own operators: ingress, Prometheus, its adapter."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.found = {document["kind"]: document for path in (DEPLOY / "kubernetes" / "optional").glob("*.yaml")
+                     for document in yaml.safe_load_all(path.read_text())}
+        cls.deployments = {deployment["metadata"]["name"]: deployment for deployment in of_kind("Deployment")}
+
+    def test_the_ingress_leads_to_the_service(self):
+        service = next(item for item in of_kind("Service") if item["metadata"]["name"] == "tunewright")
+        ingress = self.found["Ingress"]
+        backend = ingress["spec"]["rules"][0]["http"]["paths"][0]["backend"]["service"]
+        self.assertEqual(backend["name"], service["metadata"]["name"])
+        self.assertIn(backend["port"]["name"], [port["name"] for port in service["spec"]["ports"]])
+        self.assertEqual({host for entry in ingress["spec"]["tls"] for host in entry["hosts"]},
+                         {rule["host"] for rule in ingress["spec"]["rules"]})
+
+    def test_prometheus_finds_every_replica(self):
+        service, monitor = self.found["Service"], self.found["ServiceMonitor"]
+        wanted = monitor["spec"]["selector"]["matchLabels"]
+        self.assertLessEqual(wanted.items(), service["metadata"]["labels"].items())
+        for other in of_kind("Service"):
+            self.assertFalse(wanted.items() <= other["metadata"]["labels"].items(), "it would be scraped twice")
+        port = service["spec"]["ports"][0]
+        self.assertEqual(monitor["spec"]["endpoints"][0]["port"], port["name"])
+        for deployment in self.deployments.values():
+            pod = deployment["spec"]["template"]
+            self.assertLessEqual(service["spec"]["selector"].items(), pod["metadata"]["labels"].items())
+            self.assertIn(port["targetPort"], [one["name"] for one in pod["spec"]["containers"][0]["ports"]])
+
+    def test_workers_scale_by_figures_that_there_are(self):
+        scaler = self.found["HorizontalPodAutoscaler"]
+        self.assertIn(scaler["spec"]["scaleTargetRef"]["name"], self.deployments)
+        self.assertIn(scaler["metadata"]["name"], [item["metadata"]["name"] for item in of_kind(scaler["kind"])])
+        with Service() as service:
+            figures = service.get("/metrics").body.decode()
+        for metric in scaler["spec"]["metrics"]:
+            named = metric["external"]["metric"]
+            label = '%s{class="%s"}' % (named["name"], named["selector"]["matchLabels"]["class"])
+            self.assertIn(label, figures)
+
+
 class ComposeTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -1,0 +1,19 @@
+// What the system says of this process, under the names that every exporter of Prometheus uses.
+#pragma once
+
+#include <cstddef>
+
+namespace tunewright::server {
+
+struct ProcessFigures {
+    double cpu_seconds = 0;  ///< user and system, since the start
+    double start_time = 0;   ///< seconds since 1970
+    std::size_t resident_bytes = 0, virtual_bytes = 0;
+    std::size_t open_files = 0, most_files = 0;
+    std::size_t threads = 0;
+};
+
+/// From /proc; what cannot be read there stays 0.
+ProcessFigures process_figures();
+
+}  // namespace tunewright::server

@@ -9,8 +9,9 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kSlice = 100;
-constexpr std::chrono::milliseconds kBetweenSlices{100};
+constexpr std::size_t kSlice = 5000;  // which the store parts again, so that others come between
+constexpr std::chrono::milliseconds kBetweenSlices{20};
+constexpr int kPauseShare = 4;  // of a slice's time: the pause before the next one
 constexpr std::chrono::milliseconds kRest{10'000};
 constexpr std::chrono::seconds kJump{60};
 constexpr std::chrono::hours kPause{1};
@@ -19,17 +20,20 @@ constexpr std::chrono::hours kPause{1};
 
 std::chrono::milliseconds Sweeper::sweep() {
     if (!retention_) return kRest;
-    if (more_.exchange(false)) next_ = Clock::now() + kBetweenSlices;
+    if (more_.exchange(false)) next_ = Clock::now() + pause_.load();
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next_ - Clock::now());
     // While a slice is under way: soon enough for the next one.
-    if (wait.count() > 0 || sweeping_.exchange(true)) return std::max(wait, kBetweenSlices);
+    if (wait.count() > 0) return wait;
+    if (sweeping_.exchange(true)) return kBetweenSlices;
     next_ = Clock::now() + std::min<std::chrono::milliseconds>(kRest, *retention_);
     const UnixMs now = now_();
     if (!store_.shared() && clock_jumped(now)) {
         sweeping_ = false;
         return kBetweenSlices;
     }
-    store_.sweep(now, *retention_, kSlice, [this](const Outcome<std::size_t>& swept) {
+    const auto begun = Clock::now();
+    store_.sweep(now, *retention_, kSlice, [this, begun](const Outcome<std::size_t>& swept) {
+        pause_ = std::chrono::ceil<std::chrono::milliseconds>((Clock::now() - begun) / kPauseShare);
         const auto* count = std::get_if<std::size_t>(&swept);
         more_ = count != nullptr && *count >= kSlice;
         sweeping_ = false;

@@ -31,6 +31,7 @@ private:
     Clock::time_point last_steady_{};
     std::atomic<bool> sweeping_ = false;
     std::atomic<bool> more_ = false;
+    std::atomic<std::chrono::milliseconds> pause_{};  ///< before the next slice, where there is more
 };
 
 }  // namespace tunewright::server

@@ -148,7 +148,8 @@ public:
     }
 
 private:
-    enum Manner { kDurable, kQuick, kBulky };
+    /// Idle: bulky, and not waiting for the disk: after a power cut it is done again.
+    enum Manner { kDurable, kQuick, kBulky, kIdle };
 
     /// Queues `work` for the writer and passes its value on after the commit.
     template <class T, class Work>
@@ -159,8 +160,8 @@ private:
         change.done = [value, done = std::move(done)](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(std::move(*value));
         };
-        change.durable = manner != kQuick;
-        change.bulky = manner == kBulky;
+        change.durable = manner == kDurable || manner == kBulky;
+        change.bulky = manner == kBulky || manner == kIdle;
         writer_->submit(std::move(change));
     }
 
@@ -315,7 +316,7 @@ void SqliteStore::sweep_on(UnixMs ended_before, std::size_t most, std::size_t go
     const auto work = [ended_before, left = most - gone](Connection& store) {
         return left == 0 ? 0 : sweep_slice(store, ended_before, left);
     };
-    write<std::size_t>(kBulky, work, [=, this, done = std::move(done)](const Outcome<std::size_t>& outcome) {
+    write<std::size_t>(kIdle, work, [=, this, done = std::move(done)](const Outcome<std::size_t>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
         const std::size_t slice = std::get<std::size_t>(outcome);
         slice > 0 ? sweep_on(ended_before, most, gone + slice, done) : done(gone);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "api/report/report.h"
+#include "server/clock.h"
 #include "server/config.h"
 #include "server/http/problems.h"
 #include "server/jobs/timer.h"
@@ -42,10 +43,6 @@ int fail(const std::string& problem_json) {
 }
 
 int fail(const api::Problem& problem) { return fail(api::to_json(problem)); }
-
-double monotonic_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // A request is one JSON object; a log may have one in each line.
 bool is_request(const std::string& text) {

@@ -12,6 +12,7 @@
 #include <iostream>
 
 #include "server/access/gate.h"
+#include "server/clock.h"
 #include "server/executor.h"
 #include "server/http/problems.h"
 #include "server/http/router.h"
@@ -35,11 +36,6 @@ constexpr std::size_t kWaitingComputations = 64;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
-
-UnixMs wall_clock() {
-    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
-        .count();
-}
 
 /// Answers of some 100 KiB come and go on many threads. Returned to the system each time, they cost a fifth of all jobs
 /// a second in page faults; what is larger than a MiB is returned.

@@ -1,11 +1,9 @@
 #include "server/access/keys.h"
 
 #include <fcntl.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -15,6 +13,7 @@
 
 #include "api/json/digest.h"
 #include "server/log.h"
+#include "server/random.h"
 
 namespace tunewright::server {
 namespace {
@@ -89,18 +88,7 @@ std::vector<KeyLine> parse_keys(std::string_view text) {
     return lines;
 }
 
-std::string new_key() {
-    std::array<unsigned char, 32> bytes{};
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-        throw std::runtime_error("the system gives no random bytes");
-    constexpr std::string_view digits = "0123456789abcdef";
-    std::string key = "tw_";
-    for (const unsigned char byte : bytes) {
-        key.push_back(digits[byte >> 4]);
-        key.push_back(digits[byte & 15]);
-    }
-    return key;
-}
+std::string new_key() { return "tw_" + random_hex(32); }
 
 KeyRing::KeyRing(std::string path, std::function<Clock::time_point()> now)
     : path_(std::move(path)), now_(std::move(now)), looked_(now_()) {

@@ -23,12 +23,6 @@ bool has_control(std::string_view text) {
     return std::ranges::any_of(text, [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
 }
 
-std::string_view trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-    return text;
-}
-
 bool has_word(std::string_view list, std::string_view word) {
     while (!list.empty()) {
         const std::size_t comma = list.find(',');
@@ -149,6 +143,12 @@ Head refuse(int status, std::string detail) {
     head.status = status;
     head.detail = std::move(detail);
     return head;
+}
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    return text;
 }
 
 Head read_head(std::string_view input) {

@@ -1,4 +1,5 @@
 #include "server/http/negotiation.h"
+#include "server/http/head.h"
 
 #include <fmt/format.h>
 
@@ -11,12 +12,6 @@ namespace tunewright::server::http {
 namespace {
 
 constexpr std::chrono::seconds kMaxWait{60};
-
-std::string_view trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-    return text;
-}
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
@@ -112,12 +107,13 @@ std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
     return std::nullopt;
 }
 
-std::string entity_tag(std::string_view body) {
-    // FNV-1a, 64 bits: the same text gives the same tag in every process.
+std::string text_sum(std::string_view text) {
     std::uint64_t hash = 14695981039346656037ULL;
-    for (const unsigned char c : body) hash = (hash ^ c) * 1099511628211ULL;
-    return fmt::format("\"{:016x}\"", hash);
+    for (const unsigned char c : text) hash = (hash ^ c) * 1099511628211ULL;
+    return fmt::format("{:016x}", hash);
 }
+
+std::string entity_tag(std::string_view body) { return '"' + text_sum(body) + '"'; }
 
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {
     response.set("ETag", tag);

@@ -30,7 +30,10 @@ bool sends_json(const Request& request);
 /// `wait` of RFC 7240, at most 60 s; nothing where it is absent or not a whole number.
 std::optional<std::chrono::seconds> preferred_wait(const Request& request);
 
-/// A strong entity tag of the bytes, with its quotes.
+/// A sum of the bytes that is the same in every process, as 16 hexadecimal digits (FNV-1a, 64 bits).
+std::string text_sum(std::string_view text);
+
+/// A strong entity tag of the bytes, with its quotes: their sum.
 std::string entity_tag(std::string_view body);
 
 /// Sets ETag, and turns the answer into 304 where the request has that tag already, as a weak or a strong one.

@@ -1,14 +1,12 @@
 #include "server/jobs/service.h"
 
-#include <sys/random.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "server/jobs/running/ends.h"
 #include "server/log.h"
+#include "server/random.h"
 
 namespace tunewright::server {
 namespace {
@@ -26,11 +24,8 @@ JobSettings named(JobSettings settings) {
 
 std::string new_job_id() {
     constexpr std::string_view alphabet = "0123456789abcdefghjkmnpqrstvwxyz";
-    std::array<unsigned char, 26> bytes{};
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-        throw std::runtime_error("the system gives no random bytes");
     std::string id;
-    for (const unsigned char byte : bytes) id.push_back(alphabet[byte % alphabet.size()]);
+    for (const unsigned char byte : random_bytes(26)) id.push_back(alphabet[byte % alphabet.size()]);
     return id;
 }
 

@@ -23,11 +23,9 @@ constexpr std::chrono::milliseconds kLook{1000};  // for clients that have gone
 constexpr int kHeartbeat = 15;                    // looks
 constexpr const char* kRetry = "retry: 2000\n\n";
 
-/// Names one state of progress alike in every process: attempt and a sum of the text (FNV-1a, 64 bits).
+/// Names one state of progress alike in every process: attempt and a sum of the text.
 std::string state_id(int attempts, std::string_view progress) {
-    std::uint64_t sum = 14695981039346656037U;
-    for (const char c : progress) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211U;
-    return fmt::format("{}-{:016x}", attempts, sum);
+    return fmt::format("{}-{}", attempts, http::text_sum(progress));
 }
 
 std::string event(std::string_view name, const std::string& id, const std::string& data) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "api/service.h"
+#include "server/clock.h"
 #include "server/http/negotiation.h"
 #include "server/http/problems.h"
 #include "server/routes/request_checks.h"
@@ -33,10 +34,6 @@ bool is_file(const http::Request& request) {
     const std::string type = http::media_type(request);
     return type == "text/csv" || type == "application/csv" || type == "text/tab-separated-values" ||
            type == "text/plain" || type == "application/octet-stream";
-}
-
-double monotonic_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 Response too_slow(std::chrono::seconds limit) {

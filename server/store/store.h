@@ -20,11 +20,10 @@
 #include <variant>
 #include <vector>
 
+#include "server/clock.h"
 #include "server/jobs/state.h"
 
 namespace tunewright::server {
-
-using UnixMs = std::int64_t;  ///< milliseconds since 1970, UTC
 
 /// Why a store could not do its work.
 struct StoreFault {

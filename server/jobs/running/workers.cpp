@@ -1,5 +1,6 @@
 #include "server/jobs/running/workers.h"
 
+#include "server/clock.h"
 #include "server/executor.h"
 #include "server/jobs/running/ends.h"
 #include "server/log.h"
@@ -11,10 +12,6 @@ using Status = api::JobOutcome::Status;
 using Stop = HeldJob::Stop;
 
 constexpr int kNiceness = 5;
-
-double monotonic_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -1,39 +1,19 @@
 #include "server/store/postgres/postgres_store.h"
 
-#include <sys/random.h>
-
-#include <array>
 #include <atomic>
 #include <future>
 
+#include "server/clock.h"
+#include "server/random.h"
 #include "server/store/postgres/changes.h"
 #include "server/store/postgres/listener.h"
 #include "server/store/postgres/readers.h"
 #include "server/store/postgres/reading.h"
-#include "server/store/postgres/schema.h"
 #include "server/store/postgres/writer.h"
 
 namespace tunewright::server {
 namespace postgres {
 namespace {
-
-UnixMs wall_clock() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::milliseconds>(system_clock::now().time_since_epoch()).count();
-}
-
-/// Tells the notices of this process from those of others.
-std::string new_tag() {
-    std::array<unsigned char, 6> bytes{};
-    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-        throw std::runtime_error("the system gives no random bytes");
-    std::string tag;
-    for (const unsigned char byte : bytes) {
-        tag += "0123456789abcdef"[byte >> 4];
-        tag += "0123456789abcdef"[byte & 15];
-    }
-    return tag;
-}
 
 class PostgresStore : public JobStore {
 public:
@@ -301,7 +281,7 @@ std::unique_ptr<JobStore> open_postgres_store(const std::string& uri) {
     try {
         auto session = std::make_unique<postgres::Session>(address);
         postgres::migrate(*session);
-        return std::make_unique<postgres::PostgresStore>(address, postgres::new_tag(), std::move(session));
+        return std::make_unique<postgres::PostgresStore>(address, postgres::random_hex(6), std::move(session));
     } catch (const std::exception& error) {
         throw StoreError(
             {StoreFault::Kind::unavailable, "Cannot open the store " + address.shown() + ": " + error.what() + "."});

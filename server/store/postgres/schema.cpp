@@ -1,6 +1,7 @@
-#include "server/store/postgres/schema.h"
-
+// The tables of the PostgreSQL store and the steps that lead to them.
 #include <array>
+
+#include "server/store/postgres/session.h"
 
 namespace tunewright::server::postgres {
 namespace {

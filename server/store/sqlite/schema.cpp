@@ -1,10 +1,8 @@
-#include "server/store/sqlite/schema.h"
-
-#include <SQLiteCpp/SQLiteCpp.h>
-
+// The tables of the SQLite store and the steps that lead to them.
 #include <array>
 #include <string>
 
+#include "server/store/sqlite/connection.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {

@@ -10,10 +10,10 @@
 #include <mutex>
 #include <type_traits>
 
+#include "server/clock.h"
 #include "server/store/sqlite/batches.h"
 #include "server/store/sqlite/jobs.h"
 #include "server/store/sqlite/reading.h"
-#include "server/store/sqlite/schema.h"
 #include "server/store/sqlite/writer.h"
 
 namespace tunewright::server {
@@ -21,11 +21,6 @@ namespace {
 
 constexpr UnixMs kEver = std::numeric_limits<UnixMs>::max();
 constexpr const char* kPageCache = "PRAGMA cache_size = -16384";  // KiB; the default of 2 MiB thrashes in long queues
-
-UnixMs wall_clock() {
-    using std::chrono::system_clock;
-    return std::chrono::duration_cast<std::chrono::milliseconds>(system_clock::now().time_since_epoch()).count();
-}
 
 /// Held while the file is open, so that two services never take each other's jobs.
 class FileLock {

@@ -20,11 +20,12 @@ constexpr std::chrono::hours kPause{1};
 
 std::chrono::milliseconds Sweeper::sweep() {
     if (!retention_) return kRest;
-    if (more_.exchange(false)) next_ = Clock::now() + pause_.load();
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next_ - Clock::now());
+    if (!sweeping_ && more_.exchange(false)) next_ = Clock::now() + pause_.load();
     // While a slice is under way: soon enough for the next one.
+    if (sweeping_) return kBetweenSlices;
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next_ - Clock::now());
     if (wait.count() > 0) return wait;
-    if (sweeping_.exchange(true)) return kBetweenSlices;
+    sweeping_ = true;
     next_ = Clock::now() + std::min<std::chrono::milliseconds>(kRest, *retention_);
     const UnixMs now = now_();
     if (!store_.shared() && clock_jumped(now)) {

@@ -1,4 +1,5 @@
-// Deletes jobs that ended longer ago than results are kept: a small slice at a time, so that nobody waits behind it.
+// Deletes jobs that ended longer ago than results are kept: thousands at a time while there are more, which the store
+// parts into slices, so that nobody waits behind them.
 #pragma once
 
 #include <atomic>

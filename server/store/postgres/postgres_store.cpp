@@ -281,7 +281,7 @@ std::unique_ptr<JobStore> open_postgres_store(const std::string& uri) {
     try {
         auto session = std::make_unique<postgres::Session>(address);
         postgres::migrate(*session);
-        return std::make_unique<postgres::PostgresStore>(address, postgres::random_hex(6), std::move(session));
+        return std::make_unique<postgres::PostgresStore>(address, random_hex(6), std::move(session));
     } catch (const std::exception& error) {
         throw StoreError(
             {StoreFault::Kind::unavailable, "Cannot open the store " + address.shown() + ": " + error.what() + "."});

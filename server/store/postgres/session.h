@@ -101,8 +101,8 @@ private:
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at a
-/// time: replicas may start together. A step is never edited after a release. Throws Failure, or StoreError with a
+/// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
+/// a time: replicas may start together. A step is never edited after a release. Throws Failure, or StoreError with a
 /// sentence where the database is not fit.
 void migrate(Session& session);
 

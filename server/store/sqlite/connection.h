@@ -64,8 +64,8 @@ private:
     std::map<std::string, SQLite::Statement, std::less<>> statements_;
 };
 
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is never
-/// edited after a release. Throws StoreError where it was written by a newer program.
+/// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
+/// never edited after a release. Throws StoreError where it was written by a newer program.
 void migrate(SQLite::Database& database);
 
 }  // namespace tunewright::server

@@ -25,4 +25,11 @@ std::string random_hex(std::size_t bytes) {
     return text;
 }
 
+std::string new_id() {
+    constexpr std::string_view alphabet = "0123456789abcdefghjkmnpqrstvwxyz";
+    std::string id;
+    for (const unsigned char byte : random_bytes(26)) id.push_back(alphabet[byte % alphabet.size()]);
+    return id;
+}
+
 }  // namespace tunewright::server

@@ -16,18 +16,11 @@ using Stop = HeldJob::Stop;
 constexpr std::chrono::seconds kStopPatience{2};
 
 JobSettings named(JobSettings settings) {
-    if (settings.name.empty()) settings.name = new_job_id();
+    if (settings.name.empty()) settings.name = new_id();
     return settings;
 }
 
 }  // namespace
-
-std::string new_job_id() {
-    constexpr std::string_view alphabet = "0123456789abcdefghjkmnpqrstvwxyz";
-    std::string id;
-    for (const unsigned char byte : random_bytes(26)) id.push_back(alphabet[byte % alphabet.size()]);
-    return id;
-}
 
 JobService::JobService(JobStore& store, Timer& timer, JobSettings settings)
     : store_(store),
@@ -62,7 +55,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, std::
     if (draining_) return done({Submission::Kind::draining, {}, {}});
     if (!depth_.reserve()) return done({Submission::Kind::queue_full, {}, {}});
     NewJob job;
-    job.id = new_job_id();
+    job.id = new_id();
     job.name = std::move(order.job.name);
     job.timeout_s = order.job.timeout_s;
     job.request_hash = std::move(order.job.request_hash);

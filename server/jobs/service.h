@@ -168,7 +168,4 @@ private:
     std::unique_ptr<Pulse> looking_;           ///< reads the store, which may take long
 };
 
-/// 128 random bits from the system, as 26 letters and digits.
-std::string new_job_id();
-
 }  // namespace tunewright::server

@@ -10,6 +10,7 @@
 
 #include "api/json/digest.h"
 #include "server/jobs/await.h"
+#include "server/random.h"
 
 namespace tunewright::server {
 namespace {
@@ -80,7 +81,7 @@ private:
 
 Reception::Reception(JobStore& store, JobService& jobs, Executor& lane, const std::function<UnixMs()>& now,
                      const BatchOrder& order)
-    : store_(store), jobs_(jobs), lane_(lane), now_(now), order_(order), id_(new_job_id()), reader_(order.question) {
+    : store_(store), jobs_(jobs), lane_(lane), now_(now), order_(order), id_(new_id()), reader_(order.question) {
     digest_.update(order_.asked);
 }
 
@@ -147,7 +148,7 @@ void Reception::keep(std::vector<api::BatchEntry> entries) {
     for (api::BatchEntry& entry : entries) {
         NewEntry made;
         made.index = next_index_++;
-        made.id = new_job_id();
+        made.id = new_id();
         made.name = std::move(entry.name);
         if (auto* job = std::get_if<api::PreparedJob>(&entry.job)) {
             made.timeout_s = job->timeout_s;

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "server/jobs/sweeper.h"
+#include "server/random.h"
 #include "server/store/sqlite/sqlite_store.h"
 
 namespace tunewright::server {
@@ -344,10 +345,10 @@ TEST_F(JobServiceTest, ManyWorkersEndEachOfManyJobsOnce) {
 }
 
 TEST(JobId, IsLongRandomAndOfLettersAndDigits) {
-    const std::string a = new_job_id();
+    const std::string a = new_id();
     EXPECT_EQ(a.size(), 26U);
     EXPECT_EQ(a.find_first_not_of("0123456789abcdefghjkmnpqrstvwxyz"), std::string::npos);
-    EXPECT_NE(a, new_job_id());
+    EXPECT_NE(a, new_id());
 }
 
 }  // namespace

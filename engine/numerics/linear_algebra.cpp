@@ -49,12 +49,29 @@ Complex resolvent_response(std::span<const double> A, std::span<const double> B,
     return c.cast<Complex>().dot(x) + D;
 }
 
-std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    Eigen::MatrixXcd pencil = (-as_matrix(A, n).transpose()).cast<Complex>();
+namespace {
+
+/// Solves (sI - A)' x = C'. Of a size that is known beforehand nothing is allocated: most plants are small, and a loop
+/// asks at hundreds of frequencies.
+template <int N>
+std::vector<Complex> resolvent_row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
+    Eigen::Matrix<Complex, N, N> pencil = (-Eigen::Map<const Matrix>(A.data(), n, n).transpose()).cast<Complex>();
     pencil.diagonal().array() += s;
-    const Eigen::VectorXcd row =
+    const Eigen::Matrix<Complex, N, 1> row =
         pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
     return {row.data(), row.data() + n};
+}
+
+}  // namespace
+
+std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
+    switch (n) {
+        case 1: return {C[0] / (s - A[0])};
+        case 2: return resolvent_row_of<2>(A, C, n, s);
+        case 3: return resolvent_row_of<3>(A, C, n, s);
+        case 4: return resolvent_row_of<4>(A, C, n, s);
+        default: return resolvent_row_of<Eigen::Dynamic>(A, C, n, s);
+    }
 }
 
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {

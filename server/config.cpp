@@ -6,14 +6,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "server/access/sites.h"
 #include "server/store/open_store.h"
 
 namespace tunewright::server {
-namespace {
-
-bool is_loopback(const std::string& host) { return host == "localhost" || host == "::1" || host.starts_with("127."); }
-
-}  // namespace
 
 HostPort parse_listen(const std::string& text) {
     const std::size_t colon = text.rfind(':');
@@ -90,6 +86,8 @@ void check_config(const Config& config) {
         throw std::invalid_argument("--auth is \"" + config.auth + "\"; it must be none or keys.");
     if (config.auth == "keys" && config.keys.empty())
         throw std::invalid_argument("--auth keys needs --keys FILE; `tunewright key NAME --keys FILE` makes one.");
+    if (config.migrate != "auto" && config.migrate != "manual")
+        throw std::invalid_argument("--migrate is \"" + config.migrate + "\"; it must be auto or manual.");
     if (config.auth == "none" && !config.keys.empty())
         throw std::invalid_argument("--keys is given, but --auth is none: give --auth keys, or leave --keys out.");
     if (config.auth == "none" && !is_loopback(address.host) && !config.allow_anonymous)

@@ -13,6 +13,7 @@ enum class Role { all, api, worker };
 struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
     std::string store = "sqlite:tunewright.db";
+    std::string migrate = "auto";     ///< or manual: the store's tables are brought up to date by `tunewright migrate`
     std::string role = "all";         ///< or api, worker
     std::size_t workers = 0;          ///< 0: as many as there are cores
     std::string web;                  ///< "": `web` beside the folder of the binary
@@ -28,6 +29,8 @@ struct Config {
     int max_attempts = 10;
     double lease_s = 10;
     double retention_s = 7 * 86400;  ///< 0: without limit
+    double retention_failed_s = -1;  ///< of jobs that failed; 0: without limit, below: as the others
+    double retention_cancelled_s = -1;
     double job_timeout_s = 60;
     double max_timeout_s = 3600;
 

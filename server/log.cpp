@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "server/http/router.h"
-#include "server/jobs/running/ends.h"
+#include "server/jobs/running/result_outbox.h"
 #include "server/json_text.h"
 
 namespace tunewright::server {
@@ -70,9 +70,9 @@ void log_answer(const http::Answered& answered) {
     if (as_json)
         spdlog::log(
             level,
-            R"("event":"request","id":{},"method":{},"target":{},"status":{},"ms":{:.2f},"bytes":{},"client":{})",
+            R"("event":"request","id":{},"method":{},"target":{},"status":{},"ms":{:.2f},"bytes":{},"client":{},"traceparent":"{}")",
             json_string(answered.request_id), json_string(answered.method), target, answered.status, ms, answered.bytes,
-            json_string(answered.client));
+            json_string(answered.client), answered.traceparent);
     else
         spdlog::log(level, "request {} {} {} {} {:.2f} ms, {} bytes to {}", answered.request_id, answered.method,
                     target, answered.status, ms, answered.bytes, answered.client);
@@ -84,12 +84,14 @@ void log_job(const Ended& ended) {
     const double ms = ended.seconds * 1e3;
     if (as_json)
         spdlog::info(
-            R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{},"method":{},"owner":{},"batch":"{}")",
+            R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{},"method":{},"owner":{},"batch":"{}",)"
+            R"("request_id":{},"traceparent":"{}")",
             end.id, to_string(end.status), ms, end.attempts, json_string(ended.method), json_string(job.owner),
-            job.batch);
+            job.batch, json_string(job.request_id), job.traceparent);
     else
-        spdlog::info("job {} {} after {:.2f} ms, attempt {}{}{}", end.id, to_string(end.status), ms, end.attempts,
-                     job.owner.empty() ? "" : ", of " + job.owner, job.batch.empty() ? "" : ", batch " + job.batch);
+        spdlog::info("job {} {} after {:.2f} ms, attempt {}{}{}{}", end.id, to_string(end.status), ms, end.attempts,
+                     job.owner.empty() ? "" : ", of " + job.owner, job.batch.empty() ? "" : ", batch " + job.batch,
+                     job.request_id.empty() ? "" : ", request " + job.request_id);
 }
 
 }  // namespace tunewright::server

@@ -11,6 +11,7 @@
 #include "server/commands.h"
 #include "server/config.h"
 #include "server/serve.h"
+#include "server/store/open_store.h"
 
 namespace {
 
@@ -65,6 +66,9 @@ void add_process_options(CLI::App& app, Config& config) {
            "Another HOST:PORT, for /metrics and probes alone; it asks for no key");
     option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
         ->capture_default_str();
+    option(app, "migrate", config.migrate,
+           "auto: the tables of an older store are brought up to date at the start; manual: by `tunewright migrate`")
+        ->capture_default_str();
     option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")
         ->capture_default_str();
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
@@ -89,6 +93,10 @@ void add_job_options(CLI::App& app, Config& config) {
     duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
              "Time without a sign of life after which another worker takes a job");
     duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: without limit");
+    duration(app, "retention-failed", config.retention_failed_s, "as --retention", {0, 1e9},
+             "The same for jobs that failed, where it differs");
+    duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
+             "The same for jobs that were cancelled");
     duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
              "Time for a job that does not say timeout_s");
     duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
@@ -210,6 +218,15 @@ int main(int argc, char** argv) {
     CLI::App* key_app = app.add_subcommand("key", "Make an API key: printed once on stdout, its digest kept in a file");
     key_app->add_option("name", naming.name, "Name of the owner, to whom jobs belong")->required();
     key_app->add_option("--keys", naming.file, "The file it is added to (default: the line goes to stderr)");
+    key_app->add_flag("--admin", naming.admin, "For whoever runs the service: sees and acts on everybody's jobs");
+
+    tunewright::server::MigrateCommand migrating;
+    migrating.store = config.store;
+    CLI::App* migrate_app =
+        app.add_subcommand("migrate", "Bring the tables of a store up to date, and say what was done");
+    option(*migrate_app, "store", migrating.store, "The store, as `serve` has it")->capture_default_str();
+    migrate_app->add_option("--grant", migrating.grant, "A role of PostgreSQL that may then run the service");
+    migrate_app->add_flag("--compact", migrating.compact, "Write a SQLite file anew, without what deleted jobs left");
 
     std::string asked;
     CLI::App* health_app = app.add_subcommand("health", "Ask a running service whether it is well: exit code 0 if so");
@@ -221,6 +238,7 @@ int main(int argc, char** argv) {
     try {
         if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
+        if (migrate_app->parsed()) return migrate_store(migrating, std::cout), 0;
         if (identify_app->parsed()) return identify(identifying);
         if (plant_app->parsed()) return plant(typing);
         if (code_app->parsed()) return code(coding);

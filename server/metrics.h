@@ -13,7 +13,7 @@ namespace tunewright::server {
 
 /// How things stand when somebody looks. Nothing in it waits for the store: what the queue holds is as last counted.
 struct Standing {
-    JobStore::Depth queue;
+    QueueDepth queue;
     UnixMs now = 0;  ///< of the clock that the queue's moments are of
     std::size_t running = 0, workers = 0;
     http::Occupancy clients;

@@ -20,6 +20,7 @@
 #include "server/http/static_files.h"
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
+#include "server/lobby.h"
 #include "server/log.h"
 #include "server/metrics.h"
 #include "server/routes/routes.h"
@@ -36,6 +37,15 @@ constexpr std::size_t kWaitingComputations = 64;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
+
+Retention retention_of(const Config& config) {
+    const auto age = [](double seconds) -> std::optional<std::chrono::milliseconds> {
+        if (seconds == 0) return std::nullopt;
+        return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+    };
+    const auto own = [&](double seconds) { return age(seconds < 0 ? config.retention_s : seconds); };
+    return {age(config.retention_s), own(config.retention_failed_s), own(config.retention_cancelled_s)};
+}
 
 /// Answers of some 100 KiB come and go on many threads. Returned to the system each time, they cost a fifth of all jobs
 /// a second in page faults; what is larger than a MiB is returned.
@@ -70,11 +80,10 @@ sigset_t stop_signals() {
 /// The parts in the order in which they are made; stop() takes them down so that none calls one that is gone.
 class Service {
 public:
-    explicit Service(const Config& config)
+    Service(const Config& config, std::unique_ptr<JobStore> store)
         : config_(config),
-          store_(
-              metered(open_store(config.store), [this](std::string_view operation, double seconds,
-                                                       bool done) { metrics_.count_store(operation, seconds, done); })),
+          store_(metered(std::move(store), [this](std::string_view operation, double seconds,
+                                                  bool done) { metrics_.count_store(operation, seconds, done); })),
           jobs_(*store_, timer_, settings(config)),
           turns_(core_count(), kWaitingComputations),
           places_(places_of(limits(config))),
@@ -135,8 +144,7 @@ private:
         made.entry_limit = config.entry_limit;
         made.most_attempts = config.max_attempts;
         made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
-        if (config.retention_s > 0)
-            made.retention = std::chrono::seconds(static_cast<std::int64_t>(config.retention_s));
+        made.retention = retention_of(config);
         made.version = TUNEWRIGHT_VERSION;
         made.run = [](const api::StoredRequest& request, const RunControl& control) {
             return api::run_job(request, control);
@@ -186,6 +194,7 @@ private:
         if (config.auth == "keys") made.keys_file = config.keys;
         made.rate = config.rate_limit;
         made.burst = 2 * config.rate_limit;
+        made.own_machine = is_loopback(parse_listen(config.listen).host) && !config.behind_proxy;
         made.sites = {parse_listen(config.listen).host, config.allowed_hosts, config.cors_origins, config.behind_proxy};
         made.behind_proxy = config.behind_proxy;
         return made;
@@ -208,6 +217,7 @@ private:
         add_trace_routes(router_, jobs_);
         add_code_routes(router_, jobs_);
         add_report_routes(router_, jobs_);
+        add_queue_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, batch_lane_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, turns_, timer_, closing_.get_token());
@@ -303,7 +313,9 @@ int serve(const Config& config) {
     std::unique_ptr<Service> service;
     int port = 0;
     try {
-        service = std::make_unique<Service>(config);
+        std::unique_ptr<JobStore> store = open_in_lobby(config, signals);
+        if (!store) return stop_log(), 0;
+        service = std::make_unique<Service>(config, std::move(store));
         port = service->listen();
         service->start();
     } catch (const std::invalid_argument& error) {

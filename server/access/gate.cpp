@@ -53,12 +53,26 @@ std::string_view forwarded(const Request& request) {
     return last.size() <= longest ? last : std::string_view{};
 }
 
+/// 00-TRACE-SPAN-FLAGS (W3C Trace Context, 2021), neither id all zeros. It goes into logs, so nothing else is taken.
+bool is_traceparent(std::string_view text) {
+    const auto hex = [&](std::size_t from, std::size_t count) {
+        return std::ranges::all_of(text.substr(from, count),
+                                   [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+    };
+    const auto zero = [&](std::size_t from, std::size_t count) {
+        return text.substr(from, count).find_first_not_of('0') == std::string_view::npos;
+    };
+    return text.size() == 55 && text.starts_with("00-") && text[35] == '-' && text[52] == '-' && hex(3, 32) &&
+           hex(36, 16) && hex(53, 2) && !zero(3, 32) && !zero(36, 16);
+}
+
 Response preflight() {
     Response response;
     response.status = 204;
     return response.set("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE")
         .set("Access-Control-Allow-Headers",
-             "Authorization, Content-Type, Idempotency-Key, If-None-Match, Last-Event-ID, Prefer, X-Request-Id")
+             "Authorization, Content-Type, Idempotency-Key, If-None-Match, Last-Event-ID, Prefer, Traceparent, "
+             "X-Request-Id")
         .set("Access-Control-Max-Age", "600");
 }
 
@@ -89,6 +103,8 @@ void Gate::name(Request& request) {
         request.request_id = fmt::format("{}-{:08x}", process_, ++count_);
     }
     request.answer_headers.emplace_back("X-Request-Id", request.request_id);
+    if (const std::string_view trace = request.header("traceparent"); is_traceparent(trace))
+        request.traceparent = trace;
     const std::string_view client = settings_.behind_proxy ? forwarded(request) : std::string_view{};
     request.client = client.empty() ? request.remote_addr : std::string(client);
 }
@@ -124,14 +140,16 @@ std::optional<Response> Gate::check_site(Request& request) const {
 }
 
 std::optional<Response> Gate::check_key(Request& request) {
+    request.admin = !keys_ && settings_.own_machine;
     if (!keys_) return std::nullopt;
     request.owner = "";
     if (!needs_key(request)) return std::nullopt;
     const std::string_view key = bearer(request);
-    std::optional<std::string> owner = key.empty() ? std::nullopt : keys_->name_of(key);
-    if (owner) {
-        request.client = "key:" + *owner;
-        request.owner = std::move(owner);
+    std::optional<KeyHolder> holder = key.empty() ? std::nullopt : keys_->holder_of(key);
+    if (holder) {
+        request.client = "key:" + holder->name;
+        request.owner = std::move(holder->name);
+        request.admin = holder->admin;
         return std::nullopt;
     }
     Response response =

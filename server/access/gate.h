@@ -20,6 +20,7 @@ struct GateSettings {
     double burst = 0;       ///< at once, after a pause
     SiteSettings sites;
     bool behind_proxy = false;  ///< the client is the last address of X-Forwarded-For, which the proxy has added
+    bool own_machine = false;   ///< only this machine can call: without keys whoever does runs the service
 };
 
 class Gate {

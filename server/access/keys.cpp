@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::string_view kPrefix = "sha256:";
+constexpr std::string_view kAdmin = "admin";
 constexpr std::chrono::seconds kLookInterval{1};
 
 bool is_hex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
@@ -35,11 +36,16 @@ KeyLine parse_line(std::string_view line, std::size_t number) {
     const std::size_t blank = line.find_first_of(" \t");
     const std::string_view name = line.substr(0, blank);
     const std::string_view rest = blank == std::string_view::npos ? std::string_view{} : trim(line.substr(blank));
-    const std::string_view digest = rest.starts_with(kPrefix) ? rest.substr(kPrefix.size()) : std::string_view{};
-    if (!is_key_name(name) || digest.size() != 64 || !std::ranges::all_of(digest, is_hex))
+    const std::size_t second = std::min(rest.find_first_of(" \t"), rest.size());
+    const std::string_view role = trim(rest.substr(second));
+    const std::string_view digest =
+        rest.starts_with(kPrefix) ? rest.substr(kPrefix.size(), second - kPrefix.size()) : std::string_view{};
+    const bool known = role.empty() || role == kAdmin;
+    if (!is_key_name(name) || digest.size() != 64 || !std::ranges::all_of(digest, is_hex) || !known)
         throw std::invalid_argument("line " + std::to_string(number) +
-                                    " must be NAME sha256:DIGEST, as `tunewright key NAME` writes it");
-    return {std::string(name), std::string(digest)};
+                                    " must be NAME sha256:DIGEST, with admin after it for whoever runs the service, as "
+                                    "`tunewright key NAME` writes it");
+    return {std::string(name), std::string(digest), role == kAdmin};
 }
 
 /// The text of the file; nothing where it cannot be read.
@@ -51,10 +57,11 @@ std::optional<std::string> read_file(const std::string& path) {
     return text;
 }
 
-std::unordered_map<std::string, std::string> names_by_digest(std::string_view text) {
-    std::unordered_map<std::string, std::string> names;
-    for (KeyLine& line : parse_keys(text)) names.insert_or_assign(std::move(line.digest), std::move(line.name));
-    return names;
+std::unordered_map<std::string, KeyHolder> holders_by_digest(std::string_view text) {
+    std::unordered_map<std::string, KeyHolder> holders;
+    for (KeyLine& line : parse_keys(text))
+        holders.insert_or_assign(std::move(line.digest), KeyHolder{std::move(line.name), line.admin});
+    return holders;
 }
 
 constexpr int kFailed = 1;
@@ -99,11 +106,11 @@ KeyRing::KeyRing(std::string path, std::function<Clock::time_point()> now)
     const auto text = read_file(path_);
     if (!text) refuse("it cannot be read");
     try {
-        names_ = names_by_digest(*text);
+        holders_ = holders_by_digest(*text);
     } catch (const std::invalid_argument& error) {
         refuse(error.what());
     }
-    if (names_.empty()) refuse("it has no key; `tunewright key NAME --keys FILE` adds one");
+    if (holders_.empty()) refuse("it has no key; `tunewright key NAME --keys FILE` adds one");
 }
 
 std::optional<KeyRing::Stamp> KeyRing::stamp_of(const std::string& path) {
@@ -129,9 +136,9 @@ void KeyRing::read_again(const std::optional<Stamp>& stamp) {
     const auto text = stamp ? read_file(path_) : std::nullopt;
     if (!text) return admit_nobody("it cannot be read");
     try {
-        auto names = names_by_digest(*text);
+        auto names = holders_by_digest(*text);
         log_info("the file of keys has changed: " + std::to_string(names.size()) + " keys");
-        names_ = std::move(names);
+        holders_ = std::move(names);
         usable_ = true;
         broken_since_.reset();
     } catch (const std::invalid_argument& fault) {
@@ -143,17 +150,17 @@ void KeyRing::read_again(const std::optional<Stamp>& stamp) {
 
 void KeyRing::admit_nobody(const std::string& why) {
     if (usable_) log_error("nobody is admitted: the file of keys " + path_ + " cannot be used, " + why);
-    names_.clear();
+    holders_.clear();
     usable_ = false;
     broken_since_.reset();
 }
 
-std::optional<std::string> KeyRing::name_of(std::string_view key) {
+std::optional<KeyHolder> KeyRing::holder_of(std::string_view key) {
     const std::string digest = api::sha256_hex(key);
     const std::lock_guard lock(mutex_);
     look();
-    const auto found = names_.find(digest);
-    return found == names_.end() ? std::nullopt : std::optional<std::string>(found->second);
+    const auto found = holders_.find(digest);
+    return found == holders_.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool KeyRing::usable() {
@@ -168,7 +175,7 @@ int make_key(const KeyCommand& command) {
         return kBadName;
     }
     const std::string key = new_key();
-    const std::string line = command.name + " sha256:" + api::sha256_hex(key) + "\n";
+    const std::string line = command.name + " sha256:" + api::sha256_hex(key) + (command.admin ? " admin\n" : "\n");
     if (command.file.empty()) {
         std::cerr << "# For the file of keys:\n" << line;
     } else if (!append(command.file, line)) {

@@ -1,5 +1,6 @@
-// The API keys of a service: a file with one line for each, "NAME sha256:DIGEST". Only digests are kept, so whoever
-// reads the file cannot call. A key has 256 random bits; guessing one is out of reach, so one fast digest is enough.
+// The API keys of a service: a file with one line for each, "NAME sha256:DIGEST" or "NAME sha256:DIGEST admin" for
+// somebody who runs the service and may see and act on everybody's jobs. Only digests are kept, so whoever reads the
+// file cannot call. A key has 256 random bits; guessing one is out of reach, so one fast digest is enough.
 #pragma once
 
 #include <chrono>
@@ -17,6 +18,14 @@ namespace tunewright::server {
 struct KeyLine {
     std::string name;    ///< 1 to 64 of A-Z a-z 0-9 . _ -
     std::string digest;  ///< SHA-256 of the key, 64 hexadecimal digits
+    bool admin = false;
+};
+
+/// Whom a key belongs to.
+struct KeyHolder {
+    std::string name;
+    bool admin = false;
+    bool operator==(const KeyHolder&) const = default;
 };
 
 /// The lines of a file of keys; blank ones and those that start with # are skipped. Several keys may have one name, so
@@ -33,6 +42,7 @@ bool is_key_name(std::string_view name);
 struct KeyCommand {
     std::string name;
     std::string file;  ///< "": the line for such a file goes to standard error
+    bool admin = false;
 };
 
 /// Prints the key, which is kept nowhere, and adds its digest to the file. A new file is readable by its owner alone.
@@ -54,9 +64,9 @@ public:
     /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or has no key.
     explicit KeyRing(std::string path, std::function<Clock::time_point()> now = Clock::now);
 
-    /// The name of a key; nothing for one that is not known. The time that this takes depends on the digest alone,
+    /// Whose key that is; nothing for one that is not known. The time that this takes depends on the digest alone,
     /// of which nobody can choose a part.
-    std::optional<std::string> name_of(std::string_view key);
+    std::optional<KeyHolder> holder_of(std::string_view key);
 
     /// Whether the file could be used when it was last looked at, which is now if that was a second ago.
     bool usable();
@@ -77,7 +87,7 @@ private:
     std::string path_;
     std::function<Clock::time_point()> now_;
     std::mutex mutex_;
-    std::unordered_map<std::string, std::string> names_;  ///< by digest
+    std::unordered_map<std::string, KeyHolder> holders_;  ///< by digest
     std::optional<Stamp> stamp_;                          ///< of what was read last; empty: nothing could be
     Clock::time_point looked_;
     std::optional<Clock::time_point> broken_since_;  ///< a line that is no key's, the last good keys still in force

@@ -28,11 +28,6 @@ bool is_address(const std::string& host) {
            ::inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1;
 }
 
-bool is_loopback(const std::string& host) {
-    return host == "localhost" || host.ends_with(".localhost") || host == "::1" ||
-           (host.starts_with("127.") && is_address(host));
-}
-
 /// HOST[:PORT] of SCHEME://HOST[:PORT]; "" of anything else, such as "null".
 std::string_view authority_of(std::string_view origin) {
     const std::size_t colon = origin.find("://");
@@ -40,6 +35,11 @@ std::string_view authority_of(std::string_view origin) {
 }
 
 }  // namespace
+
+bool is_loopback(const std::string& host) {
+    return host == "localhost" || host.ends_with(".localhost") || host == "::1" ||
+           (host.starts_with("127.") && is_address(host));
+}
 
 Sites::Sites(SiteSettings settings) : settings_(std::move(settings)) {
     for (const std::string& origin : settings_.cors_origins)

@@ -16,6 +16,9 @@ struct SiteSettings {
     bool behind_proxy = false;                    ///< a proxy may have taken the port out of Host
 };
 
+/// Whether a name or an address is that of this machine alone.
+bool is_loopback(const std::string& host);
+
 /// Names are compared without regard to letter case. Ports count in origins alone, and there not behind a proxy.
 class Sites {
 public:

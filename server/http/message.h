@@ -48,7 +48,9 @@ struct Request {
     std::string remote_addr;
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all
+    bool admin = false;                ///< of whoever runs the service: acts on everybody's jobs and on the queue
     std::string request_id;            ///< names this request in answers and logs
+    std::string traceparent;           ///< W3C trace context as it came; "" if none, or not well formed
     std::vector<std::pair<std::string, std::string>> answer_headers;  ///< every answer to this request carries them
 
     /// The first header of that name; "" if there is none.

@@ -139,7 +139,7 @@ Response Router::observed(const Request& request, const Route* route, std::chron
     if (!observer_) return response;
     using std::chrono::microseconds;
     observer_({request.method, request.target, route == nullptr ? "" : route->pattern, request.client,
-               request.request_id, response.status, response.body.size(),
+               request.request_id, request.traceparent, response.status, response.body.size(),
                std::chrono::duration_cast<microseconds>(std::chrono::steady_clock::now() - start)});
     return response;
 }

@@ -27,9 +27,10 @@ using Handler = std::function<Response(const Call&)>;
 struct Answered {
     std::string method;
     std::string target;
-    std::string route;       ///< the pattern, never user text; "" where none matched
-    std::string client;      ///< as in Request
-    std::string request_id;  ///< "" where the request was refused before it had one
+    std::string route;        ///< the pattern, never user text; "" where none matched
+    std::string client;       ///< as in Request
+    std::string request_id;   ///< "" where the request was refused before it had one
+    std::string traceparent;  ///< as in Request
     int status = 0;
     std::size_t bytes = 0;
     std::chrono::microseconds duration{0};

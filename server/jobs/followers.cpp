@@ -24,9 +24,9 @@ std::shared_ptr<const JobView> view_of(const HeldJob& held) {
 
 }  // namespace
 
-Followers::Followers(JobStore& store, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll)
-    : store_(store), held_(held), outage_(outage), poll_(poll) {
-    pulse_ = std::make_unique<Pulse>([this] { return beat(); });
+Followers::Followers(JobArchive& archive, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll)
+    : archive_(archive), held_(held), outage_(outage), poll_(poll) {
+    pulse_ = std::make_unique<PeriodicThread>([this] { return beat(); });
 }
 
 Followers::Key Followers::follow(const std::string& id, Listener listener) {
@@ -131,7 +131,7 @@ void Followers::look_elsewhere(const std::vector<std::string>& ids, std::vector<
     std::set<std::string> missing(ids.begin(), ids.end());
     std::vector<std::string> ended;
     {
-        const std::vector<JobState> states = store_.states(ids);
+        const std::vector<JobState> states = archive_.states(ids);
         const std::lock_guard lock(mutex_);
         for (const JobState& state : states) {
             missing.erase(state.id);
@@ -147,7 +147,7 @@ void Followers::look_elsewhere(const std::vector<std::string>& ids, std::vector<
         }
     }
     for (const std::string& id : ended) {
-        std::optional<JobRecord> job = store_.find(id);
+        std::optional<JobRecord> job = archive_.find(id);
         if (job)
             last_news(id, {JobNews::Kind::ended, std::make_shared<JobView>(JobView{*std::move(job), {}})}, messages);
         else

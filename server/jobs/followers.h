@@ -16,9 +16,9 @@
 
 #include "engine/progress.h"
 #include "server/jobs/outage.h"
-#include "server/jobs/pulse.h"
+#include "server/jobs/periodic_thread.h"
 #include "server/jobs/running/held.h"
-#include "server/store/store.h"
+#include "server/store/archive.h"
 
 namespace tunewright::server {
 
@@ -46,7 +46,7 @@ public:
     using Listener = std::function<void(const JobNews&)>;
 
     /// All must outlive the followers.
-    Followers(JobStore& store, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll);
+    Followers(JobArchive& archive, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll);
 
     /// `listener` learns how the job stands at once, then of changes, at most about ten a second.
     Key follow(const std::string& id, Listener listener);
@@ -87,7 +87,7 @@ private:
               std::vector<Message>& messages);
     void last_news(const std::string& id, const JobNews& news, std::vector<Message>& messages);
 
-    JobStore& store_;
+    JobArchive& archive_;
     const HeldJobs& held_;
     Outage& outage_;
     std::chrono::milliseconds poll_;
@@ -96,8 +96,8 @@ private:
     std::map<Key, std::string> ids_;
     Key next_ = 1;
     bool closed_ = false;
-    Clock::time_point next_poll_{};  ///< of the thread alone
-    std::unique_ptr<Pulse> pulse_;   ///< last: its thread uses all of the above
+    Clock::time_point next_poll_{};          ///< of the thread alone
+    std::unique_ptr<PeriodicThread> pulse_;  ///< last: its thread uses all of the above
 };
 
 }  // namespace tunewright::server

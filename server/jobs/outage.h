@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "server/log.h"
-#include "server/store/store.h"
+#include "server/store/fault.h"
 
 namespace tunewright::server {
 

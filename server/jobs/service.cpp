@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "server/jobs/running/ends.h"
+#include "server/jobs/running/result_outbox.h"
 #include "server/log.h"
 #include "server/random.h"
 
@@ -14,6 +14,17 @@ namespace {
 using Stop = HeldJob::Stop;
 
 constexpr std::chrono::seconds kStopPatience{2};
+
+/// As the store has it now.
+JobRecord record_of(const Ended& ended) {
+    JobRecord job = ended.held->job;
+    job.status = ended.end.status;
+    job.finished_at = ended.end.finished_at;
+    job.result = ended.end.result;
+    job.error = ended.end.error;
+    job.outline = ended.end.outline;
+    return job;
+}
 
 JobSettings named(JobSettings settings) {
     if (settings.name.empty()) settings.name = new_id();
@@ -29,9 +40,10 @@ JobService::JobService(JobStore& store, Timer& timer, JobSettings settings)
       waits_(timer),
       followers_(store, held_, outage_, settings_.poll),
       claims_(store, held_, outage_, claim_settings()),
-      ends_(store, outage_, end_listener()),
-      leases_(store, held_, outage_, lease_settings()),
-      workers_(claims_, ends_, timer, worker_settings()),
+      outbox_(store, outage_, end_listener()),
+      heartbeats_(store, held_, outage_, heartbeat_settings()),
+      rescuer_(store, outage_, rescuer_settings()),
+      workers_(claims_, outbox_, timer, worker_settings()),
       sweeper_(store, settings_.retention, settings_.now) {}
 
 JobService::~JobService() { drain(std::chrono::seconds(0)); }
@@ -41,17 +53,17 @@ Recovery JobService::start() {
         store_.recover(settings_.now(), settings_.most_attempts, given_up_problem(settings_.most_attempts));
     if (settings_.observer.recovered) settings_.observer.recovered(recovery);
     depth_.refresh(store_);
-    looking_ = std::make_unique<Pulse>([this] { return look(); });
+    looking_ = std::make_unique<PeriodicThread>([this] { return look(); });
     store_.watch([this](const StoreNotice& notice) { hear(notice); });
     workers_.start();
     claims_.arrived();
-    tending_ = std::make_unique<Pulse>([this] { return tend(); });
+    tending_ = std::make_unique<PeriodicThread>([this] { return tend(); });
     return recovery;
 }
 
 // ---- accepting -------------------------------------------------------------------------------------------------
 
-void JobService::submit(Order order, std::function<void(Submission)> done, std::function<void()> ended) {
+void JobService::submit(Order order, std::function<void(Submission)> done, WaitEnd ended) {
     if (draining_) return done({Submission::Kind::draining, {}, {}});
     if (!depth_.reserve()) return done({Submission::Kind::queue_full, {}, {}});
     NewJob job;
@@ -62,6 +74,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, std::
     job.idempotency_key = std::move(order.idempotency_key);
     job.owner = std::move(order.owner);
     job.flow = std::move(order.flow);
+    job.origin = std::move(order.origin);
     job.created_at = settings_.now();
     auto request = std::make_shared<std::string>(order.job.request_json);
     job.request = std::move(order.job.request_json);
@@ -132,7 +145,22 @@ void JobService::cancel(const std::string& id, Done<CancelEffect> done) {
     });
 }
 
-void JobService::wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended) {
+void JobService::requeue(const std::string& id, Done<RequeueEffect> done) {
+    store_.requeue(id, [this, done = std::move(done)](Outcome<RequeueEffect> outcome) {
+        done(outcome);
+        claims_.arrived();
+    });
+}
+
+void JobService::pause(bool paused, Done<bool> done) {
+    store_.pause(paused, [this, paused, done = std::move(done)](Outcome<bool> outcome) {
+        done(outcome);
+        if (!paused) claims_.arrived();
+        look_again();
+    });
+}
+
+void JobService::wait(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended) {
     waits_.add(id, wait, std::move(ended));
     // It may have ended before the waiter was there.
     const std::optional<JobState> found = state(id);
@@ -174,12 +202,12 @@ ClaimSettings JobService::claim_settings() {
         for (const JobRecord& job : jobs) singles += job.batch.empty() ? 1U : 0U;
         depth_.gone(singles, jobs.size() - singles);
     };
-    made.late = [this](const std::shared_ptr<HeldJob>& held) { ends_.release(held); };
+    made.late = [this](const std::shared_ptr<HeldJob>& held) { outbox_.release(held); };
     return made;
 }
 
-Ends::Listener JobService::end_listener() {
-    Ends::Listener made;
+ResultOutbox::Listener JobService::end_listener() {
+    ResultOutbox::Listener made;
     made.done = [this](const Ended& end, bool kept) { ended(end, kept); };
     made.released = [this](const std::shared_ptr<HeldJob>& held) {
         held_.forget(held);
@@ -191,16 +219,28 @@ Ends::Listener JobService::end_listener() {
     return made;
 }
 
-LeaseSettings JobService::lease_settings() {
-    LeaseSettings made;
+HeartbeatSettings JobService::heartbeat_settings() {
+    HeartbeatSettings made;
+    made.worker = settings_.name;
     made.lease = settings_.lease;
     made.poll = settings_.poll;
-    made.most_attempts = settings_.most_attempts;
-    made.given_up = given_up_problem(settings_.most_attempts);
+    made.shared = store_.shared();
     made.now = settings_.now;
     made.cancelled = [this](const std::shared_ptr<HeldJob>& held) { stop_held(held, Stop::cancel); };
     made.lost = [this](const std::shared_ptr<HeldJob>& held) { stop_held(held, Stop::lost); };
-    made.reclaimed = [this](const Recovery& found) {
+    return made;
+}
+
+RescuerSettings JobService::rescuer_settings() {
+    RescuerSettings made;
+    made.lease = settings_.lease;
+    made.period = 2 * settings_.poll;
+    made.shared = store_.shared();
+    made.most_attempts = settings_.most_attempts;
+    made.given_up = given_up_problem(settings_.most_attempts);
+    made.now = settings_.now;
+    made.clock_jumped = [this] { heartbeats_.beat(); };
+    made.recovered = [this](const Recovery& found) {
         log_info(std::to_string(found.interrupted) + " jobs of a process that has gone wait again, " +
                  std::to_string(found.given_up) + " were given up");
         if (settings_.observer.recovered) settings_.observer.recovered(found);
@@ -226,7 +266,8 @@ void JobService::ended(const Ended& end, bool kept) {
     if (settings_.observer.ended) settings_.observer.ended(end);
     held_.forget(end.held);
     claims_.freed();
-    tell_ended(end.held->job.id);
+    waits_.notify(end.held->job.id, [&end] { return record_of(end); });
+    followers_.changed(end.held->job.id);
 }
 
 void JobService::tell_ended(const std::string& id) {
@@ -253,7 +294,7 @@ bool JobService::drain(std::chrono::duration<double> grace) {
     if (drained_) return *drained_;
     draining_ = true;
     workers_.request_stop();
-    for (const auto& held : claims_.close(kStopPatience)) ends_.release(held);
+    for (const auto& held : claims_.close(kStopPatience)) outbox_.release(held);
     bool idle = held_.wait_until_none(grace);
     if (!idle) {
         for (const auto& held : held_.all()) stop_held(held, Stop::shutdown);

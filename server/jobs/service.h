@@ -11,14 +11,15 @@
 
 #include "api/service.h"
 #include "engine/progress.h"
-#include "server/jobs/depth.h"
 #include "server/jobs/followers.h"
 #include "server/jobs/outage.h"
-#include "server/jobs/pulse.h"
+#include "server/jobs/periodic_thread.h"
+#include "server/jobs/queue_bound.h"
 #include "server/jobs/running/claims.h"
-#include "server/jobs/running/ends.h"
+#include "server/jobs/running/heartbeats.h"
 #include "server/jobs/running/held.h"
-#include "server/jobs/running/leases.h"
+#include "server/jobs/running/rescuer.h"
+#include "server/jobs/running/result_outbox.h"
 #include "server/jobs/running/workers.h"
 #include "server/jobs/sweeper.h"
 #include "server/jobs/timer.h"
@@ -44,7 +45,7 @@ struct JobSettings {
     std::chrono::milliseconds lease{10'000};
     /// How often the store is looked at for what other processes have done, notices or none.
     std::chrono::milliseconds poll{500};
-    std::optional<std::chrono::seconds> retention;  ///< ended jobs are deleted after it; nothing: they are kept
+    Retention retention;  ///< how long ended jobs are kept
     std::string version;
     /// Computes a job: api::run_job, or a test's own.
     std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
@@ -65,6 +66,7 @@ struct Order {
     std::string idempotency_key;
     std::string owner;  ///< as in NewJob
     std::string flow;
+    JobOrigin origin;
     std::chrono::duration<double> wait{0};
 };
 
@@ -81,8 +83,9 @@ public:
     Recovery start();
 
     /// `done` runs once, when the job is durable or refused. Where `wait` > 0 and the job is created, `ended` runs
-    /// after it, once: when the job has ended (wherever it ran), or when `wait` is over.
-    void submit(Order order, std::function<void(Submission)> done, std::function<void()> ended);
+    /// after it, once: when the job has ended (wherever it ran; with the job where that was here), or when `wait` is
+    /// over.
+    void submit(Order order, std::function<void(Submission)> done, WaitEnd ended);
 
     /// Reads throw StoreError.
     std::optional<JobView> find(const std::string& id);
@@ -92,9 +95,12 @@ public:
     /// A running job is asked to stop; it ends soon after, not necessarily before `done`.
     void cancel(const std::string& id, Done<CancelEffect> done);
     void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove(id, std::move(done)); }
+    void requeue(const std::string& id, Done<RequeueEffect> done);
+    /// While the queue is paused no process on this store begins a job; those that run go on.
+    void pause(bool paused, Done<bool> done);
 
     /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
-    void wait(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
+    void wait(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended);
 
     /// As Followers::follow(); a job that is not there is `gone`.
     Followers::Key follow(const std::string& id, Followers::Listener listener) {
@@ -125,7 +131,7 @@ public:
     bool draining() const { return draining_; }
     /// Jobs accepted and not yet running, those being accepted included.
     std::size_t queued() const { return depth_.now().single + depth_.now().entries; }
-    JobStore::Depth depth() const { return depth_.now(); }
+    QueueDepth depth() const { return depth_.now(); }
     /// Held by this process.
     std::size_t running() const { return held_.size(); }
     std::size_t workers() const { return settings_.workers; }
@@ -134,8 +140,9 @@ public:
 
 private:
     ClaimSettings claim_settings();
-    Ends::Listener end_listener();
-    LeaseSettings lease_settings();
+    ResultOutbox::Listener end_listener();
+    HeartbeatSettings heartbeat_settings();
+    RescuerSettings rescuer_settings();
     WorkerSettings worker_settings();
 
     void ended(const Ended& ended, bool kept);
@@ -151,21 +158,22 @@ private:
     std::atomic<bool> draining_ = false;
     std::optional<bool> drained_;  ///< what drain() returned
     Outage outage_;
-    Depth depth_;
+    QueueBound depth_;
     HeldJobs held_;
     Waits waits_;
     Followers followers_;
     Claims claims_;
-    Ends ends_;
-    Leases leases_;
+    ResultOutbox outbox_;
+    Heartbeats heartbeats_;
+    Rescuer rescuer_;
     Workers workers_;
     std::atomic<bool> look_again_ = false;
     Sweeper sweeper_;
-    HeldJob::Clock::time_point next_renewal_{};  ///< this and the next of the tending thread
+    HeldJob::Clock::time_point next_beat_{};  ///< this and the next of the tending thread
     HeldJob::Clock::time_point next_upkeep_{};
     HeldJob::Clock::time_point next_depth_{};  ///< of the looking thread
-    std::unique_ptr<Pulse> tending_;           ///< renews, reclaims, retries: queues writes, so it is never held up
-    std::unique_ptr<Pulse> looking_;           ///< reads the store, which may take long
+    std::unique_ptr<PeriodicThread> tending_;  ///< beats, rescues, retries: queues writes, so it is never held up
+    std::unique_ptr<PeriodicThread> looking_;  ///< reads the store, which may take long
 };
 
 }  // namespace tunewright::server

@@ -26,9 +26,12 @@ std::optional<JobStatus> transition(JobStatus from, JobEvent event) {
             case JobEvent::fail: return JobStatus::failed;
             case JobEvent::cancel: return JobStatus::cancelled;
             case JobEvent::release: return JobStatus::queued;
-            case JobEvent::claim: break;
+            case JobEvent::claim:
+            case JobEvent::requeue: break;
         }
     }
+    if (event == JobEvent::requeue && (from == JobStatus::failed || from == JobStatus::cancelled))
+        return JobStatus::queued;
     return std::nullopt;
 }
 

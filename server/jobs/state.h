@@ -5,7 +5,7 @@
 //   [queued] ----------> [running] -------------------------> [succeeded] [failed] [cancelled]
 //      |  ^                  |
 //      |  +------------------+  release
-//      +--> [cancelled]  cancel
+//      +--> [cancelled]  cancel           [failed] [cancelled] ----------> [queued]  requeue
 //
 // Who moves a job, and what a crash does to it:
 //
@@ -18,7 +18,8 @@
 //              asked for, and as failed from `most_attempts` attempts on. A worker that then comes with the old
 //              attempts learns that it no longer has the job, and drops what it has.
 //   succeeded, failed, cancelled
-//              Nothing moves it any more. Its owner deletes it, or the sweeper once its retention is over.
+//              Its owner may have one that failed or was cancelled queued again; nothing else moves it. He deletes it,
+//              or the sweeper does once its retention is over.
 #pragma once
 
 #include <optional>
@@ -34,9 +35,9 @@ enum class JobStatus {
     cancelled,  ///< ended because somebody asked, perhaps with the best design found so far
 };
 
-enum class JobEvent { claim, succeed, fail, cancel, release };
+enum class JobEvent { claim, succeed, fail, cancel, release, requeue };
 
-/// Where the event leads; nothing where it is not possible in that state. An ended job is never moved again.
+/// Where the event leads; nothing where it is not possible in that state.
 std::optional<JobStatus> transition(JobStatus from, JobEvent event);
 
 bool has_ended(JobStatus status);

@@ -16,24 +16,33 @@ constexpr std::chrono::milliseconds kRest{10'000};
 constexpr std::chrono::seconds kJump{60};
 constexpr std::chrono::hours kPause{1};
 
+/// Nothing where all are kept for ever.
+std::optional<std::chrono::milliseconds> shortest(const Retention& retention) {
+    std::optional<std::chrono::milliseconds> found;
+    for (const auto& age : {retention.succeeded, retention.failed, retention.cancelled})
+        if (age && (!found || *age < *found)) found = age;
+    return found;
+}
+
 }  // namespace
 
 std::chrono::milliseconds Sweeper::sweep() {
-    if (!retention_) return kRest;
+    const std::optional<std::chrono::milliseconds> first = shortest(retention_);
+    if (!first) return kRest;
     if (!sweeping_ && more_.exchange(false)) next_ = Clock::now() + pause_.load();
     // While a slice is under way: soon enough for the next one.
     if (sweeping_) return kBetweenSlices;
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next_ - Clock::now());
     if (wait.count() > 0) return wait;
     sweeping_ = true;
-    next_ = Clock::now() + std::min<std::chrono::milliseconds>(kRest, *retention_);
+    next_ = Clock::now() + std::min(kRest, *first);
     const UnixMs now = now_();
     if (!store_.shared() && clock_jumped(now)) {
         sweeping_ = false;
         return kBetweenSlices;
     }
     const auto begun = Clock::now();
-    store_.sweep(now, *retention_, kSlice, [this, begun](const Outcome<std::size_t>& swept) {
+    store_.sweep(now, retention_, kSlice, [this, begun](const Outcome<std::size_t>& swept) {
         pause_ = std::chrono::ceil<std::chrono::milliseconds>((Clock::now() - begun) / kPauseShare);
         const auto* count = std::get_if<std::size_t>(&swept);
         more_ = count != nullptr && *count >= kSlice;

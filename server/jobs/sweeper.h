@@ -13,8 +13,7 @@ namespace tunewright::server {
 
 class Sweeper {
 public:
-    /// Without a retention nothing is ever deleted.
-    Sweeper(JobStore& store, std::optional<std::chrono::seconds> retention, std::function<UnixMs()> now)
+    Sweeper(JobStore& store, Retention retention, std::function<UnixMs()> now)
         : store_(store), retention_(retention), now_(std::move(now)) {}
 
     /// Sweeps a slice where one is due. Returns when to call it again.
@@ -25,7 +24,7 @@ private:
     bool clock_jumped(UnixMs now);
 
     JobStore& store_;
-    std::optional<std::chrono::seconds> retention_;
+    Retention retention_;
     std::function<UnixMs()> now_;
     Clock::time_point next_{};  ///< this and the next of the caller's thread alone
     UnixMs last_wall_ = 0;

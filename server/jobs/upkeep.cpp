@@ -25,20 +25,20 @@ void JobService::hear(const StoreNotice& notice) {
 
 std::chrono::milliseconds JobService::tend() {
     const auto now = HeldJob::Clock::now();
-    if (now >= next_renewal_) {
-        next_renewal_ = now + leases_.interval();
-        leases_.renew();
+    if (now >= next_beat_) {
+        next_beat_ = now + heartbeats_.interval();
+        heartbeats_.beat();
         if (store_.shared())
-            for (const auto& held : claims_.withdraw(now - kUnbegun)) ends_.release(held);
+            for (const auto& held : claims_.withdraw(now - kUnbegun)) outbox_.release(held);
     }
     if (now >= next_upkeep_) {
         next_upkeep_ = now + kPollsPerUpkeep * settings_.poll;
-        leases_.reclaim();
-        ends_.retry();
+        rescuer_.look();
+        outbox_.retry();
         claims_.retry();
         if (store_.shared()) claims_.arrived();
     }
-    const auto next = std::min(next_renewal_, next_upkeep_) - HeldJob::Clock::now();
+    const auto next = std::min(next_beat_, next_upkeep_) - HeldJob::Clock::now();
     return std::clamp(std::chrono::ceil<std::chrono::milliseconds>(next), kShortest, sweeper_.sweep());
 }
 

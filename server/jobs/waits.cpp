@@ -4,7 +4,7 @@
 
 namespace tunewright::server {
 
-void Waits::add(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended) {
+void Waits::add(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended) {
     auto waiter = std::make_shared<Waiter>();
     waiter->ended = std::move(ended);
     const std::lock_guard lock(mutex_);
@@ -16,23 +16,30 @@ void Waits::add(const std::string& id, std::chrono::duration<double> wait, std::
             if (found == last) return;
             waiters_.erase(found);
         }
-        waiter->ended();
+        waiter->ended(nullptr);
     });
     waiters_.emplace(id, waiter);
 }
 
-void Waits::notify(const std::string& id) {
-    std::vector<std::shared_ptr<Waiter>> notified;
-    {
-        const std::lock_guard lock(mutex_);
-        const auto [first, last] = waiters_.equal_range(id);
-        for (auto it = first; it != last; ++it) notified.push_back(it->second);
-        waiters_.erase(first, last);
-    }
-    for (const auto& waiter : notified) {
+Waits::Waiters Waits::take(const std::string& id) {
+    Waiters taken;
+    const std::lock_guard lock(mutex_);
+    const auto [first, last] = waiters_.equal_range(id);
+    for (auto it = first; it != last; ++it) taken.push_back(it->second);
+    waiters_.erase(first, last);
+    return taken;
+}
+
+void Waits::tell(const Waiters& waiters, const std::shared_ptr<const JobRecord>& job) {
+    for (const auto& waiter : waiters) {
         timer_.cancel(waiter->timeout);
-        waiter->ended();
+        waiter->ended(job);
     }
+}
+
+void Waits::notify(const std::string& id, const std::function<JobRecord()>& job) {
+    const Waiters waiters = take(id);
+    if (!waiters.empty()) tell(waiters, std::make_shared<const JobRecord>(job()));
 }
 
 void Waits::tell_all() {
@@ -41,10 +48,7 @@ void Waits::tell_all() {
         const std::lock_guard lock(mutex_);
         notified.swap(waiters_);
     }
-    for (const auto& [id, waiter] : notified) {
-        timer_.cancel(waiter->timeout);
-        waiter->ended();
-    }
+    for (const auto& [id, waiter] : notified) tell({waiter}, nullptr);
 }
 
 std::vector<std::string> Waits::ids() const {

@@ -9,8 +9,12 @@
 #include <vector>
 
 #include "server/jobs/timer.h"
+#include "server/store/archive.h"
 
 namespace tunewright::server {
+
+/// Runs once: with the job where it ended in this process, so that nobody has to read it again; else with nothing.
+using WaitEnd = std::function<void(const std::shared_ptr<const JobRecord>& job)>;
 
 class Waits {
 public:
@@ -18,9 +22,11 @@ public:
     explicit Waits(Timer& timer) : timer_(timer) {}
 
     /// Calls `ended` once: when notify() names the job, or after `wait`.
-    void add(const std::string& id, std::chrono::duration<double> wait, std::function<void()> ended);
+    void add(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended);
     /// That job has ended.
-    void notify(const std::string& id);
+    void notify(const std::string& id) { tell(take(id), nullptr); }
+    /// The same; `job` makes it, where somebody waits.
+    void notify(const std::string& id, const std::function<JobRecord()>& job);
     /// Nobody waits any longer.
     void tell_all();
     /// The jobs that are waited for, each once.
@@ -28,9 +34,12 @@ public:
 
 private:
     struct Waiter {
-        std::function<void()> ended;
+        WaitEnd ended;
         Timer::Key timeout;
     };
+    using Waiters = std::vector<std::shared_ptr<Waiter>>;
+    Waiters take(const std::string& id);
+    void tell(const Waiters& waiters, const std::shared_ptr<const JobRecord>& job);
 
     Timer& timer_;
     mutable std::mutex mutex_;

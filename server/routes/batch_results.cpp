@@ -75,7 +75,9 @@ private:
         if (awaited_.empty())
             std::this_thread::sleep_for(kPause);
         else
-            await_end([&](const std::function<void()>& ended) { jobs_.wait(awaited_, kPatience, ended); });
+            await_end([&](const std::function<void()>& ended) {
+                jobs_.wait(awaited_, kPatience, [ended](const auto&) { ended(); });
+            });
         return true;
     }
 

@@ -27,7 +27,8 @@ Response no_such_batch(const std::string& id) {
 }
 
 bool may_see(const http::Request& request, const BatchSummary& batch) {
-    return !request.owner || *request.owner == batch.owner;
+    const std::optional<std::string> owner = visible_owner(request);
+    return !owner || *owner == batch.owner;
 }
 
 /// The batch of the call, as `answer` shows it.
@@ -95,6 +96,7 @@ std::optional<Response> read_order(const http::Request& request, const BatchLimi
             422, "name has " + std::to_string(order.question.name.size()) + " characters; at most 200 are accepted.");
     order.owner = request.owner.value_or("");
     order.flow = request.client;
+    order.origin = {request.request_id, request.traceparent};
     order.question.limits = limits.job;
     order.question.longest_entry = limits.longest_entry;
     return std::nullopt;
@@ -145,6 +147,7 @@ Response list_batches(Batches& batches, const Call& call) {
     api::Problem problem = bad_parameters("list");
     int limit = 50;
     std::optional<std::int64_t> before;
+    std::optional<std::string> owner = visible_owner(call.request);
     for (const auto& [name, value] : call.request.query) {
         if (name == "limit") {
             if (!read_whole(value, 1, kLargestPage, limit))
@@ -152,13 +155,15 @@ Response list_batches(Batches& batches, const Call& call) {
         } else if (name == "cursor") {
             if (!read_whole<std::int64_t>(value, 1, INT64_MAX, before.emplace()))
                 refuse_parameter(problem, name, value, "it must come from the next link of an earlier page.");
+        } else if (name == "owner" && call.request.admin) {
+            owner = value;
         } else {
-            refuse_parameter(problem, name, value, "the list knows only limit and cursor.");
+            refuse_parameter(problem, name, value,
+                             "the list knows only limit and cursor, and owner for whoever runs the service.");
         }
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
-    return guarded(
-        [&] { return http::json_response(batch_page_json(batches.list(call.request.owner, limit, before), limit)); });
+    return guarded([&] { return http::json_response(batch_page_json(batches.list(owner, limit, before), limit)); });
 }
 
 /// What the call asks of the results; a refusal where that is not possible.

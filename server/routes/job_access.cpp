@@ -22,12 +22,17 @@ Response store_failed(const StoreFault& fault) {
     return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
 }
 
+std::optional<std::string> visible_owner(const http::Request& request) {
+    return request.admin ? std::nullopt : request.owner;
+}
+
 bool may_see(const http::Request& request, const JobSummary& job) {
-    return !request.owner || *request.owner == job.owner;
+    const std::optional<std::string> owner = visible_owner(request);
+    return !owner || *owner == job.owner;
 }
 
 std::optional<Response> refuse_stranger(JobService& jobs, const http::Call& call) {
-    if (!call.request.owner) return std::nullopt;
+    if (!visible_owner(call.request)) return std::nullopt;
     const std::string& id = call.path.at("id");
     Response found = guarded([&] {
         const std::optional<JobState> state = jobs.state(id);

@@ -24,7 +24,10 @@ http::Response guarded(Work work) {
     }
 }
 
-/// True where the caller may know of the job: it is his, or nobody asks who he is.
+/// Whose jobs the caller may know of: nothing for everybody's, where nobody asks who he is or he runs the service.
+std::optional<std::string> visible_owner(const http::Request& request);
+
+/// True where the caller may know of the job.
 bool may_see(const http::Request& request, const JobSummary& job);
 
 /// The refusal of a call about /v1/jobs/{id} where there is no such job for this caller. Owners never change.

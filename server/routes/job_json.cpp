@@ -18,6 +18,7 @@ std::string links(const JobSummary& job) {
     JsonObject object;
     object.text("self", self);
     if (!has_ended(job.status)) object.text("cancel", self + "/cancel");
+    if (transition(job.status, JobEvent::requeue)) object.text("requeue", self + "/requeue");
     if (!job.batch.empty()) object.text("batch", "/v1/batches/" + job.batch);
     return std::move(object).str();
 }
@@ -123,10 +124,11 @@ std::string job_news_json(const JobView& view) {
     return std::move(object).str();
 }
 
-std::string job_page_json(const JobPage& page, const JobQuery& query) {
+std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners) {
     std::string list = "[";
     for (const JobSummary& job : page.jobs) {
         JsonObject object = head_of(job);
+        if (with_owners && !job.owner.empty()) object.text("owner", job.owner);
         add_times(object, job);
         object.raw("links", links(job));
         if (list.size() > 1) list.push_back(',');
@@ -140,6 +142,8 @@ std::string job_page_json(const JobPage& page, const JobQuery& query) {
     std::string next = "/v1/jobs?limit=" + std::to_string(query.limit);
     if (query.status) next.append("&status=").append(to_string(*query.status));
     if (query.name) next.append("&name=").append(percent_encode(*query.name));
+    if (query.text) next.append("&q=").append(percent_encode(*query.text));
+    if (with_owners && query.owner) next.append("&owner=").append(percent_encode(*query.owner));
     if (query.batch) next.append("&batch=").append(percent_encode(*query.batch));
     next.append("&cursor=").append(std::to_string(page.jobs.back().seq));
     return std::move(object.text("next", next)).str();

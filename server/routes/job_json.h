@@ -19,8 +19,9 @@ std::string job_news_json(const JobView& view);
 /// The contract's progress object, also of a job that waits or has just begun; null for one that has ended.
 std::string job_progress_json(const JobView& view);
 
-/// {"jobs": [...], "next": "/v1/jobs?..." or null}: jobs without requests and results.
-std::string job_page_json(const JobPage& page, const JobQuery& query);
+/// {"jobs": [...], "next": "/v1/jobs?..." or null}: jobs without requests and results, for whoever runs the service
+/// with their owners.
+std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners);
 
 std::string batch_json(const BatchSummary& batch);
 

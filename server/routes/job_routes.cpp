@@ -51,15 +51,18 @@ Response submitted(const JobService& jobs, const Submission& submission) {
     return store_failed(submission.fault);
 }
 
-/// The end of a wait: 200 with the job where it has ended, else 202, as always where nobody waited.
+/// The answer after a wait: 200 with the job where it has ended, else 202, as always where nobody waited.
+Response waited(const JobView& view, std::optional<std::chrono::seconds> wait) {
+    const bool ended = wait && has_ended(view.job.status);
+    Response response = http::json_response(job_json(view), ended ? 200 : 202);
+    if (wait) response.set("Preference-Applied", "wait=" + std::to_string(wait->count()));
+    return response.set("Location", "/v1/jobs/" + view.job.id);
+}
+
 Response waited(JobService& jobs, const std::string& id, std::optional<std::chrono::seconds> wait) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
-        if (!view) return no_such_job(id);
-        const bool ended = wait && has_ended(view->job.status);
-        Response response = http::json_response(job_json(*view), ended ? 200 : 202);
-        if (wait) response.set("Preference-Applied", "wait=" + std::to_string(wait->count()));
-        return response.set("Location", "/v1/jobs/" + id);
+        return view ? waited(*view, wait) : no_such_job(id);
     });
 }
 
@@ -67,25 +70,34 @@ Response waited(JobService& jobs, const std::string& id, std::optional<std::chro
 Response after_wait(JobService& jobs, const std::string& id, std::chrono::seconds wait) {
     if (wait.count() == 0) return waited(jobs, id, std::nullopt);
     try {
-        await_end([&](const std::function<void()>& ended) { jobs.wait(id, wait, ended); });
+        await_end([&](const std::function<void()>& ended) { jobs.wait(id, wait, [ended](const auto&) { ended(); }); });
     } catch (const StoreError& error) {
         return store_failed({error.kind, error.what()});
     }
     return waited(jobs, id, wait);
 }
 
+/// What came of an order: the job as it was accepted and, where it was waited for and ended here, as it ended.
+struct Submitted {
+    Submission submission;
+    std::shared_ptr<const JobRecord> ended;
+};
+
 /// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once.
-Submission submit(JobService& jobs, Order order) {
+Submitted submit(JobService& jobs, Order order) {
     const bool waits = order.wait.count() > 0;
-    const auto submission = std::make_shared<Submission>();
-    await_end([&](const std::function<void()>& ended) {
-        const auto done = [submission, waits, ended](Submission made) {
-            *submission = std::move(made);
-            if (!waits || submission->kind != Submission::Kind::created) ended();
+    const auto made = std::make_shared<Submitted>();
+    await_end([&](const std::function<void()>& wake) {
+        const auto done = [made, waits, wake](Submission submission) {
+            made->submission = std::move(submission);
+            if (!waits || made->submission.kind != Submission::Kind::created) wake();
         };
-        jobs.submit(std::move(order), done, ended);
+        jobs.submit(std::move(order), done, [made, wake](const std::shared_ptr<const JobRecord>& job) {
+            made->ended = job;
+            wake();
+        });
     });
-    return std::move(*submission);
+    return std::move(*made);
 }
 
 Response post_job(JobService& jobs, Places& places, const api::JobLimits& limits, const Call& call) {
@@ -102,14 +114,16 @@ Response post_job(JobService& jobs, Places& places, const api::JobLimits& limits
     order.idempotency_key = key;
     order.owner = call.request.owner.value_or("");
     order.flow = call.request.client;
+    order.origin = {call.request.request_id, call.request.traceparent};
     // Where too many wait already this one does not: it gets its job at once, as without the preference.
     std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
     std::optional<Places::Place> place;
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
     order.wait = wait;
-    const Submission submission = submit(jobs, std::move(order));
+    const auto [submission, ended] = submit(jobs, std::move(order));
     if (submission.kind == Submission::Kind::existing) return after_wait(jobs, submission.job.id, wait);
     if (submission.kind != Submission::Kind::created || wait.count() == 0) return submitted(jobs, submission);
+    if (ended) return waited(JobView{*ended, std::nullopt}, wait);
     return waited(jobs, submission.job.id, wait);
 }
 
@@ -167,8 +181,12 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
         } else if (name == "cursor") {
             query.before_seq = parse_cursor(value);
             if (!query.before_seq) refuse("it must come from the next link of an earlier page.");
+        } else if (name == "owner" && request.admin) {
+            query.owner = value;
         } else {
-            refuse("the list knows only status, name, q, batch, limit and cursor.");
+            refuse(
+                "the list knows only status, name, q, batch, limit and cursor, and owner for whoever runs the "
+                "service.");
         }
     }
     return problem;
@@ -177,10 +195,10 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
 Response list_jobs(JobService& jobs, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     JobQuery query;
-    query.owner = call.request.owner;
+    query.owner = visible_owner(call.request);
     const api::Problem problem = read_query(call.request, query);
     if (!problem.errors.empty()) return http::problem_response(problem);
-    return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query)); });
+    return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); });
 }
 
 Response cancel_job(JobService& jobs, const Call& call) {
@@ -189,6 +207,26 @@ Response cancel_job(JobService& jobs, const Call& call) {
     const std::string& id = call.path.at("id");
     const auto outcome = await<Outcome<CancelEffect>>([&](const Done<CancelEffect>& done) { jobs.cancel(id, done); });
     if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    return job_response(jobs, call.request, id, 202);
+}
+
+Response requeue_job(JobService& jobs, const Call& call) {
+    if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
+    if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
+    const std::string& id = call.path.at("id");
+    const auto outcome =
+        await<Outcome<RequeueEffect>>([&](const Done<RequeueEffect>& done) { jobs.requeue(id, done); });
+    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+    switch (std::get<RequeueEffect>(outcome)) {
+        case RequeueEffect::none: return no_such_job(id);
+        case RequeueEffect::not_failed:
+            return problem_response(409,
+                                    "Only a job that failed or was cancelled, and whose request could be read, can be "
+                                    "queued again. Post its request anew.");
+        case RequeueEffect::batch_cancelled:
+            return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
+        case RequeueEffect::requeued: break;
+    }
     return job_response(jobs, call.request, id, 202);
 }
 
@@ -220,6 +258,7 @@ void add_job_routes(http::Router& router, JobService& jobs, Places& places, cons
     router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
     router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });
     router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, call); });
+    router.add("POST", "/v1/jobs/{id}/requeue", [&](const Call& call) { return requeue_job(jobs, call); });
 }
 
 }  // namespace tunewright::server

@@ -31,6 +31,9 @@ void add_code_routes(http::Router& router, JobService& jobs);
 /// /v1/jobs/{id}/report.html
 void add_report_routes(http::Router& router, JobService& jobs);
 
+/// /v1/queue and what is below it, for whoever runs the service.
+void add_queue_routes(http::Router& router, JobService& jobs);
+
 struct BatchLimits {
     api::JobLimits job;
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch

@@ -182,7 +182,7 @@ void Reception::open() {
         ++out_;
     }
     last_sent_ = Clock::now();
-    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_()},
+    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_(), {}, order_.origin},
                       [this](const Outcome<bool>& outcome) { sent(outcome, 0, false); });
 }
 

@@ -21,6 +21,7 @@ struct BatchOrder {
     std::string idempotency_key;
     std::string owner;  ///< as in NewBatch
     std::string flow;
+    JobOrigin origin;
 };
 
 struct BatchReceipt {

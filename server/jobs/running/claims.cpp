@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
 constexpr std::size_t kMaxAhead = 16;
+// One claim in so many takes jobs of low priority first, so that batches go on however many single jobs come.
+constexpr std::uint64_t kLowShare = 8;
 constexpr double kForgetting = 0.2;
 // Where no worker has come for that long, each is at a long job, whatever the latest took.
 constexpr std::chrono::milliseconds kBusy{25};
@@ -15,8 +17,8 @@ constexpr std::chrono::seconds kPolite{10};  // that jobs which must run alone w
 
 }  // namespace
 
-Claims::Claims(JobStore& store, HeldJobs& held, Outage& outage, ClaimSettings settings)
-    : store_(store), held_(held), outage_(outage), settings_(std::move(settings)) {}
+Claims::Claims(JobQueue& queue, HeldJobs& held, Outage& outage, ClaimSettings settings)
+    : queue_(queue), held_(held), outage_(outage), settings_(std::move(settings)) {}
 
 std::shared_ptr<HeldJob> Claims::take(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
@@ -76,7 +78,7 @@ double Claims::pace() const {
     return pace_;
 }
 
-bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->job.batch.empty(); }
+bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->goes_first; }
 
 std::size_t Claims::ahead() const {
     if (!more_ || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
@@ -111,13 +113,16 @@ void Claims::ask(std::unique_lock<std::mutex>& lock) {
     asking_for_suspects_ = suspects;
     asking_for_arrivals_ = !suspects && arrivals_ != seen_;
     if (!suspects) seen_ = arrivals_;
+    const bool low_first = !suspects && ++claims_ % kLowShare == 0;
     lock.unlock();
-    store_.claim({settings_.worker, settings_.now(), settings_.lease, most, suspects},
-                 [this, most](Outcome<std::vector<JobRecord>> outcome) { come(std::move(outcome), most); });
+    queue_.claim({settings_.worker, settings_.now(), settings_.lease, most, suspects, low_first},
+                 [this, most, low_first](Outcome<std::vector<JobRecord>> outcome) {
+                     come(std::move(outcome), most, low_first);
+                 });
     lock.lock();
 }
 
-void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
+void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked, bool low_first) {
     auto* jobs = std::get_if<std::vector<JobRecord>>(&outcome);
     if (jobs != nullptr) {
         if (!jobs->empty()) {
@@ -140,12 +145,14 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
     }
     if (failed_) arrivals_++;  // so that retry() asks again
     if (jobs != nullptr) {
-        more_ = jobs->size() >= asked;
+        // Of low priority alone there may have been fewer.
+        more_ = jobs->size() >= asked || (low_first && !jobs->empty());
         // Jobs of another kind may come when these are done.
         if (!more_) streak_ /= 2;
         for (JobRecord& job : *jobs) {
             // Registered on the store's thread: a cancel that the store sees later finds the job here.
-            std::shared_ptr<HeldJob> held = held_.add(std::move(job));
+            const bool goes_first = low_first || job.batch.empty();
+            std::shared_ptr<HeldJob> held = held_.add(std::move(job), goes_first);
             closed_ ? late.push_back(std::move(held)) : put(std::move(held));
         }
     }
@@ -156,9 +163,8 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked) {
 }
 
 void Claims::put(std::shared_ptr<HeldJob> held) {
-    const bool single = held->job.batch.empty();
     const auto place = std::find_if(ready_.begin(), ready_.end(),
-                                    [&](const auto& other) { return single && !other->job.batch.empty(); });
+                                    [&](const auto& other) { return held->goes_first && !other->goes_first; });
     ready_.insert(place, std::move(held));
 }
 

@@ -20,7 +20,7 @@
 
 #include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
-#include "server/store/store.h"
+#include "server/store/queue.h"
 
 namespace tunewright::server {
 
@@ -37,7 +37,7 @@ struct ClaimSettings {
 class Claims {
 public:
     /// All of them must outlive the claims.
-    Claims(JobStore& store, HeldJobs& held, Outage& outage, ClaimSettings settings);
+    Claims(JobQueue& queue, HeldJobs& held, Outage& outage, ClaimSettings settings);
 
     /// The next job, once there is one; nothing after close() or a stop. Jobs come here before any worker has them, so
     /// they may have been asked to stop already.
@@ -71,9 +71,9 @@ private:
     bool keeps_clear(std::size_t held) const;
     void ask(std::unique_lock<std::mutex>& lock);
     void put(std::shared_ptr<HeldJob> held);
-    void come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked);
+    void come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked, bool low_first);
 
-    JobStore& store_;
+    JobQueue& queue_;
     HeldJobs& held_;
     Outage& outage_;
     ClaimSettings settings_;
@@ -86,6 +86,7 @@ private:
     bool asking_for_arrivals_ = false;
     bool failed_ = false;  ///< the last claim: the next one waits for retry()
     bool closed_ = false;
+    std::uint64_t claims_ = 0;    ///< so far
     bool more_ = false;           ///< the last claim got all that it asked for
     std::uint64_t arrivals_ = 0;  ///< so far
     std::uint64_t seen_ = 0;      ///< when the store was last asked

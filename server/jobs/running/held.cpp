@@ -41,8 +41,8 @@ unsigned HeldJob::revision() const {
     return revision_;
 }
 
-std::shared_ptr<HeldJob> HeldJobs::add(JobRecord claimed) {
-    auto held = std::make_shared<HeldJob>(std::move(claimed));
+std::shared_ptr<HeldJob> HeldJobs::add(JobRecord claimed, bool goes_first) {
+    auto held = std::make_shared<HeldJob>(std::move(claimed), goes_first);
     const std::lock_guard lock(mutex_);
     std::shared_ptr<HeldJob>& place = jobs_[held->job.id];
     if (place) place->request(HeldJob::Stop::lost);

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "engine/progress.h"
-#include "server/store/store.h"
+#include "server/store/archive.h"
 
 namespace tunewright::server {
 
@@ -35,9 +35,10 @@ public:
         dropped,   ///< so has been its batch, with all its jobs
     };
 
-    explicit HeldJob(JobRecord claimed) : job(std::move(claimed)) {}
+    HeldJob(JobRecord claimed, bool in_front) : job(std::move(claimed)), goes_first(in_front) {}
 
     const JobRecord job;
+    const bool goes_first;  ///< before entries of batches: a single job, or one whose turn has come
     const Clock::time_point claimed_at = Clock::now();
 
     /// The first reason counts.
@@ -65,7 +66,7 @@ private:
 class HeldJobs {
 public:
     /// Where the same job is held already, that was an earlier attempt which has been lost: it is stopped.
-    std::shared_ptr<HeldJob> add(JobRecord claimed);
+    std::shared_ptr<HeldJob> add(JobRecord claimed, bool goes_first);
     /// Nothing where that id is held by a later attempt now.
     void forget(const std::shared_ptr<HeldJob>& held);
 

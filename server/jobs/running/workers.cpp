@@ -2,7 +2,7 @@
 
 #include "server/clock.h"
 #include "server/executor.h"
-#include "server/jobs/running/ends.h"
+#include "server/jobs/running/result_outbox.h"
 #include "server/log.h"
 
 namespace tunewright::server {
@@ -15,8 +15,8 @@ constexpr int kNiceness = 5;
 
 }  // namespace
 
-Workers::Workers(Claims& claims, Ends& ends, Timer& timer, WorkerSettings settings)
-    : claims_(claims), ends_(ends), timer_(timer), settings_(std::move(settings)) {}
+Workers::Workers(Claims& claims, ResultOutbox& outbox, Timer& timer, WorkerSettings settings)
+    : claims_(claims), outbox_(outbox), timer_(timer), settings_(std::move(settings)) {}
 
 void Workers::start() {
     for (std::size_t i = 0; i < settings_.count; i++)
@@ -68,12 +68,13 @@ void Workers::end_unbegun(const std::shared_ptr<HeldJob>& held) { end(held, {Sta
 void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome, double seconds) {
     const Stop why = held->why();
     if (why == Stop::lost || why == Stop::dropped) return settings_.lost(held);
-    if (outcome.status == Status::cancelled && why == Stop::shutdown) return ends_.release(held);
+    if (outcome.status == Status::cancelled && why == Stop::shutdown) return outbox_.release(held);
     JobEvent event = outcome.status == Status::succeeded ? JobEvent::succeed : JobEvent::fail;
     if (outcome.status == Status::cancelled && why == Stop::cancel) event = JobEvent::cancel;
     if (outcome.status == Status::cancelled && why == Stop::timeout)
         outcome.error_json = timeout_problem(held->job.timeout_s);
     JobEnd end;
+    end.seq = held->job.seq;
     end.id = held->job.id;
     end.attempts = held->job.attempts;
     end.status = transition(JobStatus::running, event).value();
@@ -85,7 +86,7 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
                                                                      : std::move(outcome.outline_json);
     end.version = settings_.version;
     end.finished_at = settings_.now();
-    ends_.finish({held, std::move(end), seconds, std::move(outcome.method)});
+    outbox_.finish({held, std::move(end), seconds, std::move(outcome.method)});
 }
 
 }  // namespace tunewright::server

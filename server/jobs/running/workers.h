@@ -10,8 +10,8 @@
 
 #include "api/service.h"
 #include "server/jobs/running/claims.h"
-#include "server/jobs/running/ends.h"
 #include "server/jobs/running/held.h"
+#include "server/jobs/running/result_outbox.h"
 #include "server/jobs/timer.h"
 
 namespace tunewright::server {
@@ -27,7 +27,7 @@ struct WorkerSettings {
 
 class Workers {
 public:
-    Workers(Claims& claims, Ends& ends, Timer& timer, WorkerSettings settings);
+    Workers(Claims& claims, ResultOutbox& outbox, Timer& timer, WorkerSettings settings);
 
     void start();
     /// They take no more jobs.
@@ -44,7 +44,7 @@ private:
     void end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome, double seconds);
 
     Claims& claims_;
-    Ends& ends_;
+    ResultOutbox& outbox_;
     Timer& timer_;
     WorkerSettings settings_;
     std::vector<std::jthread> threads_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/store/postgres/changes.h"
+#include "server/store/postgres/moves.h"
 #include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
 
@@ -13,37 +14,50 @@ std::optional<std::int64_t> one_number(const pqxx::result& rows) {
 }
 
 void leave(Session& session, std::int64_t batch) {
-    session.run("UPDATE batches SET state = 'leaving', idempotency_key = NULL WHERE seq = $1", Values().number(batch));
+    session.run("UPDATE batches SET state = 'leaving', idempotency_key = NULL, ended_at = NULL WHERE seq = $1",
+                Values().number(batch));
 }
 
 /// Waiting entries take the turns that follow the last of their flow, as single jobs do among themselves.
 const std::string kAdd =
-    "WITH served AS MATERIALIZED (SELECT greatest(0, "
-    "(SELECT max(turn) FROM jobs WHERE status = 'running' AND class = 1), "
-    "(SELECT min(turn) - 1 FROM jobs WHERE status = 'queued' AND class = 1), "
-    "(SELECT max(turn) FROM jobs WHERE status = 'queued' AND class = 1 AND flow = $3)) AS turn) "
-    "INSERT INTO jobs (id, name, status, class, turn, owner, flow, batch, batch_index, created_at, finished_at, "
-    "timeout_s, request_hash, request, error, outline) "
-    "SELECT g.id, g.name, CASE WHEN g.error = '' THEN 'queued' ELSE 'failed' END, 1, "
-    "s.turn + count(*) FILTER (WHERE g.error = '') OVER (ORDER BY g.index), $2, $3, $1, g.index, $4, "
-    "CASE WHEN g.error <> '' THEN $4::bigint END, g.timeout_s, g.request_hash, nullif(g.request, ''), "
-    "nullif(g.error, ''), nullif(g.outline, '') "
-    "FROM unnest($5::text[], $6::text[], $7::float8[], $8::text[], $9::text[], $10::text[], $11::bigint[], "
-    "$12::text[]) "
-    "AS g (id, name, timeout_s, request, request_hash, error, index, outline), served s ORDER BY g.index";
+    "WITH served AS MATERIALIZED (SELECT greatest(0, " + served_turn("1") +
+    ", (SELECT max(turn) FROM waiting WHERE class = 1 AND flow = $3)) AS turn), "
+    "given AS MATERIALIZED (SELECT * FROM unnest($5::text[], $6::text[], $7::float8[], $8::text[], $9::text[], "
+    "$10::text[], $11::bigint[], $12::text[]) "
+    "AS g (id, name, timeout_s, request, request_hash, error, index, outline)), "
+    "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, batch, batch_index, created_at, timeout_s, "
+    "request_hash, request, request_id, traceparent) SELECT g.id, g.name, 1, "
+    "s.turn + count(*) FILTER (WHERE g.error = '') OVER (ORDER BY g.index), $2, $3, $1, g.index, $4, g.timeout_s, "
+    "g.request_hash, nullif(g.request, ''), $13, $14 FROM given g, served s ORDER BY g.index "
+    "RETURNING seq, turn, batch_index), "
+    "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch) SELECT 1, m.turn, m.seq, $3, $1 "
+    "FROM made m JOIN given g ON g.index = m.batch_index WHERE g.error = '') "
+    "INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at, error, outline) "
+    "SELECT m.seq, false, 'failed', 0, false, $4, g.error, nullif(g.outline, '') "
+    "FROM made m JOIN given g ON g.index = m.batch_index WHERE g.error <> ''";
 
 }  // namespace
 
 void open_batch(Session& session, const NewBatch& batch) {
-    session.run("INSERT INTO batches (id, name, owner, flow, created_at) VALUES ($1, $2, $3, $4, $5)",
-                Values().text(batch.id).text(batch.name).text(batch.owner).text(batch.flow).number(batch.created_at));
+    session.run(
+        "INSERT INTO batches (id, name, owner, flow, created_at, notify, request_id, traceparent) "
+        "VALUES ($1, $2, $3, $4, $5, nullif($6, ''), $7, $8)",
+        Values()
+            .text(batch.id)
+            .text(batch.name)
+            .text(batch.owner)
+            .text(batch.flow)
+            .number(batch.created_at)
+            .text(batch.notify.text())
+            .text(batch.origin.request_id)
+            .text(batch.origin.traceparent));
 }
 
 bool add_entries(Session& session, const std::string& id, const std::vector<NewEntry>& entries, UnixMs now) {
     // The row is held until the commit: a cancel or a drop comes before these entries, or after them.
     const pqxx::result rows = session.run(
         "UPDATE batches SET heard_at = clock_timestamp() WHERE id = $1 AND state = 'receiving' "
-        "AND NOT cancel_requested RETURNING seq, owner, flow",
+        "AND NOT cancel_requested RETURNING seq, owner, flow, request_id, traceparent",
         Values().text(id));
     if (rows.empty()) return false;
     if (entries.empty()) return true;
@@ -62,11 +76,19 @@ bool add_entries(Session& session, const std::string& id, const std::vector<NewE
     values.plain(rows[0][0].c_str()).plain(rows[0][1].c_str()).plain(rows[0][2].c_str()).number(now);
     for (const TextArray* array : {&ids, &name, &timeout, &request, &hash, &error, &index, &outline})
         values.plain(array->literal());
-    session.run(kAdd, values);
+    session.run(kAdd, values.plain(rows[0][3].c_str()).plain(rows[0][4].c_str()));
+    const auto failed =
+        std::count_if(entries.begin(), entries.end(), [](const auto& entry) { return !entry.error.empty(); });
+    const auto seq = rows[0][0].as<std::int64_t>();
+    BatchCounts counts;
+    counts.move(seq, std::nullopt, JobStatus::queued, static_cast<std::int64_t>(entries.size()) - failed);
+    counts.move(seq, std::nullopt, JobStatus::failed, failed, now);
+    counts.write(session);
     return true;
 }
 
-SealedBatch seal_batch(Session& session, const BatchSeal& seal) {
+SealedBatch seal_batch(Work& work, const BatchSeal& seal) {
+    Session& session = work.session;
     const pqxx::result rows = session.run(
         "SELECT seq, owner FROM batches WHERE id = $1 AND state = 'receiving' AND NOT cancel_requested "
         "FOR UPDATE",
@@ -95,27 +117,35 @@ SealedBatch seal_batch(Session& session, const BatchSeal& seal) {
     return {{Sealed::Kind::sealed, seal.batch}, std::nullopt};
 }
 
-std::optional<std::int64_t> leave_batch(Session& session, const std::string& id) {
+std::optional<std::int64_t> leave_batch(Work& work, const std::string& id) {
+    Session& session = work.session;
     return one_number(
-        session.run("UPDATE batches SET state = 'leaving', idempotency_key = NULL "
+        session.run("UPDATE batches SET state = 'leaving', idempotency_key = NULL, ended_at = NULL "
                     "WHERE id = $1 AND state <> 'leaving' RETURNING seq",
                     Values().text(id)));
 }
 
-std::size_t delete_entries(Session& session, std::int64_t batch, std::size_t most) {
+std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t most) {
+    Session& session = work.session;
+    // An entry that moves at this moment may stay behind in a place: the last call clears those.
     const auto gone = session
                           .run(
-                              "DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE batch = $1 "
-                              "ORDER BY batch_index LIMIT $2)",
+                              "WITH gone AS (DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE batch = $1 "
+                              "ORDER BY batch_index LIMIT $2) RETURNING seq, class, turn), "
+                              "w AS (DELETE FROM waiting w USING gone g WHERE w.class = g.class AND w.turn = g.turn "
+                              "AND w.seq = g.seq), e AS (DELETE FROM ended e USING gone g WHERE e.seq = g.seq), "
+                              "r AS (DELETE FROM running r USING gone g WHERE r.seq = g.seq) SELECT seq FROM gone",
                               Values().number(batch).number(static_cast<std::int64_t>(most)))
-                          .affected_rows();
-    if (gone == 0)
-        session.run("DELETE FROM batches WHERE seq = $1 AND NOT EXISTS (SELECT 1 FROM jobs WHERE batch = $1)",
-                    Values().number(batch));
-    return gone;
+                          .size();
+    if (gone > 0) return static_cast<std::size_t>(gone);
+    session.run("DELETE FROM running WHERE batch = $1", Values().number(batch));
+    session.run("DELETE FROM batches WHERE seq = $1 AND NOT EXISTS (SELECT 1 FROM jobs WHERE batch = $1)",
+                Values().number(batch));
+    return 0;
 }
 
-RemovedBatch remove_batch(Session& session, const std::string& id) {
+RemovedBatch remove_batch(Work& work, const std::string& id) {
+    Session& session = work.session;
     static const std::string sql =
         "SELECT " + kBatchColumns + kBatchTables + " WHERE b.id = $1 AND b.state <> 'leaving'" + kBatchGroups;
     const pqxx::result rows = session.run(sql, Values().text(id));
@@ -126,19 +156,29 @@ RemovedBatch remove_batch(Session& session, const std::string& id) {
     return {RemoveEffect::removed, batch.seq};
 }
 
-std::optional<std::int64_t> begin_cancel(Session& session, const std::string& id) {
+std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id) {
+    Session& session = work.session;
     return one_number(
         session.run("UPDATE batches SET cancel_requested = true WHERE id = $1 AND state <> 'leaving' RETURNING seq",
                     Values().text(id)));
 }
 
-std::optional<std::int64_t> cancel_entries(Session& session, std::int64_t batch, std::int64_t from, UnixMs now) {
+std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now) {
+    Session& session = work.session;
     const std::int64_t next = from + static_cast<std::int64_t>(kSlice);
-    session.run(
-        "UPDATE jobs SET status = 'cancelled', cancel_requested = true, finished_at = $4 "
-        "WHERE seq IN (SELECT seq FROM jobs WHERE batch = $1 AND batch_index >= $2 AND batch_index < $3 "
-        "AND status = 'queued' FOR UPDATE) AND status = 'queued'",
-        Values().number(batch).number(from).number(next).number(now));
+    const auto count =
+        session
+            .run(
+                "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.batch = $1 AND j.batch_index >= $2 AND "
+                "j.batch_index < $3 AND w.class = j.class AND w.turn = j.turn AND w.seq = j.seq "
+                "RETURNING w.seq, w.attempts) "
+                "INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at) "
+                "SELECT seq, false, 'cancelled', attempts, true, $4 FROM taken RETURNING seq",
+                Values().number(batch).number(from).number(next).number(now))
+            .size();
+    BatchCounts counts;
+    counts.move(batch, JobStatus::queued, JobStatus::cancelled, count, now);
+    counts.write(session);
     const bool more = session
                           .run("SELECT EXISTS (SELECT 1 FROM jobs WHERE batch = $1 AND batch_index >= $2)",
                                Values().number(batch).number(next))[0][0]
@@ -146,56 +186,86 @@ std::optional<std::int64_t> cancel_entries(Session& session, std::int64_t batch,
     return more ? std::optional(next) : std::nullopt;
 }
 
-std::vector<std::string> end_cancel(Session& session, std::int64_t batch) {
+std::vector<std::string> end_cancel(Work& work, std::int64_t batch) {
+    Session& session = work.session;
     std::vector<std::string> ids;
     for (const pqxx::row& row :
-         session.run("UPDATE jobs SET cancel_requested = true WHERE class = 1 AND status = 'running' AND batch = $1 "
-                     "RETURNING id",
+         session.run("UPDATE running r SET cancel_requested = true FROM jobs j WHERE r.batch = $1 AND j.seq = r.seq "
+                     "RETURNING j.id",
                      Values().number(batch)))
         ids.push_back(text_of(row[0]));
+    for (const std::string& id : ids) work.notices.cancel(id);
+    work.notices.ended("");
     return ids;
 }
 
-Unsettled find_unsettled(Session& session) {
+Unsettled settle_batches(Session& session) {
+    // Whoever waits for the end of a batch is told in the same transaction in which the end is seen.
+    static const std::string settle =
+        "WITH over AS MATERIALIZED (SELECT b.seq, greatest(b.created_at, (SELECT max(c.last_end) FROM batch_counts c "
+        "WHERE c.batch = b.seq)) AS ended_at FROM batches b WHERE b.ended_at IS NULL AND b.state = 'sealed' "
+        "AND coalesce((SELECT sum(c.queued) + sum(c.running) FROM batch_counts c WHERE c.batch = b.seq), 0) = 0 "
+        "FOR UPDATE OF b SKIP LOCKED), "
+        "settled AS (UPDATE batches b SET ended_at = o.ended_at FROM over o WHERE b.seq = o.seq "
+        "RETURNING b.id, b.notify, b.ended_at) "
+        "INSERT INTO deliveries (target, batch, created_at, due_at) SELECT notify, id, ended_at, ended_at FROM settled "
+        "WHERE notify IS NOT NULL";
+    session.run(settle);
     session.run(
-        "UPDATE batches SET state = 'leaving' WHERE (state <> 'sealed' OR cancel_requested) "
-        "AND state = 'receiving' AND heard_at < clock_timestamp() - $1::bigint * interval '1 millisecond'",
-        Values().number(JobStore::kReceiving.count()));
+        "UPDATE batches SET state = 'leaving' WHERE ended_at IS NULL AND state = 'receiving' "
+        "AND heard_at < clock_timestamp() - $1::bigint * interval '1 millisecond'",
+        Values().number(BatchStore::kReceiving.count()));
     Unsettled unsettled;
     for (const pqxx::row& row :
-         session.run("SELECT b.seq, b.state = 'leaving' FROM batches b WHERE (b.state <> 'sealed' OR "
-                     "b.cancel_requested) AND (b.state = 'leaving' OR (b.cancel_requested AND "
+         session.run("SELECT b.seq, b.state = 'leaving' FROM batches b WHERE b.ended_at IS NULL AND "
+                     "(b.state = 'leaving' OR (b.cancel_requested AND "
                      "(SELECT sum(c.queued) FROM batch_counts c WHERE c.batch = b.seq) > 0))"))
         (row[1].as<bool>() ? unsettled.leaving : unsettled.cancelling).push_back(row[0].as<std::int64_t>());
     return unsettled;
 }
 
-std::size_t sweep_slice(Session& session, const Retention& retention, std::size_t most) {
-    const auto slice = static_cast<std::int64_t>(std::min(most, kSlice));
-    const UnixMs ended_before =
-        one_number(session.run("SELECT least($1, (extract(epoch FROM clock_timestamp()) * 1000)::bigint) - $2",
-                               Values().number(retention.now).number(retention.age.count())))
-            .value();
-    const auto gone = session
-                          .run(
-                              "DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE class = 0 AND "
-                              "finished_at IS NOT NULL AND finished_at < $1 ORDER BY finished_at LIMIT $2 "
-                              "FOR UPDATE SKIP LOCKED)",
-                              Values().number(ended_before).number(slice))
-                          .affected_rows();
-    if (gone > 0) return gone;
-    static const std::string next =
-        "SELECT b.seq" + kBatchTables +
-        " WHERE b.state <> 'receiving' GROUP BY b.seq HAVING b.state = 'leaving' OR (coalesce(sum(c.queued), 0) = 0 "
-        "AND coalesce(sum(c.running), 0) = 0 AND greatest(max(c.last_end), b.created_at) < $1) "
-        "ORDER BY b.state = 'leaving' DESC, b.seq LIMIT 1";
+namespace {
+
+std::size_t sweep_state(Session& session, JobStatus status, UnixMs ended_before, std::size_t most) {
+    const pqxx::result gone = session.run(
+        "WITH due AS MATERIALIZED (SELECT seq FROM ended WHERE single AND status = $1 AND finished_at < $2 "
+        "ORDER BY finished_at LIMIT $3), e AS (DELETE FROM ended WHERE seq IN (SELECT seq FROM due)) "
+        "DELETE FROM jobs WHERE seq IN (SELECT seq FROM due) RETURNING seq",
+        Values().plain(std::string(to_string(status))).number(ended_before).number(static_cast<std::int64_t>(most)));
+    return static_cast<std::size_t>(gone.size());
+}
+
+std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t most) {
+    settle_batches(work.session);
     for (;;) {
-        const std::optional<std::int64_t> batch = one_number(session.run(next, Values().number(ended_before)));
+        const std::optional<std::int64_t> batch = one_number(work.session.run(
+            "SELECT seq FROM batches WHERE ended_at IS NULL AND state = 'leaving' UNION ALL "
+            "(SELECT seq FROM batches WHERE ended_at IS NOT NULL AND ended_at < $1 ORDER BY ended_at LIMIT 1) LIMIT 1",
+            Values().number(ended_before)));
         if (!batch) return 0;
-        leave(session, *batch);
-        if (const std::size_t entries = delete_entries(session, *batch, static_cast<std::size_t>(slice)); entries > 0)
-            return entries;
+        leave(work.session, *batch);
+        if (const std::size_t gone = delete_entries(work, *batch, most); gone > 0) return gone;
     }
+}
+
+}  // namespace
+
+std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t most) {
+    const std::size_t slice = std::min(most, kSlice);
+    const pqxx::row row = work.session.run(
+        "SELECT least($1, (extract(epoch FROM clock_timestamp()) * 1000)::bigint), "
+        "pg_try_advisory_xact_lock(x'74756e6577737765'::bigint)",  // "tunewswe": one process sweeps at a time
+        Values().number(now))[0];
+    if (!row[1].as<bool>()) return 0;
+    const auto earlier = row[0].as<UnixMs>();
+    for (const auto& [status, age] :
+         {std::pair{JobStatus::succeeded, retention.succeeded}, std::pair{JobStatus::failed, retention.failed},
+          std::pair{JobStatus::cancelled, retention.cancelled}})
+        if (age)
+            if (const std::size_t gone = sweep_state(work.session, status, earlier - age->count(), slice); gone > 0)
+                return gone;
+    const auto longest = retention.longest();
+    return longest ? sweep_batch(work, earlier - longest->count(), slice) : 0;
 }
 
 }  // namespace tunewright::server::postgres

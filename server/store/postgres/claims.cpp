@@ -1,8 +1,9 @@
-// Claims and leases. The database's clock alone decides when a lease is over.
+// Claims, signs of life, and what becomes of the jobs of a worker that gives none. The database's clock alone decides
+// when that is.
 #include <algorithm>
-#include <map>
 
 #include "server/store/postgres/changes.h"
+#include "server/store/postgres/moves.h"
 #include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
 
@@ -14,90 +15,142 @@ std::string lease_end(const std::string& place) {
     return "clock_timestamp() + " + place + "::bigint * interval '1 millisecond'";
 }
 
-/// True where whoever asked for the end of job j, or of its batch, gets that instead of another attempt.
-const std::string kUnwanted =
-    "(j.cancel_requested OR EXISTS (SELECT 1 FROM batches b WHERE b.seq = j.batch AND b.cancel_requested))";
+/// Hands out the jobs that `which` names, of all that wait.
+std::string claim_sql(const std::string& which) {
+    return "WITH next AS MATERIALIZED (SELECT ctid FROM waiting WHERE " + which +
+           " LIMIT $1 FOR UPDATE SKIP LOCKED), "
+           "taken AS (DELETE FROM waiting WHERE ctid = ANY (ARRAY(SELECT ctid FROM next)) RETURNING *), "
+           "runs AS (INSERT INTO running (seq, class, turn, flow, batch, worker, attempts, crashes, started_at) "
+           "SELECT seq, class, turn, flow, batch, $2, attempts + 1, crashes, $3 FROM taken "
+           "RETURNING seq, class, turn, attempts, batch, started_at), "
+           // A sign of life, where the last one is not young enough to last.
+           "alive AS (INSERT INTO workers (name, lease_until) SELECT $2, " +
+           lease_end("$4") +
+           " WHERE EXISTS (SELECT 1 FROM taken) AND NOT EXISTS (SELECT 1 FROM workers WHERE name = $2 "
+           "AND lease_until > clock_timestamp() + $4::bigint / 2 * interval '1 millisecond') "
+           "ON CONFLICT (name) DO UPDATE SET lease_until = greatest(workers.lease_until, EXCLUDED.lease_until)) "
+           "SELECT " +
+           kClaimedColumns +
+           ", r.batch FROM runs r JOIN jobs j ON j.seq = r.seq LEFT JOIN batches b ON b.seq = r.batch "
+           "ORDER BY r.class, r.turn, r.seq";
+}
+
+const std::string kGoing = "NOT EXISTS (SELECT 1 FROM settings WHERE name = 'paused' AND value = '1') AND ";
+
+std::vector<JobRecord> claim_by(Session& session, const std::string& sql, const Claim& claim) {
+    const Values values = Values()
+                              .number(static_cast<std::int64_t>(claim.most))
+                              .text(claim.worker)
+                              .number(claim.now)
+                              .number(claim.lease.count());
+    std::vector<JobRecord> claimed;
+    BatchCounts counts;
+    for (const pqxx::row& row : session.run(sql, values)) {
+        claimed.push_back(read_claimed(row));
+        if (const pqxx::field batch = row[kClaimedCount]; !batch.is_null())
+            counts.move(batch.as<std::int64_t>(), JobStatus::queued, JobStatus::running);
+    }
+    counts.write(session);
+    return claimed;
+}
 
 }  // namespace
 
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim) {
-    static const std::string usual = "crashes < 2 ORDER BY class, turn, seq";
-    static const std::string suspects = "crashes > 1 AND not_before <= clock_timestamp() ORDER BY not_before";
-    const std::string sql =
-        "WITH next AS MATERIALIZED (SELECT seq FROM jobs WHERE status = 'queued' AND " +
-        (claim.suspects ? suspects : usual) +
-        " LIMIT $1 FOR UPDATE SKIP LOCKED), taken AS (UPDATE jobs j SET status = 'running', started_at = $2, "
-        "attempts = j.attempts + 1, worker = $3, lease_until = " +
-        lease_end("$4") + " FROM next WHERE j.seq = next.seq RETURNING j.*) SELECT " + kRecordColumns +
-        " FROM taken j LEFT JOIN batches b ON b.seq = j.batch ORDER BY j.class, j.turn, j.seq";
-    const Values values = Values()
-                              .number(static_cast<std::int64_t>(claim.most))
-                              .number(claim.now)
-                              .text(claim.worker)
-                              .number(claim.lease.count());
-    std::vector<JobRecord> claimed;
-    for (const pqxx::row& row : session.run(sql, values)) claimed.push_back(read_record(row));
-    return claimed;
+    static const std::string usual = claim_sql(kGoing + "crashes < 2 ORDER BY class, turn, seq");
+    static const std::string low = claim_sql(kGoing + "crashes < 2 AND class = 1 ORDER BY class, turn, seq");
+    static const std::string suspects =
+        claim_sql(kGoing + "crashes > 1 AND not_before <= clock_timestamp() ORDER BY not_before");
+    if (claim.suspects) return claim_by(session, suspects, claim);
+    if (claim.low_first)
+        if (std::vector<JobRecord> claimed = claim_by(session, low, claim); !claimed.empty()) return claimed;
+    return claim_by(session, usual, claim);
 }
 
-std::vector<Renewed> renew_jobs(Session& session, const std::vector<Renewal>& renewals,
-                                std::chrono::milliseconds lease) {
-    static const std::string sql =
-        "UPDATE jobs j SET lease_until = " + lease_end("$4") +
-        ", progress = CASE WHEN g.progress <> '' THEN g.progress ELSE j.progress END, "
-        "progress_attempts = CASE WHEN g.progress <> '' THEN g.attempts ELSE j.progress_attempts END "
-        "FROM unnest($1::text[], $2::int[], $3::text[]) AS g (id, attempts, progress) "
-        "WHERE j.id = g.id AND j.attempts = g.attempts AND j.status = 'running' RETURNING j.id, j.cancel_requested";
-    std::map<std::string, const Renewal*> in_order;  // as in finish_jobs()
-    for (const Renewal& renewal : renewals) in_order[renewal.id] = &renewal;
-    TextArray id, attempts, progress;
-    for (const auto& [key, renewal] : in_order) {
-        id.add(renewal->id);
-        attempts.add_plain(std::to_string(renewal->attempts));
-        progress.add(renewal->progress);
+std::vector<Holding> beat_worker(Session& session, const Heartbeat& beat) {
+    session.run("INSERT INTO workers AS w (name, lease_until) VALUES ($1, " + lease_end("$2") +
+                    ") ON CONFLICT (name) DO UPDATE SET lease_until = greatest(w.lease_until, EXCLUDED.lease_until)",
+                Values().text(beat.worker).number(beat.lease.count()));
+    if (!beat.progress.empty()) {
+        TextArray seq, attempts, progress;
+        for (const ProgressNote& note : beat.progress) {
+            seq.add_plain(std::to_string(note.seq));
+            attempts.add_plain(std::to_string(note.attempts));
+            progress.add(note.progress);
+        }
+        session.run(
+            "UPDATE running r SET progress = g.progress FROM unnest($1::bigint[], $2::int[], $3::text[]) "
+            "AS g (seq, attempts, progress) WHERE r.seq = g.seq AND r.attempts = g.attempts AND r.worker = $4",
+            Values().plain(seq.literal()).plain(attempts.literal()).plain(progress.literal()).text(beat.worker));
     }
-    std::map<std::string, bool> held;
-    const Values values =
-        Values().plain(id.literal()).plain(attempts.literal()).plain(progress.literal()).number(lease.count());
-    for (const pqxx::row& row : session.run(sql, values)) held[text_of(row[0])] = row[1].as<bool>();
-    std::vector<Renewed> answers;
-    for (const Renewal& renewal : renewals) {
-        const auto found = held.find(renewal.id);
-        const bool holds = found != held.end();
-        answers.push_back({renewal.id, holds, holds && found->second});
-    }
-    return answers;
+    std::vector<Holding> held;
+    for (const pqxx::row& row :
+         session.run("SELECT seq, attempts, cancel_requested, started_at FROM running WHERE worker = $1",
+                     Values().text(beat.worker)))
+        held.push_back({row[0].as<std::int64_t>(), row[1].as<int>(), row[2].as<bool>(), row[3].as<UnixMs>()});
+    return held;
 }
 
-std::optional<JobStatus> release_job(Session& session, const std::string& id, int attempts, UnixMs now) {
-    static const std::string sql = "UPDATE jobs j SET status = CASE WHEN " + kUnwanted +
-                                   " THEN 'cancelled' ELSE 'queued' END, finished_at = CASE "
-                                   "WHEN " +
-                                   kUnwanted + " THEN $3::bigint END, cancel_requested = " + kUnwanted +
-                                   ", worker = NULL, lease_until = NULL "
-                                   "WHERE j.id = $1 AND j.attempts = $2 AND j.status = 'running' RETURNING j.status";
-    const pqxx::result rows = session.run(sql, Values().text(id).number(attempts).number(now));
-    if (rows.empty()) return std::nullopt;
-    return job_status(rows[0][0].c_str());
+namespace {
+
+std::string id_of(Session& session, std::int64_t seq) {
+    const pqxx::result rows = session.run("SELECT id FROM jobs WHERE seq = $1", Values().number(seq));
+    return rows.empty() ? std::string{} : text_of(rows[0][0]);
 }
 
-Recovery reclaim_jobs(Session& session, UnixMs now, int attempts, const std::string& error) {
-    static const std::string sql =
-        "WITH over AS MATERIALIZED (SELECT j.seq, " + kUnwanted +
-        " AS unwanted, j.crashes + 1 >= $1 AS tired FROM jobs j WHERE j.status = 'running' "
-        "AND j.lease_until <= clock_timestamp() ORDER BY j.seq FOR UPDATE SKIP LOCKED) "
-        "UPDATE jobs j SET status = CASE WHEN o.unwanted THEN 'cancelled' WHEN o.tired THEN 'failed' ELSE 'queued' "
-        "END, finished_at = CASE WHEN o.unwanted OR o.tired THEN $3::bigint END, error = CASE WHEN o.tired AND NOT "
-        "o.unwanted THEN $2 END, cancel_requested = o.unwanted, worker = NULL, lease_until = NULL, "
-        "crashes = j.crashes + 1, not_before = CASE WHEN j.crashes > 0 THEN clock_timestamp() + "
-        "least(300, 2 ^ (j.crashes - 1)) * interval '1 second' END "
-        "FROM over o WHERE j.seq = o.seq RETURNING j.id, j.status";
+void count(Session& session, const Run& run, JobStatus to, UnixMs now) {
+    BatchCounts counts;
+    counts.move(run.batch, JobStatus::running, to, 1, has_ended(to) ? now : 0);
+    counts.write(session);
+}
+
+/// Locked until the end of the transaction; their workers have no sign of life left.
+std::vector<std::int64_t> abandoned(Session& session) {
+    session.run("DELETE FROM workers WHERE lease_until <= clock_timestamp()");
+    std::vector<std::int64_t> found;
+    for (const pqxx::row& row :
+         session.run("SELECT r.seq FROM running r WHERE NOT EXISTS (SELECT 1 FROM workers w WHERE w.name = r.worker) "
+                     "ORDER BY r.seq FOR UPDATE OF r SKIP LOCKED"))
+        found.push_back(row[0].as<std::int64_t>());
+    return found;
+}
+
+}  // namespace
+
+std::optional<Released> release_job(Session& session, std::int64_t seq, int attempts, UnixMs now) {
+    const std::optional<RunningRow> row = RunningRow::take(session, seq, attempts);
+    if (!row) return std::nullopt;
+    const JobStatus status = row->run().unwanted ? JobStatus::cancelled : JobStatus::queued;
+    if (row->run().unwanted)
+        row->put_ended(session, status, now, "");
+    else
+        row->put_waiting(session, row->run().crashes);
+    count(session, row->run(), status, now);
+    return Released{id_of(session, seq), status};
+}
+
+std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what) {
+    const pqxx::result turn = session.run(
+        "UPDATE upkeep SET done_at = clock_timestamp() WHERE task = (SELECT task FROM upkeep WHERE task = 'reclaim' "
+        "AND done_at <= clock_timestamp() - $1::bigint * interval '1 millisecond' FOR UPDATE SKIP LOCKED) RETURNING 1",
+        Values().number(what.period.count()));
+    if (turn.empty() && what.period.count() > 0) return std::nullopt;
     Recovery recovery;
-    for (const pqxx::row& row : session.run(sql, Values().number(attempts).text(error).number(now))) {
-        const JobStatus status = job_status(row[1].c_str()).value();
-        if (status == JobStatus::queued) recovery.interrupted++;
-        if (status == JobStatus::failed) recovery.given_up++;
-        if (has_ended(status)) recovery.ended.push_back(text_of(row[0]));
+    for (const std::int64_t seq : abandoned(session)) {
+        const std::optional<RunningRow> row = RunningRow::take(session, seq, 0);
+        if (!row) continue;
+        const int crashes = row->run().crashes + 1;
+        const bool tired = crashes >= what.most_attempts;
+        JobStatus to = tired ? JobStatus::failed : JobStatus::queued;
+        if (row->run().unwanted) to = JobStatus::cancelled;
+        if (has_ended(to))
+            row->put_ended(session, to, what.now, to == JobStatus::failed ? what.error : "");
+        else
+            row->put_waiting(session, crashes);
+        count(session, row->run(), to, what.now);
+        recovery.interrupted += to == JobStatus::queued ? 1U : 0U;
+        recovery.given_up += to == JobStatus::failed ? 1U : 0U;
+        if (has_ended(to)) recovery.ended.push_back(id_of(session, seq));
     }
     return recovery;
 }

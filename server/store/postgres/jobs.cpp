@@ -1,33 +1,38 @@
 // Single jobs: accepted, ended, cancelled, removed.
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "server/store/postgres/changes.h"
+#include "server/store/postgres/moves.h"
 #include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
 
 namespace tunewright::server::postgres {
 namespace {
 
-// Served is the turn of the last job that was taken, and at least the one before the first that waits.
 const std::string kAccept =
     "WITH given AS MATERIALIZED (SELECT * FROM unnest($1::text[], $2::text[], $3::float8[], $4::text[], $5::text[], "
-    "$6::text[], $7::text[], $8::text[], $9::bigint[]) WITH ORDINALITY "
-    "AS g (id, name, timeout_s, request, request_hash, key, owner, flow, created_at, place)), "
-    "served AS MATERIALIZED (SELECT greatest(0, (SELECT max(turn) FROM jobs WHERE status = 'running' AND class = 0), "
-    "(SELECT min(turn) - 1 FROM jobs WHERE status = 'queued' AND class = 0)) AS turn), "
-    "flows AS MATERIALIZED (SELECT f.flow, greatest(s.turn, (SELECT max(turn) FROM jobs w WHERE w.status = 'queued' "
-    "AND w.class = 0 AND w.flow = f.flow)) AS turn FROM (SELECT DISTINCT flow FROM given) f, served s) "
-    "INSERT INTO jobs (id, name, status, class, turn, owner, flow, created_at, timeout_s, request_hash, "
-    "idempotency_key, request) SELECT g.id, g.name, 'queued', 0, "
-    "f.turn + row_number() OVER (PARTITION BY g.flow ORDER BY g.place), g.owner, g.flow, g.created_at, g.timeout_s, "
-    "g.request_hash, nullif(g.key, ''), g.request FROM given g JOIN flows f ON f.flow = g.flow ORDER BY g.place "
-    "ON CONFLICT DO NOTHING RETURNING id, seq";
+    "$6::text[], $7::text[], $8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], $13::text[]) "
+    "WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, flow, created_at, class, notify, "
+    "request_id, traceparent, place)), "
+    "flows AS MATERIALIZED (SELECT f.flow, f.class, greatest(0, " +
+    served_turn("f.class") +
+    ", (SELECT max(turn) FROM waiting w WHERE w.class = f.class AND w.flow = f.flow)) AS turn "
+    "FROM (SELECT DISTINCT flow, class FROM given) f), "
+    "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, "
+    "idempotency_key, request, notify, request_id, traceparent) SELECT g.id, g.name, g.class, "
+    "f.turn + row_number() OVER (PARTITION BY g.flow, g.class ORDER BY g.place), g.owner, g.flow, g.created_at, "
+    "g.timeout_s, g.request_hash, nullif(g.key, ''), g.request, nullif(g.notify, ''), g.request_id, g.traceparent "
+    "FROM given g JOIN flows f ON f.flow = g.flow AND f.class = g.class ORDER BY g.place "
+    "ON CONFLICT DO NOTHING RETURNING id, seq, class, turn, flow), "
+    "queued AS (INSERT INTO waiting (class, turn, seq, flow) SELECT class, turn, seq, flow FROM made) "
+    "SELECT id, seq FROM made";
 
 /// The job that stood in the way of this one: that of its key, or itself, accepted before.
 Accepted find_earlier(Session& session, const NewJob& job) {
-    static const std::string sql = "SELECT " + kSummaryColumns + kTables + " WHERE j.id = $1 UNION ALL SELECT " +
-                                   kSummaryColumns + kTables +
+    static const std::string sql = "SELECT " + kSummaryColumns + kJobTables + " WHERE j.id = $1 UNION ALL SELECT " +
+                                   kSummaryColumns + kJobTables +
                                    " WHERE j.owner = $2 AND j.idempotency_key = $3 AND $3 <> ''";
     const pqxx::result rows = session.run(sql, Values().text(job.id).text(job.owner).text(job.idempotency_key));
     if (rows.empty() || job.idempotency_key.empty())
@@ -38,33 +43,72 @@ Accepted find_earlier(Session& session, const NewJob& job) {
     return accepted;
 }
 
-const std::string kFinish =
-    "UPDATE jobs j SET status = g.status, finished_at = g.finished_at, version = g.version, "
-    "result = nullif(g.result, ''), error = nullif(g.error, ''), outline = nullif(g.outline, ''), worker = NULL, "
-    "lease_until = NULL "
-    "FROM unnest($1::text[], $2::int[], $3::text[], $4::text[], $5::text[], $6::text[], $7::bigint[], $8::text[]) "
-    "AS g (id, attempts, status, result, error, version, finished_at, outline) "
-    "WHERE j.id = g.id AND j.attempts = g.attempts AND j.status = 'running' RETURNING j.id";
+// Results are long. They come in a statement of their own, for those that are to be written, one behind the other in
+// one piece of bytes: an array of them would be read sign by sign.
+const std::string kTake =
+    "DELETE FROM running r USING unnest($1::bigint[], $2::int[]) AS g (seq, attempts) WHERE r.seq = g.seq "
+    "AND r.attempts = g.attempts RETURNING r.seq, r.batch, r.started_at, r.cancel_requested, "
+    // An entry whose batch is being deleted at this moment ends nowhere.
+    "r.batch IS NULL OR EXISTS (SELECT 1 FROM jobs j WHERE j.seq = r.seq)";
+const std::string kEnd =
+    "WITH gone AS (INSERT INTO ended (seq, single, status, attempts, cancel_requested, started_at, finished_at, "
+    "version, outline, error, result) SELECT g.seq, g.single, g.status, g.attempts, g.cancel_requested, g.started_at, "
+    "g.finished_at, g.version, nullif(g.outline, ''), nullif(g.error, ''), "
+    "CASE WHEN g.length > 0 THEN convert_from(substring($13::bytea FROM g.first FOR g.length), 'UTF8') END "
+    "FROM unnest($1::bigint[], $2::boolean[], $3::text[], $4::int[], $5::boolean[], $6::bigint[], $7::bigint[], "
+    "$8::text[], $9::text[], $10::text[], $11::int[], $12::int[]) AS g (seq, single, status, attempts, "
+    "cancel_requested, started_at, finished_at, version, outline, error, first, length) RETURNING seq, finished_at) " +
+    insert_deliveries("gone", "s.finished_at");
 
 struct FoundJob {
     std::int64_t seq = 0;
-    JobStatus status = JobStatus::queued;
-    bool in_batch = false;
+    std::optional<std::int64_t> batch;
+    bool batch_cancelled = false;
+    bool readable = false;  ///< has a request
 };
 
-/// Held until the end of the transaction.
+/// A job that is not of a batch being deleted, wherever it is.
 std::optional<FoundJob> find_job(Session& session, const std::string& id) {
-    static const std::string sql =
-        "SELECT j.seq, j.status, j.class" + kTables + " WHERE j.id = $1 AND " + kVisible + " FOR UPDATE OF j";
-    const pqxx::result rows = session.run(sql, Values().text(id));
+    const pqxx::result rows = session.run(
+        "SELECT j.seq, j.batch, coalesce(b.cancel_requested, false), j.request IS NOT NULL FROM jobs j "
+        "LEFT JOIN batches b ON b.seq = j.batch WHERE j.id = $1 AND (j.batch IS NULL OR b.state <> 'leaving')",
+        Values().text(id));
     if (rows.empty()) return std::nullopt;
-    return FoundJob{rows[0][0].as<std::int64_t>(), job_status(rows[0][1].c_str()).value(), rows[0][2].as<int>() != 0};
+    FoundJob found;
+    found.seq = rows[0][0].as<std::int64_t>();
+    if (!rows[0][1].is_null()) found.batch = rows[0][1].as<std::int64_t>();
+    found.batch_cancelled = rows[0][2].as<bool>();
+    found.readable = rows[0][3].as<bool>();
+    return found;
 }
+
+/// False where it does not wait at this moment.
+bool cancel_waiting(Session& session, std::int64_t seq, UnixMs now) {
+    static const std::string sql =
+        "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.seq = $1 AND w.class = j.class AND "
+        "w.turn = j.turn AND w.seq = j.seq RETURNING w.seq, w.batch, w.attempts), "
+        "gone AS (INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at) "
+        "SELECT seq, batch IS NULL, 'cancelled', attempts, true, $2 FROM taken RETURNING seq), told AS (" +
+        insert_deliveries("gone", "$2") + ") SELECT seq FROM taken";
+    return !session.run(sql, Values().number(seq).number(now)).empty();
+}
+
+bool has_ended(Session& session, std::int64_t seq) {
+    return !session.run("SELECT 1 FROM ended WHERE seq = $1", Values().number(seq)).empty();
+}
+
+bool has_failed(Session& session, std::int64_t seq) {
+    return !session
+                .run("SELECT 1 FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled')", Values().number(seq))
+                .empty();
+}
+
+constexpr int kLooks = 20;  // at a job that others move meanwhile
 
 }  // namespace
 
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs) {
-    TextArray id, name, timeout, request, hash, key, owner, flow, created;
+    TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace;
     for (const NewJob* job : jobs) {
         id.add(job->id);
         name.add(job->name);
@@ -75,9 +119,14 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         owner.add(job->owner);
         flow.add(job->flow);
         created.add_plain(std::to_string(job->created_at));
+        priority.add_plain(std::to_string(static_cast<int>(job->priority)));
+        notify.add(job->notify.text());
+        call.add(job->origin.request_id);
+        trace.add(job->origin.traceparent);
     }
     Values values;
-    for (const TextArray* array : {&id, &name, &timeout, &request, &hash, &key, &owner, &flow, &created})
+    for (const TextArray* array :
+         {&id, &name, &timeout, &request, &hash, &key, &owner, &flow, &created, &priority, &notify, &call, &trace})
         values.plain(array->literal());
     std::map<std::string, std::int64_t> created_jobs;
     for (const pqxx::row& row : session.run(kAccept, values)) created_jobs[text_of(row[0])] = row[1].as<std::int64_t>();
@@ -102,48 +151,101 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
 }
 
 std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>& ends) {
-    // In the order of their ids, as every process does: so nobody waits for somebody who waits for him. Of two ends of
-    // one job the first counts.
-    std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < ends.size(); i++) places.emplace(ends[i]->id, i);
-    TextArray id, attempts, status, result, error, version, finished, outline;
-    for (const auto& [key, place] : places) {
-        const JobEnd& end = *ends[place];
-        id.add(end.id);
-        attempts.add_plain(std::to_string(end.attempts));
-        status.add_plain(to_string(end.status));
-        result.add(end.result);
-        error.add(end.error);
-        version.add(end.version);
-        finished.add_plain(std::to_string(end.finished_at));
-        outline.add(end.outline);
+    // Of two ends of one job the first counts.
+    std::map<std::int64_t, std::size_t> places;
+    for (std::size_t i = 0; i < ends.size(); i++) places.emplace(ends[i]->seq, i);
+    TextArray wanted, tokens;
+    for (const auto& [seq, place] : places) {
+        wanted.add_plain(std::to_string(seq));
+        tokens.add_plain(std::to_string(ends[place]->attempts));
     }
-    Values values;
-    for (const TextArray* array : {&id, &attempts, &status, &result, &error, &version, &finished, &outline})
-        values.plain(array->literal());
     std::vector<bool> answers(ends.size(), false);
-    for (const pqxx::row& row : session.run(kFinish, values)) answers[places.at(text_of(row[0]))] = true;
+    BatchCounts counts;
+    TextArray seq, single, status, attempts, cancel, started, finished, version, outline, error, first, length;
+    std::string results;
+    for (const pqxx::row& row : session.run(kTake, Values().plain(wanted.literal()).plain(tokens.literal()))) {
+        if (!row[4].as<bool>()) continue;
+        const std::size_t place = places.at(row[0].as<std::int64_t>());
+        const JobEnd& end = *ends[place];
+        answers[place] = true;
+        if (!row[1].is_null())
+            counts.move(row[1].as<std::int64_t>(), JobStatus::running, end.status, 1, end.finished_at);
+        seq.add_plain(std::to_string(end.seq));
+        single.add_plain(row[1].is_null() ? "t" : "f");
+        status.add_plain(to_string(end.status));
+        attempts.add_plain(std::to_string(end.attempts));
+        cancel.add_plain(row[3].c_str());
+        started.add_plain(row[2].c_str());
+        finished.add_plain(std::to_string(end.finished_at));
+        version.add(end.version);
+        outline.add(end.outline);
+        error.add(end.error);
+        const std::string result = to_column(end.result);
+        first.add_plain(std::to_string(results.size() + 1));
+        length.add_plain(std::to_string(result.size()));
+        results.append(result);
+    }
+    if (std::find(answers.begin(), answers.end(), true) == answers.end()) return answers;
+    Values values;
+    for (const TextArray* array :
+         {&seq, &single, &status, &attempts, &cancel, &started, &finished, &version, &outline, &error, &first, &length})
+        values.plain(array->literal());
+    session.run(kEnd, values, results);
+    counts.write(session);
     return answers;
 }
 
 CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now) {
     const std::optional<FoundJob> found = find_job(session, id);
     if (!found) return CancelEffect::none;
-    if (has_ended(found->status)) return CancelEffect::ended;
-    if (found->status == JobStatus::running) {
-        session.run("UPDATE jobs SET cancel_requested = true WHERE seq = $1", Values().number(found->seq));
-        return CancelEffect::requested;
+    // Others may move it between two looks: from waiting to running and back.
+    for (int look = 0; look < kLooks; look++) {
+        if (cancel_waiting(session, found->seq, now)) {
+            BatchCounts counts;
+            counts.move(found->batch, JobStatus::queued, JobStatus::cancelled, 1, now);
+            counts.write(session);
+            return CancelEffect::cancelled;
+        }
+        if (session.run("UPDATE running SET cancel_requested = true WHERE seq = $1", Values().number(found->seq))
+                .affected_rows() > 0)
+            return CancelEffect::requested;
+        if (has_ended(session, found->seq)) return CancelEffect::ended;
     }
-    session.run("UPDATE jobs SET cancel_requested = true, status = 'cancelled', finished_at = $2 WHERE seq = $1",
-                Values().number(found->seq).number(now));
-    return CancelEffect::cancelled;
+    throw Failure(Failure::Kind::conflict, "a job moves too often to be cancelled");
+}
+
+RequeueEffect requeue_job(Session& session, const std::string& id) {
+    const std::optional<FoundJob> found = find_job(session, id);
+    if (!found) return RequeueEffect::none;
+    // What could never be read cannot be computed either.
+    if (!found->readable || !has_failed(session, found->seq)) return RequeueEffect::not_failed;
+    if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
+    static const std::string sql =
+        "WITH gone AS (DELETE FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled') "
+        "RETURNING seq, status, attempts), "
+        "placed AS (UPDATE jobs j SET turn = 1 + greatest(0, " +
+        served_turn("j.class") +
+        ", (SELECT max(w.turn) FROM waiting w WHERE w.class = j.class AND w.flow = j.flow)) FROM gone "
+        "WHERE j.seq = gone.seq RETURNING j.class, j.turn, j.seq, j.flow, j.batch), "
+        "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts) SELECT p.class, p.turn, p.seq, "
+        "p.flow, p.batch, gone.attempts FROM placed p JOIN gone ON gone.seq = p.seq) SELECT status FROM gone";
+    const pqxx::result rows = session.run(sql, Values().number(found->seq));
+    if (rows.empty()) return RequeueEffect::not_failed;
+    if (found->batch) {
+        BatchCounts counts;
+        counts.move(found->batch, job_status(rows[0][0].c_str()), JobStatus::queued);
+        counts.write(session);
+        session.run("UPDATE batches SET ended_at = NULL WHERE seq = $1", Values().number(*found->batch));
+    }
+    return RequeueEffect::requeued;
 }
 
 RemoveEffect remove_job(Session& session, const std::string& id) {
     const std::optional<FoundJob> found = find_job(session, id);
     if (!found) return RemoveEffect::none;
-    if (found->in_batch) return RemoveEffect::in_batch;
-    if (!has_ended(found->status)) return RemoveEffect::not_ended;
+    if (found->batch) return RemoveEffect::in_batch;
+    if (session.run("DELETE FROM ended WHERE seq = $1", Values().number(found->seq)).affected_rows() == 0)
+        return RemoveEffect::not_ended;
     session.run("DELETE FROM jobs WHERE seq = $1", Values().number(found->seq));
     return RemoveEffect::removed;
 }

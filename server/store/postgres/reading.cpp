@@ -7,7 +7,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr int kSummaryCount = 16;
+constexpr int kSummaryCount = 18;
 
 std::optional<UnixMs> moment(const pqxx::field& field) {
     return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
@@ -29,16 +29,31 @@ void fill_summary(const pqxx::row& row, JobSummary& job) {
     job.batch = text_of(row[12]);
     job.index = row[13].is_null() ? 0 : row[13].as<std::int64_t>();
     job.outline = text_of(row[14]);
+    job.request_id = text_of(row[15]);
+    job.traceparent = text_of(row[16]);
 }
 
 }  // namespace
 
-const std::string kSummaryColumns =
-    "j.seq, j.id, j.name, j.status, j.created_at, j.started_at, j.finished_at, j.attempts, j.timeout_s, "
-    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, j.outline, "
-    "CASE WHEN j.progress_attempts = j.attempts THEN j.progress END";
-const std::string kRecordColumns = kSummaryColumns + ", j.request, j.result, j.error";
-const std::string kTables = " FROM jobs j LEFT JOIN batches b ON b.seq = j.batch";
+const std::string kStatus = "coalesce(e.status, CASE WHEN r.seq IS NULL THEN 'queued' ELSE 'running' END)";
+const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
+                                    ", j.created_at, coalesce(e.started_at, r.started_at), e.finished_at, "
+                                    "coalesce(e.attempts, r.attempts, w.attempts, 0), j.timeout_s, j.request_hash, "
+                                    "coalesce(e.cancel_requested, r.cancel_requested, false), j.owner, b.id, "
+                                    "j.batch_index, e.outline, j.request_id, j.traceparent, r.progress";
+const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
+// A job that has ended is in no other place: those are not looked into then.
+const std::string kEnded = " LEFT JOIN ended e ON e.seq = j.seq";
+const std::string kRunning =
+    " LEFT JOIN LATERAL (SELECT * FROM running WHERE seq = j.seq AND e.seq IS NULL OFFSET 0) r ON true";
+const std::string kWaiting =
+    " LEFT JOIN LATERAL (SELECT * FROM waiting WHERE class = j.class AND turn = j.turn AND seq = j.seq "
+    "AND e.seq IS NULL OFFSET 0) w ON true";
+const std::string kBatch = " LEFT JOIN batches b ON b.seq = j.batch";
+const std::string kJobTables = " FROM jobs j" + kEnded + kRunning + kWaiting + kBatch;
+const std::string kClaimedColumns =
+    "j.seq, j.id, j.name, j.created_at, r.started_at, r.attempts, j.timeout_s, j.request_hash, j.owner, b.id, "
+    "j.batch_index, j.request_id, j.traceparent, j.request";
 const std::string kVisible = "(j.batch IS NULL OR b.state <> 'leaving')";
 
 std::string text_of(const pqxx::field& field) {
@@ -65,6 +80,26 @@ JobRecord read_record(const pqxx::row& row) {
     job.request = text_of(row[kSummaryCount]);
     job.result = text_of(row[kSummaryCount + 1]);
     job.error = text_of(row[kSummaryCount + 2]);
+    return job;
+}
+
+JobRecord read_claimed(const pqxx::row& row) {
+    JobRecord job;
+    job.seq = row[0].as<std::int64_t>();
+    job.id = text_of(row[1]);
+    job.name = text_of(row[2]);
+    job.status = JobStatus::running;
+    job.created_at = row[3].as<UnixMs>();
+    job.started_at = moment(row[4]);
+    job.attempts = row[5].as<int>();
+    job.timeout_s = row[6].as<double>();
+    job.request_hash = text_of(row[7]);
+    job.owner = text_of(row[8]);
+    job.batch = text_of(row[9]);
+    job.index = row[10].is_null() ? 0 : row[10].as<std::int64_t>();
+    job.request_id = text_of(row[11]);
+    job.traceparent = text_of(row[12]);
+    job.request = text_of(row[13]);
     return job;
 }
 
@@ -131,7 +166,7 @@ const std::string kBatchOfId = "(SELECT seq FROM batches WHERE state <> 'leaving
 }  // namespace
 
 std::optional<JobRecord> find_record(Session& session, const std::string& id) {
-    static const std::string sql = "SELECT " + kRecordColumns + kTables + " WHERE j.id = $1 AND " + kVisible;
+    static const std::string sql = "SELECT " + kRecordColumns + kJobTables + " WHERE j.id = $1 AND " + kVisible;
     const pqxx::result rows = session.run(sql, Values().text(id));
     if (rows.empty()) return std::nullopt;
     return read_record(rows[0]);
@@ -139,7 +174,7 @@ std::optional<JobRecord> find_record(Session& session, const std::string& id) {
 
 std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids) {
     static const std::string sql =
-        "SELECT " + kSummaryColumns + kTables + " WHERE j.id = ANY ($1::text[]) AND " + kVisible;
+        "SELECT " + kSummaryColumns + kJobTables + " WHERE j.id = ANY ($1::text[]) AND " + kVisible;
     TextArray wanted;
     for (const std::string& id : ids) wanted.add(id);
     std::vector<JobState> states;
@@ -147,26 +182,58 @@ std::vector<JobState> find_states(Session& session, const std::vector<std::strin
     return states;
 }
 
+namespace {
+
+/// The condition by which jobs of a state are found in few steps: few wait or run, and of those that have ended an
+/// index gives the newest of a state.
+std::string status_condition(JobStatus status, bool of_batch, const std::string& name) {
+    if (of_batch) return " AND " + kStatus + " = " + name;
+    if (status == JobStatus::queued) return " AND w.batch IS NULL AND " + name + " <> ''";
+    if (status == JobStatus::running) return " AND " + name + " <> ''";
+    return " AND e.single AND e.status = " + name;
+}
+
+/// The number that orders the list, of the table by which jobs are found.
+std::string seq_of(const JobQuery& query) {
+    if (query.batch || !query.status) return "j.seq";
+    if (*query.status == JobStatus::queued) return "w.seq";
+    return *query.status == JobStatus::running ? "r.seq" : "e.seq";
+}
+
+std::string tables_of(const JobQuery& query) {
+    if (query.batch || !query.status) return kJobTables;
+    if (*query.status == JobStatus::queued)
+        return " FROM waiting w JOIN jobs j ON j.seq = w.seq" + kEnded + kRunning + kBatch;
+    if (*query.status == JobStatus::running)
+        return " FROM running r JOIN jobs j ON j.seq = r.seq" + kEnded + kWaiting + kBatch;
+    return " FROM ended e JOIN jobs j ON j.seq = e.seq" + kRunning + kWaiting + kBatch;
+}
+
+}  // namespace
+
 JobPage list_jobs(Session& session, const JobQuery& query) {
     // The entries of a batch stand in the order of their index, which is that of their seq too.
-    Query sql("SELECT " + kSummaryColumns + kTables);
+    const std::string seq = seq_of(query);
+    Query sql("SELECT " + kSummaryColumns + tables_of(query));
     if (query.batch)
         sql += " WHERE j.batch = " + kBatchOfId + sql.text(*query.batch) + ")";
     else
-        sql += " WHERE j.class = 0";
-    if (query.status) sql += " AND j.status = " + sql.text(std::string(to_string(*query.status)));
-    if (query.name) sql += " AND j.name = " + sql.text(*query.name);
-    if (query.owner) sql += " AND j.owner = " + sql.text(*query.owner);
+        sql += " WHERE j.batch IS NULL";
+    if (query.status)
+        sql +=
+            status_condition(*query.status, query.batch.has_value(), sql.text(std::string(to_string(*query.status))));
+    if (query.name) sql += " AND j.name = " + sql.text(*query.name) + (query.name->empty() ? "" : " AND j.name <> ''");
+    if (query.owner)
+        sql += " AND j.owner = " + sql.text(*query.owner) + (query.owner->empty() ? "" : " AND j.owner <> ''");
     if (query.text) {
         const std::string part = "lower(" + sql.text(*query.text) + "::text)";
         sql += " AND (strpos(lower(j.name), " + part + ") > 0 OR strpos(j.id, " + part +
-               ") > 0 OR strpos(j.outline::jsonb ->> 'method', " + part + ") > 0)";
+               ") > 0 OR strpos(e.outline::jsonb ->> 'method', " + part + ") > 0)";
     }
     if (query.before_seq && query.batch)
         sql += " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = " + sql.number(*query.before_seq) + ")";
-    if (query.before_seq && !query.batch) sql += " AND j.seq < " + sql.number(*query.before_seq);
-    sql += std::string(" ORDER BY ") + (query.batch ? "j.batch_index" : "j.seq") + " DESC LIMIT " +
-           sql.number(query.limit + 1);
+    if (query.before_seq && !query.batch) sql += " AND " + seq + " < " + sql.number(*query.before_seq);
+    sql += " ORDER BY " + (query.batch ? "j.batch_index" : seq) + " DESC LIMIT " + sql.number(query.limit + 1);
     JobPage page;
     for (const pqxx::row& row : sql.run(session)) page.jobs.push_back(read_summary(row));
     page.more = page.jobs.size() > static_cast<std::size_t>(query.limit);
@@ -175,20 +242,25 @@ JobPage list_jobs(Session& session, const JobQuery& query) {
 }
 
 Counted count_waiting(Session& session) {
+    const std::string head = "(SELECT j.created_at FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class = ";
+    const std::string order = " ORDER BY w.class, w.turn, w.seq LIMIT 1)";
     const pqxx::row row = session.run(
-        "SELECT (SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0), "
-        "(SELECT coalesce(sum(c.queued), 0) FROM batch_counts c JOIN batches b ON b.seq = c.batch "
-        "WHERE b.state <> 'leaving'), "
-        "(SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= clock_timestamp()), "
-        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint, "
-        "(SELECT created_at FROM jobs WHERE status = 'queued' AND class = 0 ORDER BY class, turn, seq LIMIT 1), "
-        "(SELECT created_at FROM jobs WHERE status = 'queued' AND class = 1 ORDER BY class, turn, seq LIMIT 1)")[0];
-    const auto moment = [](const pqxx::field& field) {
-        return field.is_null() ? std::nullopt : std::optional(field.as<UnixMs>());
-    };
-    return {
-        {row[0].as<std::size_t>(), row[1].as<std::size_t>(), row[2].as<std::size_t>(), moment(row[4]), moment(row[5])},
-        row[3].as<UnixMs>()};
+        "SELECT (SELECT count(*) FROM waiting WHERE batch IS NULL), "
+        "(SELECT coalesce(sum(c.queued), 0) FROM batches b JOIN batch_counts c ON c.batch = b.seq "
+        "WHERE b.ended_at IS NULL AND b.state <> 'leaving'), "
+        "(SELECT count(*) FROM waiting WHERE crashes > 1 AND not_before <= clock_timestamp()), "
+        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint, " +
+        head + "0" + order + ", " + head + "1" + order +
+        ", EXISTS (SELECT 1 FROM settings WHERE name = 'paused' AND value = '1')")[0];
+    Counted counted;
+    counted.depth.single = row[0].as<std::size_t>();
+    counted.depth.entries = row[1].as<std::size_t>();
+    counted.depth.suspects = row[2].as<std::size_t>();
+    counted.clock = row[3].as<UnixMs>();
+    counted.depth.next_single = moment(row[4]);
+    counted.depth.next_entry = moment(row[5]);
+    counted.depth.paused = row[6].as<bool>();
+    return counted;
 }
 
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id) {
@@ -227,8 +299,10 @@ BatchPage list_batches(Session& session, const std::optional<std::string>& owner
 
 std::vector<BatchRow> find_rows(Session& session, const std::string& batch, std::int64_t from, std::size_t limit) {
     static const std::string sql =
-        "SELECT batch_index, id, name, status, result, error FROM jobs WHERE batch = " + kBatchOfId +
-        "$1) AND batch_index >= $2 ORDER BY batch_index LIMIT $3";
+        "SELECT j.batch_index, j.id, j.name, " + kStatus +
+        ", e.result, e.error FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
+        "WHERE j.batch = " +
+        kBatchOfId + "$1) AND j.batch_index >= $2 ORDER BY j.batch_index LIMIT $3";
     std::vector<BatchRow> rows;
     for (const pqxx::row& row :
          session.run(sql, Values().text(batch).number(from).number(static_cast<std::int64_t>(limit))))

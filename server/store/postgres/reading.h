@@ -11,17 +11,22 @@
 
 namespace tunewright::server::postgres {
 
-/// Columns of a summary and of a state, with the tables they come from: "SELECT " + columns + tables.
+/// The state of job j, of the tables below.
+extern const std::string kStatus;
+/// Columns of a summary, with progress those of a state; of a record. "SELECT " + columns + kJobTables.
 extern const std::string kSummaryColumns;
-extern const std::string kTables;
-/// The same of a record, from the same tables.
 extern const std::string kRecordColumns;
+extern const std::string kJobTables;
+/// Columns of a job that has just been claimed, of `runs r`, `jobs j` and `batches b`; and how many.
+extern const std::string kClaimedColumns;
+constexpr int kClaimedCount = 14;
 /// True for jobs that can be seen: those of a batch that is being deleted cannot.
 extern const std::string kVisible;
 
 JobSummary read_summary(const pqxx::row& row);
 JobState read_state(const pqxx::row& row);
 JobRecord read_record(const pqxx::row& row);
+JobRecord read_claimed(const pqxx::row& row);
 
 /// "SELECT " + these + conditions on `b` + kBatchGroups.
 extern const std::string kBatchColumns;
@@ -39,7 +44,7 @@ std::vector<JobState> find_states(Session& session, const std::vector<std::strin
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Session& session, const JobQuery& query);
 struct Counted {
-    JobStore::Depth depth;
+    QueueDepth depth;
     UnixMs clock = 0;  ///< the database's
 };
 /// How many single jobs, and how many entries of batches, wait.

@@ -146,7 +146,119 @@ CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crash
 // What a list shows of an ended job beside its name: small, so that a page of jobs reads no result.
 constexpr const char* kStep3 = "ALTER TABLE jobs ADD COLUMN outline text";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3};
+// A job is in one of three places: it waits, it runs, or it has ended. What never changes of it stands in `jobs`,
+// written once; `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. The
+// places are no foreign keys of `jobs`, whose check would cost as much as the change. Processes give their signs of
+// life in `workers`, one row each. `ended_at` of a batch is null while it is looked after: jobs of it wait or run, or
+// nobody has seen yet that none does. `upkeep` says when what one process does for all was last done.
+constexpr const char* kStep4 = R"sql(
+DROP TRIGGER jobs_move ON jobs;
+DROP TRIGGER entries_added ON jobs;
+DROP TRIGGER entries_moved ON jobs;
+DROP FUNCTION refuse_move();
+DROP FUNCTION count_entries_added();
+DROP FUNCTION count_entries_moved();
+DROP INDEX jobs_waiting, jobs_flows, jobs_running, jobs_single, jobs_by_status, jobs_by_name, jobs_by_owner,
+    jobs_by_end, jobs_suspect, batches_unsettled;
+
+CREATE TABLE waiting (
+    class smallint NOT NULL CHECK (class IN (0, 1)),
+    turn bigint NOT NULL,
+    seq bigint NOT NULL,
+    flow text COLLATE "C" NOT NULL,
+    batch bigint,
+    attempts integer NOT NULL DEFAULT 0 CHECK (attempts >= 0),
+    crashes integer NOT NULL DEFAULT 0 CHECK (crashes >= 0 AND crashes <= attempts),
+    not_before timestamptz,
+    PRIMARY KEY (class, turn, seq)
+) WITH (autovacuum_vacuum_scale_factor = 0.02, autovacuum_vacuum_threshold = 2000);
+INSERT INTO waiting SELECT class, turn, seq, flow, batch, attempts, least(crashes, attempts), not_before FROM jobs
+    WHERE status = 'queued';
+CREATE INDEX waiting_flows ON waiting (class, flow, turn);
+CREATE INDEX waiting_single ON waiting (seq) WHERE batch IS NULL;
+CREATE INDEX waiting_suspects ON waiting (not_before) WHERE crashes > 1;
+
+CREATE TABLE running (
+    seq bigint PRIMARY KEY,
+    class smallint NOT NULL,
+    turn bigint NOT NULL,
+    flow text COLLATE "C" NOT NULL,
+    batch bigint,
+    worker text COLLATE "C" NOT NULL,
+    attempts integer NOT NULL CHECK (attempts > 0),
+    crashes integer NOT NULL CHECK (crashes >= 0 AND crashes < attempts),
+    started_at bigint NOT NULL,
+    cancel_requested boolean NOT NULL DEFAULT false,
+    progress text
+) WITH (fillfactor = 50, autovacuum_vacuum_scale_factor = 0, autovacuum_vacuum_threshold = 1000);
+INSERT INTO running SELECT seq, class, turn, flow, batch, worker, attempts, least(crashes, attempts - 1), started_at,
+    cancel_requested, NULL FROM jobs WHERE status = 'running';
+CREATE INDEX running_workers ON running (worker);
+
+CREATE TABLE ended (
+    seq bigint PRIMARY KEY,
+    single boolean NOT NULL,
+    status text COLLATE "C" NOT NULL CHECK (status IN ('succeeded', 'failed', 'cancelled')),
+    attempts integer NOT NULL CHECK (attempts >= 0),
+    cancel_requested boolean NOT NULL,
+    started_at bigint,
+    finished_at bigint NOT NULL,
+    version text,
+    outline text,
+    error text,
+    result text,
+    CHECK (status <> 'succeeded' OR (attempts > 0 AND started_at IS NOT NULL))
+);
+DO $$ BEGIN
+    ALTER TABLE ended ALTER COLUMN result SET COMPRESSION lz4;
+EXCEPTION WHEN feature_not_supported OR syntax_error THEN NULL;
+END $$;
+INSERT INTO ended SELECT seq, batch IS NULL, status, attempts, cancel_requested, started_at, finished_at, version,
+    outline, error, result FROM jobs WHERE finished_at IS NOT NULL;
+CREATE INDEX ended_by_status ON ended (status, seq) WHERE single;
+CREATE INDEX ended_by_end ON ended (status, finished_at) WHERE single;
+
+ALTER TABLE jobs DROP COLUMN status, DROP COLUMN started_at, DROP COLUMN finished_at, DROP COLUMN attempts,
+    DROP COLUMN worker, DROP COLUMN lease_until, DROP COLUMN cancel_requested, DROP COLUMN version, DROP COLUMN result,
+    DROP COLUMN error, DROP COLUMN progress, DROP COLUMN progress_attempts, DROP COLUMN crashes,
+    DROP COLUMN not_before, DROP COLUMN outline,
+    ADD COLUMN notify text, ADD COLUMN request_id text NOT NULL DEFAULT '',
+    ADD COLUMN traceparent text NOT NULL DEFAULT '';
+DO $$ DECLARE rule text; BEGIN  -- of step 1: that only entries are of the low class
+    FOR rule IN SELECT conname FROM pg_constraint WHERE conrelid = 'jobs'::regclass AND contype = 'c'
+                AND pg_get_constraintdef(oid) LIKE '%class%' LOOP
+        EXECUTE format('ALTER TABLE jobs DROP CONSTRAINT %I', rule);
+    END LOOP;
+END $$;
+ALTER TABLE jobs ADD CHECK (class IN (0, 1)), ADD CHECK ((batch IS NULL) = (batch_index IS NULL));
+CREATE INDEX jobs_single ON jobs (seq) WHERE batch IS NULL;
+CREATE INDEX jobs_by_name ON jobs (name, seq) WHERE batch IS NULL AND name <> '';
+CREATE INDEX jobs_by_owner ON jobs (owner, seq) WHERE batch IS NULL AND owner <> '';
+CREATE INDEX jobs_notify ON jobs (seq) WHERE notify IS NOT NULL;
+
+ALTER TABLE batches ADD COLUMN notify text, ADD COLUMN request_id text NOT NULL DEFAULT '',
+    ADD COLUMN traceparent text NOT NULL DEFAULT '', ADD COLUMN ended_at bigint;
+CREATE INDEX batches_unsettled ON batches (state) WHERE ended_at IS NULL;
+CREATE INDEX batches_by_end ON batches (ended_at) WHERE ended_at IS NOT NULL;
+
+CREATE TABLE workers (name text COLLATE "C" PRIMARY KEY, lease_until timestamptz NOT NULL) WITH (fillfactor = 50);
+CREATE TABLE settings (name text PRIMARY KEY, value text NOT NULL);
+CREATE TABLE upkeep (task text PRIMARY KEY, done_at timestamptz NOT NULL) WITH (fillfactor = 50);
+INSERT INTO upkeep VALUES ('reclaim', '-infinity');
+CREATE TABLE deliveries (
+    seq bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
+    target text NOT NULL,
+    job text NOT NULL DEFAULT '',
+    batch text NOT NULL DEFAULT '',
+    tries integer NOT NULL DEFAULT 0,
+    created_at bigint NOT NULL,
+    due_at bigint NOT NULL,
+    CHECK ((job = '') <> (batch = ''))
+);
+CREATE INDEX deliveries_due ON deliveries (due_at);
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 
@@ -173,23 +285,39 @@ void make_schema(Session& session) {
 
 }  // namespace
 
-void migrate(Session& session) {
+SchemaState schema_state(Session& session) {
     check_server(session);
+    SchemaState state{0, static_cast<int>(kSteps.size())};
+    if (!session.run_plain("SELECT to_regclass('tunewright.schema_steps')")[0][0].is_null())
+        state.have = session.run_plain("SELECT coalesce(max(step), 0) FROM schema_steps")[0][0].as<int>();
+    if (state.have > state.known)
+        refuse("it has schema " + std::to_string(state.have) + " of a newer program; this one knows " +
+               std::to_string(state.known));
+    return state;
+}
+
+void migrate(Session& session) {
     session.begin();
-    session.run_plain("SET LOCAL statement_timeout TO '5min'");
+    session.run_plain("SET LOCAL statement_timeout TO 0; SET LOCAL lock_timeout TO 0");
     session.run_plain(kLock);
     make_schema(session);
     session.run_plain(
         "CREATE TABLE IF NOT EXISTS schema_steps "
         "(step integer PRIMARY KEY, made_at timestamptz NOT NULL DEFAULT now())");
-    const int have = session.run_plain("SELECT coalesce(max(step), 0) FROM schema_steps")[0][0].as<int>();
-    if (have > static_cast<int>(kSteps.size()))
-        refuse("it has schema " + std::to_string(have) + " of a newer program; this one knows " +
-               std::to_string(kSteps.size()));
-    for (int step = have; step < static_cast<int>(kSteps.size()); step++) {
+    const SchemaState state = schema_state(session);
+    for (int step = state.have; step < state.known; step++) {
         session.run_plain(kSteps[static_cast<std::size_t>(step)]);
         session.run_plain("INSERT INTO schema_steps (step) VALUES (" + std::to_string(step + 1) + ")");
     }
+    session.commit();
+}
+
+void grant_use(Session& session, const std::string& role) {
+    const std::string name = session.run("SELECT quote_ident($1)", Values().plain(role))[0][0].c_str();
+    session.begin();
+    session.run_plain("GRANT USAGE ON SCHEMA tunewright TO " + name +
+                      "; GRANT SELECT, INSERT, UPDATE, DELETE ON ALL TABLES IN SCHEMA tunewright TO " + name +
+                      "; GRANT USAGE ON ALL SEQUENCES IN SCHEMA tunewright TO " + name);
     session.commit();
 }
 

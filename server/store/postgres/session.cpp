@@ -4,6 +4,7 @@
 #include <charconv>
 #include <map>
 #include <memory>
+#include <pqxx/binarystring>
 #include <pqxx/except>
 #include <pqxx/nontransaction>
 #include <pqxx/prepared_statement>
@@ -70,10 +71,12 @@ Address::Address(const std::string& uri) {
 
 namespace {
 
-// A queue's tables grow and shrink faster than the planner's statistics follow: an index is right at every size.
+// A queue's tables grow and shrink faster than the planner's statistics follow: an index, row by row, in the order in
+// which the statement names the tables, is right at every size.
 constexpr const char* kSettings =
     "SET search_path TO tunewright; SET statement_timeout TO '10s'; SET idle_in_transaction_session_timeout TO '30s'; "
-    "SET enable_seqscan TO off; SET enable_hashjoin TO off; SET enable_mergejoin TO off; SET jit TO off; "
+    "SET enable_seqscan TO off; SET enable_hashjoin TO off; SET enable_mergejoin TO off; SET enable_bitmapscan TO off; "
+    "SET enable_material TO off; SET join_collapse_limit TO 1; SET from_collapse_limit TO 1; SET jit TO off; "
     "SET synchronous_commit TO on";
 
 Failure::Kind kind_of(const std::string& state) {
@@ -152,14 +155,26 @@ pqxx::result Session::guarded(Work work) {
     }
 }
 
-pqxx::result Session::run(const std::string& sql, const Values& values) {
+const std::string& Session::prepared(const std::string& sql) {
     auto found = names_.find(sql);
     if (found == names_.end()) {
         found = names_.emplace(sql, "s" + std::to_string(names_.size())).first;
         link_->connection.prepare(found->second, sql);
     }
+    return found->second;
+}
+
+pqxx::result Session::run(const std::string& sql, const Values& values) {
+    const std::string& name = prepared(sql);
     return guarded([&](pqxx::nontransaction& on) {
-        return on.exec_prepared(found->second, pqxx::prepare::make_dynamic_params(values.list));
+        return on.exec_prepared(name, pqxx::prepare::make_dynamic_params(values.list));
+    });
+}
+
+pqxx::result Session::run(const std::string& sql, const Values& values, const std::string& bytes) {
+    const std::string& name = prepared(sql);
+    return guarded([&](pqxx::nontransaction& on) {
+        return on.exec_prepared(name, pqxx::prepare::make_dynamic_params(values.list), pqxx::binarystring(bytes));
     });
 }
 

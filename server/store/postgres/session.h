@@ -83,6 +83,8 @@ public:
 
     /// One statement, prepared at its first use. Throws Failure.
     pqxx::result run(const std::string& sql, const Values& values = {});
+    /// The same; after the values come bytes, as they are.
+    pqxx::result run(const std::string& sql, const Values& values, const std::string& bytes);
     /// Statements without values, sent in one piece; the result of the last.
     pqxx::result run_plain(const std::string& sql);
 
@@ -96,15 +98,24 @@ public:
 private:
     template <class Work>
     pqxx::result guarded(Work work);
+    const std::string& prepared(const std::string& sql);
 
     std::unique_ptr<Link> link_;
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 
+/// How many steps the database has taken, and how many there are. Throws Failure, or StoreError with a sentence where
+/// the database is not fit or was written by a newer program.
+struct SchemaState {
+    int have = 0;
+    int known = 0;
+};
+SchemaState schema_state(Session& session);
 /// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
-/// a time: replicas may start together. A step is never edited after a release. Throws Failure, or StoreError with a
-/// sentence where the database is not fit.
+/// a time: replicas may start together. A step is never edited after a release. Throws as schema_state() does.
 void migrate(Session& session);
+/// What a service needs, for a role that may not change the schema.
+void grant_use(Session& session, const std::string& role);
 
 /// What an exception of libpqxx means; `open`: the connection still is.
 Failure failure_of(const std::exception& error, bool open);

@@ -58,11 +58,10 @@ void finish_all(Session& session, std::vector<Ask<JobEnd, bool>>& asks, Notices&
     }
 }
 
-void renew_all(Session& session, std::vector<Ask<RenewCall, std::vector<Renewed>>>& asks, Notices& notices) {
+void beat_all(Session& session, std::vector<Ask<Heartbeat, std::vector<Holding>>>& asks, Notices& notices) {
     for (auto& ask : asks) {
-        ask.out = renew_jobs(session, ask.in.renewals, ask.in.lease);
-        for (std::size_t i = 0; i < ask.out.size(); i++)
-            if (ask.out[i].held && !ask.in.renewals[i].progress.empty()) notices.progress(ask.out[i].id);
+        ask.out = beat_worker(session, ask.in);
+        for (const ProgressNote& note : ask.in.progress) notices.progress(note.id);
     }
 }
 
@@ -71,9 +70,11 @@ void claim_all(Session& session, std::vector<Ask<Claim, std::vector<JobRecord>>>
     for (std::size_t first = 0; first < asks.size();) {
         Claim together = asks[first].in;
         std::size_t last = first + 1;
-        for (; last < asks.size() && asks[last].in.worker == together.worker && asks[last].in.lease == together.lease;
-             last++)
-            together.most += asks[last].in.most;
+        const auto alike = [&](const Claim& other) {
+            return other.worker == together.worker && other.lease == together.lease &&
+                   other.suspects == together.suspects && other.low_first == together.low_first;
+        };
+        for (; last < asks.size() && alike(asks[last].in); last++) together.most += asks[last].in.most;
         std::vector<JobRecord> claimed = claim_jobs(session, together);
         for (; first < last; first++) {
             asks[first].out.clear();
@@ -90,7 +91,7 @@ void answer(std::vector<Ask<In, Out>>& asks, const std::optional<StoreFault>& fa
 void answer(Group& group, const std::optional<StoreFault>& fault) {
     answer(group.accepts, fault);
     answer(group.ends, fault);
-    answer(group.renewals, fault);
+    answer(group.beats, fault);
     for (OtherChange& change : group.others) change.done(fault);
     answer(group.claims, fault);
 }
@@ -134,10 +135,10 @@ void Writer::finish(Ask<JobEnd, bool> ask) {
     changed_.notify_one();
 }
 
-void Writer::renew(Ask<RenewCall, std::vector<Renewed>> ask) {
+void Writer::beat(Ask<Heartbeat, std::vector<Holding>> ask) {
     {
         const std::lock_guard lock(mutex_);
-        waiting_.renewals.push_back(std::move(ask));
+        waiting_.beats.push_back(std::move(ask));
     }
     changed_.notify_one();
 }
@@ -173,7 +174,7 @@ Group Writer::next_group() {
     Group group;
     move_some(waiting_.ends, group.ends, kLargestGroup);
     move_some(waiting_.accepts, group.accepts, kLargestGroup);
-    move_some(waiting_.renewals, group.renewals, kLargestGroup);
+    move_some(waiting_.beats, group.beats, kLargestGroup);
     move_some(waiting_.others, group.others, kOtherChanges);
     move_some(waiting_.claims, group.claims, kLargestGroup);
     return group;
@@ -209,7 +210,7 @@ void Writer::write_alone(Group& group) {
     const auto each = [this](Group& alone) { write(alone); };
     one_by_one(group.accepts, &Group::accepts, each);
     one_by_one(group.ends, &Group::ends, each);
-    one_by_one(group.renewals, &Group::renewals, each);
+    one_by_one(group.beats, &Group::beats, each);
     one_by_one(group.others, &Group::others, each);
     one_by_one(group.claims, &Group::claims, each);
 }
@@ -235,8 +236,9 @@ std::optional<Failure> Writer::try_once(Group& group) {
         const std::int64_t transaction = session_->begin(group.durable());
         accept_all(*session_, group.accepts, notices);
         finish_all(*session_, group.ends, notices);
-        renew_all(*session_, group.renewals, notices);
-        for (const OtherChange& change : group.others) change.apply(*session_, notices);
+        beat_all(*session_, group.beats, notices);
+        Work work{*session_, notices};
+        for (const OtherChange& change : group.others) change.apply(work);
         claim_all(*session_, group.claims);
         in_doubt = transaction;
         session_->commit(notices.statements(tag_));

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/store/postgres/notices.h"
+#include "server/store/postgres/changes.h"
 #include "server/store/postgres/session.h"
 
 namespace tunewright::server::postgres {
@@ -30,14 +30,9 @@ struct Ask {
     Out out{};
 };
 
-struct RenewCall {
-    std::vector<Renewal> renewals;
-    std::chrono::milliseconds lease{0};
-};
-
 /// Any other change.
 struct OtherChange {
-    std::function<void(Session&, Notices&)> apply;
+    std::function<void(Work&)> apply;
     std::function<void(std::optional<StoreFault>)> done;
 };
 
@@ -45,13 +40,13 @@ struct OtherChange {
 struct Group {
     std::vector<Ask<NewJob, Accepted>> accepts;
     std::vector<Ask<JobEnd, bool>> ends;
-    std::vector<Ask<RenewCall, std::vector<Renewed>>> renewals;
+    std::vector<Ask<Heartbeat, std::vector<Holding>>> beats;
     std::vector<OtherChange> others;
     std::vector<Ask<Claim, std::vector<JobRecord>>> claims;
 
-    std::size_t size() const { return accepts.size() + ends.size() + renewals.size() + others.size() + claims.size(); }
-    /// Claims and leases alone do not wait for the disk: where a crash of the server undoes them, the jobs are queued
-    /// again, which is where they belong then. Whoever ends such a job first, ends it.
+    std::size_t size() const { return accepts.size() + ends.size() + beats.size() + others.size() + claims.size(); }
+    /// Claims and signs of life alone do not wait for the disk: where a crash of the server undoes them, the jobs are
+    /// queued again, which is where they belong then. Whoever ends such a job first, ends it.
     bool durable() const { return !(accepts.empty() && ends.empty() && others.empty()); }
 };
 
@@ -66,7 +61,7 @@ public:
 
     void accept(Ask<NewJob, Accepted> ask);
     void finish(Ask<JobEnd, bool> ask);
-    void renew(Ask<RenewCall, std::vector<Renewed>> ask);
+    void beat(Ask<Heartbeat, std::vector<Holding>> ask);
     void claim(Ask<Claim, std::vector<JobRecord>> ask);
     void change(OtherChange change);
 

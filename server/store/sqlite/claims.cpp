@@ -1,120 +1,139 @@
-// Turns, claims and leases.
-#include "server/store/sqlite/jobs.h"
+// Claims, signs of life, and what becomes of the jobs of a worker that gives none.
+#include "server/store/sqlite/changes.h"
+#include "server/store/sqlite/moves.h"
 #include "server/store/sqlite/reading.h"
 
 namespace tunewright::server {
+namespace {
 
-std::int64_t next_turn(Connection& store, int job_class, const std::string& flow) {
-    // Served is the turn of the last job that was taken, and at least the one before the first that waits.
-    Connection::Use row = store.use(
-        "SELECT 1 + max(0, coalesce((SELECT max(turn) FROM jobs WHERE status = 'running' AND class = ?1), 0), "
-        "coalesce((SELECT min(turn) - 1 FROM jobs WHERE status = 'queued' AND class = ?1), 0), "
-        "coalesce((SELECT max(turn) FROM jobs WHERE status = 'queued' AND class = ?1 AND flow = ?2), 0))");
-    row.with(job_class, flow).next();
-    return row.integer(0);
+constexpr const char* kNext = "SELECT seq, class, turn, flow, batch, attempts, crashes FROM waiting WHERE ";
+
+std::vector<Place> read_places(Connection::Use& row) {
+    std::vector<Place> places;
+    while (row.next()) places.push_back(read_place(row));
+    return places;
 }
 
+std::vector<Place> next_places(Connection& store, const Claim& claim) {
+    static const std::string usual = std::string(kNext) + "crashes < 2 ORDER BY class, turn, seq LIMIT ?1";
+    static const std::string low = std::string(kNext) + "crashes < 2 AND class = 1 ORDER BY turn, seq LIMIT ?1";
+    static const std::string suspects =
+        std::string(kNext) + "crashes > 1 AND not_before <= ?2 ORDER BY not_before LIMIT ?1";
+    const auto most = static_cast<std::int64_t>(claim.most);
+    if (claim.suspects) {
+        Connection::Use row = store.use(suspects);
+        return read_places(row.with(most, claim.now));
+    }
+    if (claim.low_first) {
+        Connection::Use row = store.use(low);
+        if (std::vector<Place> places = read_places(row.with(most)); !places.empty()) return places;
+    }
+    Connection::Use row = store.use(usual);
+    return read_places(row.with(most));
+}
+
+void hear_of(Connection& store, const std::string& worker, UnixMs lease_until) {
+    store
+        .use(
+            "INSERT INTO workers (name, lease_until) VALUES (?1, ?2) ON CONFLICT (name) DO UPDATE "
+            "SET lease_until = ?2 WHERE lease_until < ?2")
+        .with(worker, lease_until)
+        .run();
+}
+
+/// Where an end was asked for, of the job or of its batch, it comes now instead of another attempt.
+bool is_unwanted(Connection& store, const Run& run) {
+    if (run.cancel_requested) return true;
+    if (!run.batch) return false;
+    Connection::Use row = store.use("SELECT cancel_requested FROM batches WHERE seq = ?1");
+    return row.with(*run.batch).next() && row.integer(0) != 0;
+}
+
+std::string id_of(Connection& store, std::int64_t seq) {
+    Connection::Use row = store.use("SELECT id FROM jobs WHERE seq = ?1");
+    return row.with(seq).next() ? row.text(0) : std::string{};
+}
+
+std::vector<std::int64_t> abandoned(Connection& store, UnixMs lease_at) {
+    Connection::Use row = store.use(
+        "SELECT r.seq FROM running r LEFT JOIN workers w ON w.name = r.worker "
+        "WHERE coalesce(w.lease_until, 0) <= ?1");
+    row.with(lease_at);
+    std::vector<std::int64_t> found;
+    while (row.next()) found.push_back(row.integer(0));
+    return found;
+}
+
+}  // namespace
+
 std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim) {
-    std::vector<std::int64_t> next;
-    {
-        Connection::Use row = store.use(
-            claim.suspects ? "SELECT seq FROM jobs WHERE status = 'queued' AND crashes > 1 AND not_before <= ?2 "
-                             "ORDER BY not_before LIMIT ?1"
-                           : "SELECT seq FROM jobs WHERE status = 'queued' AND crashes < 2 AND ?2 IS NOT NULL "
-                             "ORDER BY class, turn, seq LIMIT ?1");
-        row.with(static_cast<std::int64_t>(claim.most), claim.now);
-        while (row.next()) next.push_back(row.integer(0));
-    }
-    static const std::string read = "SELECT " + kRecordColumns + kRecordTables + " WHERE j.seq = ?1";
+    if (is_paused(store)) return {};
     std::vector<JobRecord> claimed;
-    for (const std::int64_t seq : next) {
-        store
-            .use(
-                "UPDATE jobs SET status = 'running', started_at = ?2, attempts = attempts + 1, worker = ?3, "
-                "lease_until = ?4 WHERE seq = ?1")
-            .with(seq, claim.now, claim.worker, claim.now + claim.lease.count())
-            .run();
-        Connection::Use row = store.use(read);
-        if (row.with(seq).next()) claimed.push_back(read_record(row));
+    BatchCounts counts;
+    for (Place& place : next_places(store, claim)) {
+        take_waiting(store, place);
+        place.attempts++;
+        put_running(store, place, claim.worker, claim.now);
+        counts.move(place.batch, JobStatus::queued, JobStatus::running);
+        claimed.push_back(read_claimed(store, place.seq));
+        claimed.back().attempts = place.attempts;
+        claimed.back().started_at = claim.now;
     }
+    counts.write(store);
+    if (!claimed.empty()) hear_of(store, claim.worker, claim.now + claim.lease.count());
     return claimed;
 }
 
-std::vector<Renewed> renew_jobs(Connection& store, const std::vector<Renewal>& renewals, UnixMs lease_until) {
-    std::vector<Renewed> answers;
-    for (const Renewal& renewal : renewals) {
-        Renewed answer{renewal.id, false, false};
-        std::int64_t seq = 0;
-        {
-            Connection::Use row = store.use(
-                "UPDATE jobs SET lease_until = ?3 WHERE id = ?1 AND attempts = ?2 AND status = 'running' "
-                "RETURNING seq, cancel_requested");
-            if (row.with(renewal.id, renewal.attempts, lease_until).next()) {
-                seq = row.integer(0);
-                answer.held = true;
-                answer.cancel_requested = row.integer(1) != 0;
-            }
-        }
-        if (answer.held && !renewal.progress.empty())
-            store.use("INSERT OR REPLACE INTO progress (seq, attempts, body) VALUES (?1, ?2, ?3)")
-                .with(seq, renewal.attempts, renewal.progress)
-                .run();
-        answers.push_back(std::move(answer));
-    }
-    return answers;
-}
-
-bool release_job(Connection& store, const std::string& id, int attempts, UnixMs now) {
-    // Whoever asked for its end while it ran gets that instead.
-    const int cancelled =
-        store
-            .use(
-                "UPDATE jobs SET status = 'cancelled', cancel_requested = 1, finished_at = ?3, worker = NULL, "
-                "lease_until = NULL WHERE id = ?1 AND attempts = ?2 AND status = 'running' AND (cancel_requested "
-                "OR EXISTS (SELECT 1 FROM batches b WHERE b.seq = batch AND b.cancel_requested))")
-            .with(id, attempts, now)
+std::vector<Holding> beat_worker(Connection& store, const Heartbeat& beat) {
+    hear_of(store, beat.worker, beat.now + beat.lease.count());
+    for (const ProgressNote& note : beat.progress)
+        store.use("UPDATE running SET progress = ?3 WHERE seq = ?1 AND attempts = ?2 AND worker = ?4")
+            .with(note.seq, note.attempts, note.progress, beat.worker)
             .run();
-    if (cancelled > 0) return true;
-    return store
-               .use(
-                   "UPDATE jobs SET status = 'queued', worker = NULL, lease_until = NULL "
-                   "WHERE id = ?1 AND attempts = ?2 AND status = 'running'")
-               .with(id, attempts)
-               .run() > 0;
+    Connection::Use row =
+        store.use("SELECT seq, attempts, cancel_requested, started_at FROM running WHERE worker = ?1");
+    row.with(beat.worker);
+    std::vector<Holding> held;
+    while (row.next())
+        held.push_back({row.integer(0), static_cast<int>(row.integer(1)), row.integer(2) != 0, row.integer(3)});
+    return held;
 }
 
-Recovery reclaim_jobs(Connection& store, UnixMs lease_at, UnixMs now, int attempts, const std::string& error) {
+bool release_job(Connection& store, std::int64_t seq, int attempts, UnixMs now) {
+    const std::optional<Run> run = take_running(store, seq, attempts);
+    if (!run) return false;
+    const bool unwanted = is_unwanted(store, *run);
+    unwanted ? put_ended(store, *run, run->started_at, Ending::cancelled(now)) : put_waiting(store, *run);
+    BatchCounts counts;
+    counts.move(run->batch, JobStatus::running, unwanted ? JobStatus::cancelled : JobStatus::queued,
+                unwanted ? now : 0);
+    counts.write(store);
+    return true;
+}
+
+Recovery reclaim_jobs(Connection& store, UnixMs lease_at, const Reclaim& what) {
     Recovery recovery;
-    {
-        Connection::Use row = store.use(
-            "UPDATE jobs SET status = 'cancelled', cancel_requested = 1, finished_at = ?2, worker = NULL, "
-            "lease_until = NULL WHERE status = 'running' AND lease_until <= ?1 AND (cancel_requested OR EXISTS "
-            "(SELECT 1 FROM batches b WHERE b.seq = batch AND b.cancel_requested)) RETURNING id");
-        row.with(lease_at, now);
-        while (row.next()) recovery.ended.push_back(row.text(0));
+    BatchCounts counts;
+    for (const std::int64_t seq : abandoned(store, lease_at)) {
+        Run run = take_running(store, seq, std::nullopt).value();
+        const bool unwanted = is_unwanted(store, run);
+        run.crashes++;
+        if (!unwanted && run.crashes < what.most_attempts) {
+            std::optional<UnixMs> not_before;
+            if (run.crashes > 1) not_before = what.now + pause_after(run.crashes).count();
+            put_waiting(store, run, not_before);
+            counts.move(run.batch, JobStatus::running, JobStatus::queued);
+            recovery.interrupted++;
+            continue;
+        }
+        const Ending ending = unwanted ? Ending::cancelled(what.now) : Ending::failed(what.now, what.error);
+        put_ended(store, run, run.started_at, ending);
+        counts.move(run.batch, JobStatus::running, ending.status, what.now);
+        recovery.given_up += unwanted ? 0U : 1U;
+        recovery.ended.push_back(id_of(store, seq));
     }
-    store
-        .use(
-            "INSERT OR REPLACE INTO results (seq, error) SELECT seq, ?3 FROM jobs "
-            "WHERE status = 'running' AND lease_until <= ?1 AND crashes + 1 >= ?2")
-        .with(lease_at, attempts, error)
-        .run();
-    {
-        Connection::Use row = store.use(
-            "UPDATE jobs SET status = 'failed', finished_at = ?3, worker = NULL, lease_until = NULL, crashes = crashes "
-            "+ 1 "
-            "WHERE status = 'running' AND lease_until <= ?1 AND crashes + 1 >= ?2 RETURNING id");
-        row.with(lease_at, attempts, now);
-        for (; row.next(); recovery.given_up++) recovery.ended.push_back(row.text(0));
-    }
-    recovery.interrupted =
-        static_cast<std::size_t>(store
-                                     .use("UPDATE jobs SET status = 'queued', worker = NULL, lease_until = NULL, "
-                                          "crashes = crashes + 1, not_before = iif(crashes = 0, NULL, "
-                                          "?2 + min(300000, 1000 << min(crashes - 1, 20))) "
-                                          "WHERE status = 'running' AND lease_until <= ?1")
-                                     .with(lease_at, now)
-                                     .run());
+    counts.write(store);
+    store.use("DELETE FROM workers WHERE lease_until <= ?1").with(lease_at).run();
     return recovery;
 }
 

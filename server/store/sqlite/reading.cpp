@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "server/store/sqlite/changes.h"
+
 namespace tunewright::server {
 namespace {
 
-constexpr int kSummaryCount = 16;
+constexpr int kSummaryCount = 18;
 
 void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.seq = row.integer(0);
@@ -23,19 +25,25 @@ void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.batch = row.text(12);
     job.index = row.integer(13);
     job.outline = row.text(14);
+    job.request_id = row.text(15);
+    job.traceparent = row.text(16);
 }
 
 }  // namespace
 
-const std::string kSummaryColumns =
-    "j.seq, j.id, j.name, j.status, j.created_at, j.started_at, j.finished_at, j.attempts, j.timeout_s, "
-    "j.request_hash, j.cancel_requested, j.owner, b.id, j.batch_index, j.outline, p.body";
-const std::string kSummaryTables =
-    " FROM jobs j LEFT JOIN batches b ON b.seq = j.batch "
-    "LEFT JOIN progress p ON p.seq = j.seq AND p.attempts = j.attempts";
-const std::string kRecordColumns = kSummaryColumns + ", q.body, r.body, r.error";
-const std::string kRecordTables =
-    kSummaryTables + " LEFT JOIN requests q ON q.seq = j.seq LEFT JOIN results r ON r.seq = j.seq";
+const std::string kStatus = "coalesce(e.status, iif(r.seq IS NULL, 'queued', 'running'))";
+const std::string kAttempts = "coalesce(e.attempts, r.attempts, w.attempts, 0)";
+const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
+                                    ", j.created_at, coalesce(e.started_at, r.started_at), e.finished_at, " +
+                                    kAttempts +
+                                    ", j.timeout_s, j.request_hash, coalesce(e.cancel_requested, r.cancel_requested, "
+                                    "0), j.owner, b.id, j.batch_index, e.outline, j.request_id, j.traceparent, "
+                                    "r.progress";
+const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
+const std::string kJobTables =
+    " FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
+    "LEFT JOIN waiting w ON w.class = j.class AND w.turn = j.turn AND w.seq = j.seq "
+    "LEFT JOIN batches b ON b.seq = j.batch";
 const std::string kVisible = "(j.batch IS NULL OR b.state <> 'leaving')";
 
 JobSummary read_summary(const Connection::Use& row) {
@@ -58,6 +66,28 @@ JobRecord read_record(const Connection::Use& row) {
     job.request = row.text(kSummaryCount);
     job.result = row.text(kSummaryCount + 1);
     job.error = row.text(kSummaryCount + 2);
+    return job;
+}
+
+JobRecord read_claimed(Connection& store, std::int64_t seq) {
+    Connection::Use row = store.use(
+        "SELECT j.id, j.name, j.created_at, j.timeout_s, j.request_hash, j.owner, b.id, j.batch_index, j.request_id, "
+        "j.traceparent, j.request FROM jobs j LEFT JOIN batches b ON b.seq = j.batch WHERE j.seq = ?1");
+    if (!row.with(seq).next()) throw StoreError({StoreFault::Kind::unavailable, "a job that waits is not there"});
+    JobRecord job;
+    job.seq = seq;
+    job.status = JobStatus::running;
+    job.id = row.text(0);
+    job.name = row.text(1);
+    job.created_at = row.integer(2);
+    job.timeout_s = row.real(3);
+    job.request_hash = row.text(4);
+    job.owner = row.text(5);
+    job.batch = row.text(6);
+    job.index = row.integer(7);
+    job.request_id = row.text(8);
+    job.traceparent = row.text(9);
+    job.request = row.text(10);
     return job;
 }
 
@@ -86,14 +116,14 @@ BatchSummary read_batch(const Connection::Use& row) {
 }
 
 std::optional<JobRecord> find_record(Connection& store, const std::string& id) {
-    static const std::string sql = "SELECT " + kRecordColumns + kRecordTables + " WHERE j.id = ?1 AND " + kVisible;
+    static const std::string sql = "SELECT " + kRecordColumns + kJobTables + " WHERE j.id = ?1 AND " + kVisible;
     Connection::Use row = store.use(sql);
     if (!row.with(id).next()) return std::nullopt;
     return read_record(row);
 }
 
 std::vector<JobState> find_states(Connection& store, const std::vector<std::string>& ids) {
-    static const std::string sql = "SELECT " + kSummaryColumns + kSummaryTables + " WHERE j.id = ?1 AND " + kVisible;
+    static const std::string sql = "SELECT " + kSummaryColumns + kJobTables + " WHERE j.id = ?1 AND " + kVisible;
     std::vector<JobState> states;
     for (const std::string& id : ids) {
         Connection::Use row = store.use(sql);
@@ -102,26 +132,66 @@ std::vector<JobState> find_states(Connection& store, const std::vector<std::stri
     return states;
 }
 
+namespace {
+
+/// The tables with the one first by which few jobs are found.
+std::string tables_of(const JobQuery& query) {
+    if (query.batch || !query.status) return kJobTables;
+    // Few wait or run; of those that have ended an index gives the newest of a state.
+    std::string tables = kJobTables;
+    const auto first = [&](const std::string& join, const std::string& table) {
+        tables.replace(tables.find(join), join.size(), "");
+        tables.replace(tables.find(" FROM jobs j"), 12,
+                       " FROM " + table + " CROSS JOIN jobs j ON j.seq = " + table.back() + ".seq");
+    };
+    if (*query.status == JobStatus::queued)
+        first(" LEFT JOIN waiting w ON w.class = j.class AND w.turn = j.turn AND w.seq = j.seq", "waiting w");
+    else if (*query.status == JobStatus::running)
+        first(" LEFT JOIN running r ON r.seq = j.seq", "running r");
+    else
+        first(" LEFT JOIN ended e ON e.seq = j.seq", "ended e");
+    return tables;
+}
+
+/// The number that orders the list, of the table by which jobs are found.
+std::string seq_of(const JobQuery& query) {
+    if (query.batch || !query.status) return "j.seq";
+    if (*query.status == JobStatus::queued) return "w.seq";
+    return *query.status == JobStatus::running ? "r.seq" : "e.seq";
+}
+
+/// "" where the table says it.
+std::string status_condition(const JobQuery& query) {
+    if (query.batch) return " AND " + kStatus + " = ?2";
+    if (*query.status == JobStatus::queued) return " AND w.batch IS NULL";
+    return has_ended(*query.status) ? " AND e.single AND e.status = ?2" : "";
+}
+
+}  // namespace
+
 JobPage list_jobs(Connection& store, const JobQuery& query) {
     // The entries of a batch stand in the order of their index, which is that of their seq too.
-    std::string sql = "SELECT " + kSummaryColumns + kSummaryTables;
+    const std::string seq = seq_of(query);
+    std::string sql = "SELECT " + kSummaryColumns + tables_of(query);
     sql += query.batch ? " WHERE j.batch = (SELECT seq FROM batches WHERE id = ?1 AND state <> 'leaving')"
-                       : " WHERE j.class = 0";
-    if (query.status) sql += " AND j.status = ?2";
-    if (query.name) sql += " AND j.name = ?3";
-    if (query.owner) sql += " AND j.owner = ?4";
+                       : " WHERE j.batch IS NULL";
+    const std::string of_status = query.status ? status_condition(query) : std::string{};
+    sql += of_status;
+    if (query.name) sql += query.batch ? " AND j.name = ?3" : " AND j.name = ?3 AND j.name <> ''";
+    if (query.owner) sql += query.owner->empty() ? " AND j.owner = ?4" : " AND j.owner = ?4 AND j.owner <> ''";
     if (query.text)
         sql +=
             " AND (instr(lower(j.name), lower(?7)) > 0 OR instr(j.id, lower(?7)) > 0 OR "
-            "instr(json_extract(j.outline, '$.method'), lower(?7)) > 0)";
+            "instr(json_extract(e.outline, '$.method'), lower(?7)) > 0)";
     if (query.before_seq)
-        sql += query.batch ? " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = ?5)" : " AND j.seq < ?5";
-    sql += query.batch ? " ORDER BY j.batch_index DESC" : " ORDER BY j.seq DESC";
+        sql += query.batch ? " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = ?5)"
+                           : " AND " + seq + " < ?5";
+    sql += query.batch ? " ORDER BY j.batch_index DESC" : " ORDER BY " + seq + " DESC";
     sql += " LIMIT ?6";
     Connection::Use row = store.use(sql);
     const std::string status(query.status ? to_string(*query.status) : "");
     if (query.batch) row.bind(1, *query.batch);
-    if (query.status) row.bind(2, status);
+    if (of_status.find("?2") != std::string::npos) row.bind(2, status);
     if (query.name) row.bind(3, *query.name);
     if (query.owner) row.bind(4, *query.owner);
     if (query.before_seq) row.bind(5, *query.before_seq);
@@ -136,27 +206,31 @@ JobPage list_jobs(Connection& store, const JobQuery& query) {
 
 namespace {
 
-std::optional<UnixMs> next_accepted(Connection& store, int job_class) {
-    Connection::Use row =
-        store.use("SELECT created_at FROM jobs WHERE status = 'queued' AND class = ?1 ORDER BY turn, seq LIMIT 1");
-    if (!row.with(job_class).next()) return std::nullopt;
+std::optional<UnixMs> next_accepted(Connection& store, int priority) {
+    Connection::Use row = store.use(
+        "SELECT j.created_at FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class = ?1 "
+        "ORDER BY w.turn, w.seq LIMIT 1");
+    if (!row.with(priority).next()) return std::nullopt;
     return row.integer(0);
 }
 
+std::size_t count(Connection& store, std::string_view sql) { return static_cast<std::size_t>(store.number(sql)); }
+
 }  // namespace
 
-JobStore::Depth count_waiting(Connection& store) {
-    JobStore::Depth depth;
+QueueDepth count_waiting(Connection& store) {
+    QueueDepth depth;
     depth.next_single = next_accepted(store, 0);
     depth.next_entry = next_accepted(store, 1);
-    depth.single =
-        static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued' AND class = 0"));
+    depth.single = count(store, "SELECT count(*) FROM waiting WHERE batch IS NULL");
     // Batches count their entries themselves; those of one that is leaving wait no longer.
-    depth.entries =
-        static_cast<std::size_t>(store.number("SELECT coalesce(sum(queued), 0) FROM batches WHERE state <> 'leaving'"));
-    depth.suspects =
-        static_cast<std::size_t>(store.number("SELECT count(*) FROM jobs WHERE status = 'queued' AND crashes > 1 "
-                                              "AND not_before <= (julianday('now') - 2440587.5) * 86400000"));
+    depth.entries = count(store,
+                          "SELECT coalesce(sum(queued), 0) FROM batches WHERE ended_at IS NULL "
+                          "AND state <> 'leaving'");
+    depth.suspects = count(store,
+                           "SELECT count(*) FROM waiting WHERE crashes > 1 "
+                           "AND not_before <= (julianday('now') - 2440587.5) * 86400000");
+    depth.paused = is_paused(store);
     return depth;
 }
 
@@ -169,8 +243,7 @@ std::optional<BatchSummary> find_batch(Connection& store, const std::string& id)
 }
 
 std::optional<std::string> find_batch_of_key(Connection& store, const std::string& owner, const std::string& key) {
-    Connection::Use row =
-        store.use("SELECT b.id FROM batch_keys k JOIN batches b ON b.seq = k.batch WHERE k.owner = ?1 AND k.key = ?2");
+    Connection::Use row = store.use("SELECT id FROM batches WHERE owner = ?1 AND idempotency_key = ?2");
     if (!row.with(owner, key).next()) return std::nullopt;
     return row.text(0);
 }
@@ -178,7 +251,7 @@ std::optional<std::string> find_batch_of_key(Connection& store, const std::strin
 BatchPage list_batches(Connection& store, const std::optional<std::string>& owner, int limit,
                        std::optional<std::int64_t> before_seq) {
     std::string sql = "SELECT " + kBatchColumns + " FROM batches b WHERE b.state <> 'leaving'";
-    if (owner) sql += " AND b.owner = ?1";
+    if (owner) sql += owner->empty() ? " AND b.owner = ?1" : " AND b.owner = ?1 AND b.owner <> ''";
     if (before_seq) sql += " AND b.seq < ?2";
     sql += " ORDER BY b.seq DESC LIMIT ?3";
     Connection::Use row = store.use(sql);
@@ -193,11 +266,12 @@ BatchPage list_batches(Connection& store, const std::optional<std::string>& owne
 }
 
 std::vector<BatchRow> find_rows(Connection& store, const std::string& batch, std::int64_t from, std::size_t limit) {
-    Connection::Use row = store.use(
-        "SELECT j.batch_index, j.id, j.name, j.status, r.body, r.error FROM jobs j LEFT JOIN results r ON r.seq = "
-        "j.seq "
+    static const std::string sql =
+        "SELECT j.batch_index, j.id, j.name, " + kStatus +
+        ", e.result, e.error FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
         "WHERE j.batch = (SELECT seq FROM batches WHERE id = ?1 AND state <> 'leaving') AND j.batch_index >= ?2 "
-        "ORDER BY j.batch_index LIMIT ?3");
+        "ORDER BY j.batch_index LIMIT ?3";
+    Connection::Use row = store.use(sql);
     row.with(batch, from, static_cast<std::int64_t>(limit));
     std::vector<BatchRow> rows;
     while (row.next()) {

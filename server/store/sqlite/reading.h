@@ -9,12 +9,13 @@
 
 namespace tunewright::server {
 
-/// Columns of a summary and of a state, with the tables they come from: "SELECT " + columns + tables.
+/// The state of job j and its attempts, of the tables below.
+extern const std::string kStatus;
+extern const std::string kAttempts;
+/// Columns of a summary, with progress those of a state; of a record. "SELECT " + columns + kJobTables.
 extern const std::string kSummaryColumns;
-extern const std::string kSummaryTables;
-/// The same of a record.
 extern const std::string kRecordColumns;
-extern const std::string kRecordTables;
+extern const std::string kJobTables;
 /// True for jobs that can be seen: those of a batch that is being deleted cannot.
 extern const std::string kVisible;
 
@@ -22,6 +23,8 @@ extern const std::string kVisible;
 JobSummary read_summary(const Connection::Use& row);
 JobState read_state(const Connection::Use& row);
 JobRecord read_record(const Connection::Use& row);
+/// A job that has just been claimed: what never changes of it, and its request.
+JobRecord read_claimed(Connection& store, std::int64_t seq);
 
 /// Columns of a batch, of `batches b`.
 extern const std::string kBatchColumns;
@@ -35,7 +38,7 @@ std::vector<JobState> find_states(Connection& store, const std::vector<std::stri
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Connection& store, const JobQuery& query);
 /// How many single jobs, and how many entries of batches, wait.
-JobStore::Depth count_waiting(Connection& store);
+QueueDepth count_waiting(Connection& store);
 /// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Connection& store, const std::string& id);
 /// The id of the batch that `owner` posted under this idempotency key.

@@ -181,19 +181,192 @@ CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crash
 // What a list shows of an ended job beside its name: small, so that a page of jobs reads no result.
 constexpr const char* kStep4 = "ALTER TABLE jobs ADD COLUMN outline TEXT;";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4};
+// A job is in one of three places: it waits, it runs, or it has ended. What never changes of it stands in `jobs`,
+// written once; `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. Names
+// of processes have their sign of life in `workers`, one row each. `ended_at` of a batch is null while it is looked
+// after: jobs of it wait or run, or nobody has seen yet that none does.
+constexpr const char* kStep5 = R"sql(
+DROP TRIGGER jobs_move;
+DROP TRIGGER jobs_attempts;
+DROP TRIGGER entries_added;
+DROP TRIGGER entries_moved;
+
+CREATE TABLE new_batches (
+    seq INTEGER PRIMARY KEY AUTOINCREMENT,
+    id TEXT NOT NULL UNIQUE CHECK (length(id) > 0),
+    name TEXT NOT NULL,
+    owner TEXT NOT NULL,
+    flow TEXT NOT NULL,
+    created_at INTEGER NOT NULL,
+    heard_at INTEGER NOT NULL,
+    state TEXT NOT NULL CHECK (state IN ('receiving', 'sealed', 'leaving')),
+    cancel_requested INTEGER NOT NULL DEFAULT 0 CHECK (cancel_requested IN (0, 1)),
+    request_hash TEXT NOT NULL DEFAULT '',
+    idempotency_key TEXT,
+    notify TEXT,
+    request_id TEXT NOT NULL DEFAULT '',
+    traceparent TEXT NOT NULL DEFAULT '',
+    queued INTEGER NOT NULL DEFAULT 0 CHECK (queued >= 0),
+    running INTEGER NOT NULL DEFAULT 0 CHECK (running >= 0),
+    succeeded INTEGER NOT NULL DEFAULT 0 CHECK (succeeded >= 0),
+    failed INTEGER NOT NULL DEFAULT 0 CHECK (failed >= 0),
+    cancelled INTEGER NOT NULL DEFAULT 0 CHECK (cancelled >= 0),
+    last_end INTEGER NOT NULL DEFAULT 0,
+    ended_at INTEGER
+);
+INSERT INTO new_batches (seq, id, name, owner, flow, created_at, heard_at, state, cancel_requested, request_hash,
+                         idempotency_key, queued, running, succeeded, failed, cancelled, last_end)
+    SELECT b.seq, b.id, b.name, b.owner, b.flow, b.created_at, b.heard_at, b.state, b.cancel_requested,
+           b.request_hash, k.key, b.queued, b.running, b.succeeded, b.failed, b.cancelled, b.last_end
+    FROM batches b LEFT JOIN batch_keys k ON k.batch = b.seq;
+DELETE FROM sqlite_sequence WHERE name = 'new_batches';
+INSERT INTO sqlite_sequence (name, seq) SELECT 'new_batches', seq FROM sqlite_sequence WHERE name = 'batches';
+
+CREATE TABLE new_jobs (
+    seq INTEGER PRIMARY KEY AUTOINCREMENT,
+    id TEXT NOT NULL UNIQUE CHECK (length(id) > 0),
+    name TEXT NOT NULL,
+    owner TEXT NOT NULL,
+    flow TEXT NOT NULL,
+    class INTEGER NOT NULL CHECK (class IN (0, 1)),
+    turn INTEGER NOT NULL,
+    batch INTEGER,
+    batch_index INTEGER CHECK (batch_index >= 0),
+    created_at INTEGER NOT NULL,
+    timeout_s REAL NOT NULL CHECK (timeout_s > 0),
+    request_hash TEXT NOT NULL,
+    idempotency_key TEXT,
+    notify TEXT,
+    request_id TEXT NOT NULL DEFAULT '',
+    traceparent TEXT NOT NULL DEFAULT '',
+    request TEXT,
+    CHECK ((batch IS NULL) = (batch_index IS NULL))
+);
+INSERT INTO new_jobs (seq, id, name, owner, flow, class, turn, batch, batch_index, created_at, timeout_s, request_hash,
+                      idempotency_key, request)
+    SELECT j.seq, j.id, j.name, j.owner, j.flow, j.class, j.turn, j.batch, j.batch_index, j.created_at, j.timeout_s,
+           j.request_hash, k.key, q.body
+    FROM jobs j LEFT JOIN idempotency_keys k ON k.seq = j.seq LEFT JOIN requests q ON q.seq = j.seq;
+DELETE FROM sqlite_sequence WHERE name = 'new_jobs';
+INSERT INTO sqlite_sequence (name, seq) SELECT 'new_jobs', seq FROM sqlite_sequence WHERE name = 'jobs';
+
+CREATE TABLE waiting (
+    class INTEGER NOT NULL,
+    turn INTEGER NOT NULL,
+    seq INTEGER NOT NULL,
+    flow TEXT NOT NULL,
+    batch INTEGER,
+    attempts INTEGER NOT NULL DEFAULT 0 CHECK (attempts >= 0),
+    crashes INTEGER NOT NULL DEFAULT 0 CHECK (crashes >= 0 AND crashes <= attempts),
+    not_before INTEGER,
+    PRIMARY KEY (class, turn, seq)
+) WITHOUT ROWID;
+INSERT INTO waiting SELECT class, turn, seq, flow, batch, attempts, min(crashes, attempts), not_before FROM jobs
+    WHERE status = 'queued';
+CREATE INDEX waiting_flows ON waiting (class, flow, turn);
+CREATE INDEX waiting_single ON waiting (seq) WHERE batch IS NULL;
+CREATE INDEX waiting_suspects ON waiting (not_before) WHERE crashes > 1;
+
+CREATE TABLE running (
+    seq INTEGER PRIMARY KEY,
+    class INTEGER NOT NULL,
+    turn INTEGER NOT NULL,
+    flow TEXT NOT NULL,
+    batch INTEGER,
+    worker TEXT NOT NULL,
+    attempts INTEGER NOT NULL CHECK (attempts > 0),
+    crashes INTEGER NOT NULL CHECK (crashes >= 0 AND crashes < attempts),
+    started_at INTEGER NOT NULL,
+    cancel_requested INTEGER NOT NULL DEFAULT 0 CHECK (cancel_requested IN (0, 1)),
+    progress TEXT
+);
+INSERT INTO running SELECT seq, class, turn, flow, batch, worker, attempts, min(crashes, attempts - 1), started_at,
+    cancel_requested, NULL FROM jobs WHERE status = 'running';
+
+CREATE TABLE ended (
+    seq INTEGER PRIMARY KEY,
+    single INTEGER NOT NULL CHECK (single IN (0, 1)),
+    status TEXT NOT NULL CHECK (status IN ('succeeded', 'failed', 'cancelled')),
+    attempts INTEGER NOT NULL CHECK (attempts >= 0),
+    cancel_requested INTEGER NOT NULL,
+    started_at INTEGER,
+    finished_at INTEGER NOT NULL,
+    version TEXT,
+    outline TEXT,
+    error TEXT,
+    result TEXT,
+    CHECK (status <> 'succeeded' OR (attempts > 0 AND started_at IS NOT NULL))
+);
+INSERT INTO ended SELECT j.seq, j.batch IS NULL, j.status, j.attempts, j.cancel_requested, j.started_at, j.finished_at,
+        j.version, j.outline, r.error, r.body
+    FROM jobs j LEFT JOIN results r ON r.seq = j.seq WHERE j.finished_at IS NOT NULL;
+
+CREATE TABLE workers (name TEXT PRIMARY KEY, lease_until INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE settings (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE deliveries (
+    seq INTEGER PRIMARY KEY AUTOINCREMENT,
+    target TEXT NOT NULL,
+    job TEXT NOT NULL DEFAULT '',
+    batch TEXT NOT NULL DEFAULT '',
+    tries INTEGER NOT NULL DEFAULT 0,
+    created_at INTEGER NOT NULL,
+    due_at INTEGER NOT NULL,
+    CHECK ((job = '') <> (batch = ''))
+);
+CREATE INDEX deliveries_due ON deliveries (due_at);
+
+DROP TABLE batch_keys;
+DROP TABLE idempotency_keys;
+DROP TABLE progress;
+DROP TABLE results;
+DROP TABLE requests;
+DROP TABLE jobs;
+DROP TABLE batches;
+ALTER TABLE new_batches RENAME TO batches;
+ALTER TABLE new_jobs RENAME TO jobs;
+CREATE INDEX batches_unsettled ON batches (state) WHERE ended_at IS NULL;
+CREATE INDEX batches_by_end ON batches (ended_at) WHERE ended_at IS NOT NULL;
+CREATE INDEX batches_by_owner ON batches (owner) WHERE owner <> '';
+CREATE UNIQUE INDEX batches_by_key ON batches (owner, idempotency_key) WHERE idempotency_key IS NOT NULL;
+CREATE INDEX jobs_single ON jobs (seq) WHERE batch IS NULL;
+CREATE INDEX jobs_by_name ON jobs (name) WHERE batch IS NULL AND name <> '';
+CREATE INDEX jobs_by_owner ON jobs (owner) WHERE batch IS NULL AND owner <> '';
+CREATE UNIQUE INDEX jobs_by_key ON jobs (owner, idempotency_key) WHERE idempotency_key IS NOT NULL;
+CREATE UNIQUE INDEX jobs_by_batch ON jobs (batch, batch_index) WHERE batch IS NOT NULL;
+CREATE INDEX jobs_notify ON jobs (seq) WHERE notify IS NOT NULL;
+CREATE INDEX ended_by_status ON ended (status) WHERE single;
+CREATE INDEX ended_by_end ON ended (status, finished_at) WHERE single;
+
+CREATE TRIGGER waits_in_one_place BEFORE INSERT ON waiting
+    WHEN EXISTS (SELECT 1 FROM running WHERE seq = NEW.seq) OR EXISTS (SELECT 1 FROM ended WHERE seq = NEW.seq)
+BEGIN SELECT RAISE(ABORT, 'a job cannot be in two places'); END;
+CREATE TRIGGER runs_in_one_place BEFORE INSERT ON running WHEN EXISTS (SELECT 1 FROM ended WHERE seq = NEW.seq)
+BEGIN SELECT RAISE(ABORT, 'a job cannot be in two places'); END;
+CREATE TRIGGER ends_in_one_place BEFORE INSERT ON ended WHEN EXISTS (SELECT 1 FROM running WHERE seq = NEW.seq)
+BEGIN SELECT RAISE(ABORT, 'a job cannot be in two places'); END;
+CREATE TRIGGER ends_for_good BEFORE UPDATE ON ended BEGIN SELECT RAISE(ABORT, 'an ended job does not change'); END;
+CREATE TRIGGER runs_as_claimed BEFORE UPDATE OF seq, worker, attempts, crashes ON running
+BEGIN SELECT RAISE(ABORT, 'a job that runs is its worker''s'); END;
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5};
 
 }  // namespace
 
-void migrate(SQLite::Database& database) {
-    const int have = database.execAndGet("PRAGMA user_version").getInt();
-    if (have > static_cast<int>(kSteps.size()))
-        throw StoreError({StoreFault::Kind::unavailable, "it has schema " + std::to_string(have) +
+SchemaState schema_state(SQLite::Database& database) {
+    const SchemaState state{database.execAndGet("PRAGMA user_version").getInt(), static_cast<int>(kSteps.size())};
+    if (state.have > state.known)
+        throw StoreError({StoreFault::Kind::unavailable, "it has schema " + std::to_string(state.have) +
                                                              " of a newer program; this one knows " +
-                                                             std::to_string(kSteps.size())});
+                                                             std::to_string(state.known)});
+    return state;
+}
+
+void migrate(SQLite::Database& database) {
+    const SchemaState state = schema_state(database);
     // A table that is made anew is dropped once; its rows' requests and results must not go with it.
     database.exec("PRAGMA foreign_keys = OFF");
-    for (int step = have; step < static_cast<int>(kSteps.size()); step++) {
+    for (int step = state.have; step < state.known; step++) {
         SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
         database.exec(kSteps[static_cast<std::size_t>(step)]);
         database.exec("PRAGMA user_version = " + std::to_string(step + 1));

@@ -1,4 +1,4 @@
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -8,11 +8,11 @@
 #include <future>
 #include <limits>
 #include <mutex>
+#include <ostream>
 #include <type_traits>
 
 #include "server/clock.h"
-#include "server/store/sqlite/batches.h"
-#include "server/store/sqlite/jobs.h"
+#include "server/store/sqlite/changes.h"
 #include "server/store/sqlite/reading.h"
 #include "server/store/sqlite/writer.h"
 
@@ -40,15 +40,23 @@ private:
     int fd_;
 };
 
+void bring_up_to_date(SQLite::Database& database, SchemaSteps steps) {
+    const SchemaState state = schema_state(database);
+    if (steps == SchemaSteps::leave && state.have != 0 && state.have < state.known)
+        throw SchemaBehind("its schema is at step " + std::to_string(state.have) + " of " +
+                           std::to_string(state.known) + "; `tunewright migrate` brings it up to date");
+    migrate(database);
+}
+
 class SqliteStore : public JobStore {
 public:
-    explicit SqliteStore(const std::string& path)
+    SqliteStore(const std::string& path, SchemaSteps steps)
         : path_(path), lock_(path + ".lock"), connection_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
         connection_.database().exec("PRAGMA journal_mode = WAL");
         // Debian's library writes zeros over each page that it frees, which is most of what deleting costs.
         connection_.database().exec("PRAGMA secure_delete = FAST");
         connection_.database().exec(kPageCache);
-        migrate(connection_.database());
+        bring_up_to_date(connection_.database(), steps);
         writer_ = std::make_unique<SqliteWriter>(connection_);
     }
 
@@ -72,62 +80,89 @@ public:
     JobPage list(const JobQuery& query) override {
         return read([&](Connection& store) { return list_jobs(store, query); });
     }
-    Depth depth() override { return read(count_waiting); }
+    QueueDepth depth() override { return read(count_waiting); }
 
     void accept(NewJob job, Done<Accepted> done) override {
-        const auto work = [job = std::move(job)](Connection& store) { return accept_job(store, job); };
-        write<Accepted>(kDurable, work, std::move(done));
+        write<Accepted>(
+            kDurable, [job = std::move(job)](Connection& store) { return accept_job(store, job); }, std::move(done));
     }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
         // Not waiting for the disk: after a power cut the job is queued again, which is where it belongs anyway.
-        const auto work = [claim = std::move(claim)](Connection& store) { return claim_jobs(store, claim); };
-        write<std::vector<JobRecord>>(kQuick, work, std::move(done));
+        write<std::vector<JobRecord>>(
+            kQuick, [claim = std::move(claim)](Connection& store) { return claim_jobs(store, claim); },
+            std::move(done));
     }
-    void renew(std::vector<Renewal> renewals, UnixMs now, std::chrono::milliseconds lease,
-               Done<std::vector<Renewed>> done) override {
-        const auto work = [renewals = std::move(renewals), until = now + lease.count()](Connection& store) {
-            return renew_jobs(store, renewals, until);
-        };
-        write<std::vector<Renewed>>(kQuick, work, std::move(done));
+    void beat(Heartbeat beat, Done<std::vector<Holding>> done) override {
+        write<std::vector<Holding>>(
+            kQuick, [beat = std::move(beat)](Connection& store) { return beat_worker(store, beat); }, std::move(done));
     }
     void finish(JobEnd end, Done<bool> done) override {
-        const auto work = [end = std::move(end)](Connection& store) { return finish_job(store, end); };
-        write<bool>(kDurable, work, std::move(done));
+        write<bool>(
+            kDurable, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done));
     }
-    void release(std::string id, int attempts, Done<bool> done) override {
-        const auto work = [id = std::move(id), attempts](Connection& store) {
-            return release_job(store, id, attempts, wall_clock());
-        };
-        write<bool>(kDurable, work, std::move(done));
+    void release(std::int64_t seq, int attempts, Done<bool> done) override {
+        write<bool>(
+            kDurable, [=](Connection& store) { return release_job(store, seq, attempts, wall_clock()); },
+            std::move(done));
     }
     void cancel(std::string id, UnixMs now, Done<CancelEffect> done) override {
-        const auto work = [id = std::move(id), now](Connection& store) { return cancel_job(store, id, now); };
-        write<CancelEffect>(kDurable, work, std::move(done));
+        write<CancelEffect>(
+            kDurable, [id = std::move(id), now](Connection& store) { return cancel_job(store, id, now); },
+            std::move(done));
+    }
+    void requeue(std::string id, Done<RequeueEffect> done) override {
+        write<RequeueEffect>(
+            kDurable, [id = std::move(id)](Connection& store) { return requeue_job(store, id); }, std::move(done));
+    }
+    void pause(bool paused, Done<bool> done) override {
+        write<bool>(
+            kDurable, [paused](Connection& store) { return pause_queue(store, paused); }, std::move(done));
     }
     void remove(std::string id, Done<RemoveEffect> done) override {
-        const auto work = [id = std::move(id)](Connection& store) { return remove_job(store, id); };
-        write<RemoveEffect>(kDurable, work, std::move(done));
+        write<RemoveEffect>(
+            kDurable, [id = std::move(id)](Connection& store) { return remove_job(store, id); }, std::move(done));
     }
 
     void open_batch(NewBatch batch, Done<bool> done) override {
-        const auto work = [batch = std::move(batch)](Connection& store) {
-            server::open_batch(store, batch);
-            return true;
-        };
-        write<bool>(kBulky, work, std::move(done));
+        write<bool>(
+            kBulky,
+            [batch = std::move(batch)](Connection& store) {
+                server::open_batch(store, batch);
+                return true;
+            },
+            std::move(done));
     }
     void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
-        const auto work = [batch = std::move(batch), entries = std::move(entries), now](Connection& store) {
-            return server::add_entries(store, batch, entries, now);
-        };
-        write<bool>(kBulky, work, std::move(done));
+        write<bool>(
+            kBulky,
+            [batch = std::move(batch), entries = std::move(entries), now](Connection& store) {
+                return server::add_entries(store, batch, entries, now);
+            },
+            std::move(done));
     }
-    void seal_batch(BatchSeal seal, Done<Sealed> done) override;
-    void drop_batch(std::string batch, Done<bool> done) override;
-    void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override;
-    void remove_batch(std::string id, Done<RemoveEffect> done) override;
-    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
-        sweep_on(now - age.count(), most, 0, std::move(done));
+    void seal_batch(BatchSeal seal, Done<Sealed> done) override { slices_.seal(std::move(seal), std::move(done)); }
+    void drop_batch(std::string batch, Done<bool> done) override { slices_.drop(std::move(batch), std::move(done)); }
+    void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) override {
+        slices_.cancel(std::move(id), now, std::move(done));
+    }
+    void remove_batch(std::string id, Done<RemoveEffect> done) override {
+        slices_.remove(std::move(id), std::move(done));
+    }
+    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
+        slices_.sweep(now, retention, most, std::move(done));
+    }
+
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+                         Done<std::vector<Delivery>> done) override {
+        write<std::vector<Delivery>>(
+            kQuick, [=](Connection& store) { return server::take_deliveries(store, now, hold, most); },
+            std::move(done));
+    }
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                         Done<bool> done) override {
+        write<bool>(
+            kQuick, [=](Connection& store) { return server::settle_delivery(store, seq, now, pause); },
+            std::move(done));
     }
 
     std::optional<BatchSummary> find_batch(const std::string& id) override {
@@ -193,143 +228,91 @@ private:
         }
     }
 
-    void delete_batch(std::int64_t batch, std::function<void(std::optional<StoreFault>)> done);
-    void cancel_slices(std::int64_t batch, UnixMs now, Done<std::vector<std::string>> done);
-    void sweep_on(UnixMs ended_before, std::size_t most, std::size_t gone, Done<std::size_t> done);
-
     std::string path_;
     FileLock lock_;
     Connection connection_;
     std::mutex readers_mutex_;
     std::vector<std::unique_ptr<Connection>> readers_;
     std::unique_ptr<SqliteWriter> writer_;
+    Slices<Connection> slices_{[this](std::function<void(Connection&)> apply, Slices<Connection>::Finished done) {
+        writer_->submit({std::move(apply), std::move(done), true, true});
+    }};
 };
 
 Recovery SqliteStore::recover(UnixMs now, int attempts, const std::string& error) {
     // What was interrupted is finished first, slice by slice, so that none of it is taken for waiting jobs.
-    const auto leaving =
-        write_now<std::vector<std::int64_t>>([](Connection& store) { return leave_unheard(store, kEver); });
-    for (const std::int64_t batch : leaving)
+    const auto unsettled = write_now<Unsettled>([](Connection& store) { return settle_batches(store, kEver); });
+    for (const std::int64_t batch : unsettled.leaving)
         while (write_now<std::size_t>([&](Connection& store) { return delete_entries(store, batch, kSlice); }) > 0) {
         }
-    for (const std::int64_t batch :
-         write_now<std::vector<std::int64_t>>([](Connection& store) { return being_cancelled(store); })) {
-        while (write_now<bool>([&](Connection& store) { return cancel_entries(store, batch, now); })) {
-        }
-        write_now<std::vector<std::string>>([&](Connection& store) { return end_cancel(store, batch); });
-    }
-    return write_now<Recovery>([&](Connection& store) { return reclaim_jobs(store, kEver, now, attempts, error); });
+    using Next = std::optional<std::int64_t>;
+    for (const std::int64_t batch : unsettled.cancelling)
+        for (Next next = 0; next;)
+            next = write_now<Next>([&](Connection& store) { return cancel_entries(store, batch, *next, now); });
+    const Reclaim what{now, attempts, error};
+    return write_now<Recovery>([&](Connection& store) { return reclaim_jobs(store, kEver, what); });
 }
 
 void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
-    struct Found {
-        Recovery recovery;
-        std::vector<std::int64_t> leaving;
-    };
-    const auto work = [what = std::move(what)](Connection& store) {
-        Found found;
-        if (what.leases) found.recovery = reclaim_jobs(store, what.now, what.now, what.most_attempts, what.error);
-        found.leaving = leave_unheard(store, what.now - kReceiving.count());
-        return found;
-    };
-    write<Found>(kBulky, work, [this, done = std::move(done)](Outcome<Found> outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        auto& found = std::get<Found>(outcome);
-        for (const std::int64_t batch : found.leaving) delete_batch(batch, [](const std::optional<StoreFault>&) {});
-        done(std::move(found.recovery));
-    });
-}
-
-// ---- long changes, slice by slice --------------------------------------------------------------------------------
-
-void SqliteStore::delete_batch(std::int64_t batch, std::function<void(std::optional<StoreFault>)> done) {
-    const auto work = [batch](Connection& store) { return delete_entries(store, batch, kSlice); };
-    write<std::size_t>(kBulky, work, [this, batch, done = std::move(done)](const Outcome<std::size_t>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        std::get<std::size_t>(outcome) > 0 ? delete_batch(batch, done) : done(std::nullopt);
-    });
-}
-
-void SqliteStore::seal_batch(BatchSeal seal, Done<Sealed> done) {
-    const auto work = [seal = std::move(seal)](Connection& store) { return server::seal_batch(store, seal); };
-    write<SealedBatch>(kBulky, work, [this, done = std::move(done)](Outcome<SealedBatch> outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        auto& sealed = std::get<SealedBatch>(outcome);
-        if (!sealed.leaving) return done(std::move(sealed.answer));
-        delete_batch(*sealed.leaving, [answer = std::move(sealed.answer), done](const std::optional<StoreFault>&) {
-            done(answer);  // whatever could not be deleted now is not seen, and goes at the next start
+    using Found = std::pair<Recovery, Unsettled>;
+    const UnixMs now = what.now;
+    write<Found>(
+        kBulky,
+        [what = std::move(what)](Connection& store) {
+            Found found;
+            if (what.leases) found.first = reclaim_jobs(store, what.now, what);
+            found.second = settle_batches(store, what.now - kReceiving.count());
+            return found;
+        },
+        [this, now, done = std::move(done)](Outcome<Found> outcome) {
+            if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
+            auto& [recovery, unsettled] = std::get<Found>(outcome);
+            slices_.go_on(unsettled, now);
+            done(std::move(recovery));
         });
-    });
-}
-
-void SqliteStore::drop_batch(std::string batch, Done<bool> done) {
-    const auto work = [batch = std::move(batch)](Connection& store) { return leave_batch(store, batch); };
-    using Found = std::optional<std::int64_t>;
-    write<Found>(kBulky, work, [this, done = std::move(done)](const Outcome<Found>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const auto found = std::get<Found>(outcome);
-        if (!found) return done(false);
-        delete_batch(*found, [done](const std::optional<StoreFault>& fault) { fault ? done(*fault) : done(true); });
-    });
-}
-
-void SqliteStore::remove_batch(std::string id, Done<RemoveEffect> done) {
-    const auto work = [id = std::move(id)](Connection& store) { return server::remove_batch(store, id); };
-    write<RemovedBatch>(kBulky, work, [this, done = std::move(done)](const Outcome<RemovedBatch>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const auto& removed = std::get<RemovedBatch>(outcome);
-        if (removed.effect != RemoveEffect::removed) return done(removed.effect);
-        delete_batch(removed.leaving, [done](const std::optional<StoreFault>& fault) {
-            fault ? done(*fault) : done(RemoveEffect::removed);
-        });
-    });
-}
-
-void SqliteStore::cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) {
-    const auto work = [id = std::move(id)](Connection& store) { return begin_cancel(store, id); };
-    using Found = std::optional<std::int64_t>;
-    write<Found>(kBulky, work, [this, now, done = std::move(done)](const Outcome<Found>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const auto found = std::get<Found>(outcome);
-        if (!found) return done(std::nullopt);
-        cancel_slices(*found, now, [done](Outcome<std::vector<std::string>> ids) {
-            if (const auto* fault = std::get_if<StoreFault>(&ids)) return done(*fault);
-            done(std::get<std::vector<std::string>>(std::move(ids)));
-        });
-    });
-}
-
-void SqliteStore::cancel_slices(std::int64_t batch, UnixMs now, Done<std::vector<std::string>> done) {
-    const auto work = [batch, now](Connection& store) { return cancel_entries(store, batch, now); };
-    write<bool>(kBulky, work, [this, batch, now, done = std::move(done)](const Outcome<bool>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        if (std::get<bool>(outcome)) return cancel_slices(batch, now, done);
-        const auto end = [batch](Connection& store) { return end_cancel(store, batch); };
-        write<std::vector<std::string>>(kBulky, end, done);
-    });
-}
-
-void SqliteStore::sweep_on(UnixMs ended_before, std::size_t most, std::size_t gone, Done<std::size_t> done) {
-    const auto work = [ended_before, left = most - gone](Connection& store) {
-        return left == 0 ? 0 : sweep_slice(store, ended_before, left);
-    };
-    write<std::size_t>(kIdle, work, [=, this, done = std::move(done)](const Outcome<std::size_t>& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-        const std::size_t slice = std::get<std::size_t>(outcome);
-        slice > 0 ? sweep_on(ended_before, most, gone + slice, done) : done(gone);
-    });
 }
 
 }  // namespace
 
-std::unique_ptr<JobStore> open_sqlite_store(const std::string& path) {
+namespace {
+
+/// Runs `work`; what it throws becomes a sentence about the store at `path`.
+template <class Work>
+auto opening(const std::string& path, Work work) {
+    const auto sentence = [&](const std::exception& error) {
+        return "Cannot open the store " + path + ": " + error.what() + ".";
+    };
     try {
         const std::filesystem::path folder = std::filesystem::path(path).parent_path();
         if (!folder.empty()) std::filesystem::create_directories(folder);
-        return std::make_unique<SqliteStore>(path);
+        return work();
+    } catch (const SchemaBehind& error) {
+        throw SchemaBehind(sentence(error));
     } catch (const std::exception& error) {
-        throw StoreError({StoreFault::Kind::unavailable, "Cannot open the store " + path + ": " + error.what() + "."});
+        throw StoreError({StoreFault::Kind::unavailable, sentence(error)});
     }
+}
+
+}  // namespace
+
+std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
+    return opening(path, [&] { return std::make_unique<SqliteStore>(path, steps); });
+}
+
+void migrate_sqlite(const std::string& path, bool compact, std::ostream& out) {
+    opening(path, [&] {
+        const FileLock lock(path + ".lock");
+        Connection connection(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        connection.database().exec("PRAGMA journal_mode = WAL");
+        const SchemaState state = schema_state(connection.database());
+        migrate(connection.database());
+        out << "The schema is at step " << state.known << "; it was at " << state.have << ".\n";
+        if (!compact) return;
+        const auto before = std::filesystem::file_size(path);
+        connection.database().exec("VACUUM");
+        connection.database().exec("PRAGMA wal_checkpoint(TRUNCATE)");
+        out << "The file has " << std::filesystem::file_size(path) << " bytes; it had " << before << ".\n";
+    });
 }
 
 }  // namespace tunewright::server

@@ -84,11 +84,11 @@ TEST(Keys, NewKeysDifferAndHave256Bits) {
 TEST(Keys, ARingKnowsItsKeysAndOnlyThose) {
     const File file(line_of("a", "tw_1") + line_of("b", "tw_2") + line_of("a", "tw_3"));
     KeyRing ring(file.path);
-    EXPECT_EQ(ring.name_of("tw_1"), "a");
-    EXPECT_EQ(ring.name_of("tw_2"), "b");
-    EXPECT_EQ(ring.name_of("tw_3"), "a");
-    for (const std::string wrong : {"", "tw_", "tw_4", "tw_1 ", "TW_1"}) EXPECT_FALSE(ring.name_of(wrong)) << wrong;
-    EXPECT_FALSE(ring.name_of(api::sha256_hex("tw_1"))) << "a digest is not a key";
+    EXPECT_EQ(ring.holder_of("tw_1"), (KeyHolder{"a", false}));
+    EXPECT_EQ(ring.holder_of("tw_2"), (KeyHolder{"b", false}));
+    EXPECT_EQ(ring.holder_of("tw_3"), (KeyHolder{"a", false}));
+    for (const std::string wrong : {"", "tw_", "tw_4", "tw_1 ", "TW_1"}) EXPECT_FALSE(ring.holder_of(wrong)) << wrong;
+    EXPECT_FALSE(ring.holder_of(api::sha256_hex("tw_1"))) << "a digest is not a key";
 }
 
 TEST(Keys, AFileWithoutKeysOrThatIsNotThereIsRefusedWithTheCure) {

@@ -27,7 +27,7 @@ protected:
     }
     void write(const std::string& text) const { std::ofstream(path(), std::ios::trunc) << text; }
     void later(std::chrono::seconds by = std::chrono::seconds(2)) { now_ += by; }
-    bool admits(const std::string& name) { return ring_->name_of("tw_" + name) == name; }
+    bool admits(const std::string& name) { return ring_->holder_of("tw_" + name) == KeyHolder{name, false}; }
 
     std::string folder_;
     KeyRing::Clock::time_point now_{std::chrono::hours(1)};

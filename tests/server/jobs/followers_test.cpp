@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <future>
 
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 
 namespace tunewright::server {
 namespace {
@@ -47,7 +47,7 @@ protected:
     FollowersTest() {
         std::string name = (std::filesystem::temp_directory_path() / "tunewright-follow-XXXXXX").string();
         folder_ = ::mkdtemp(name.data());
-        store_ = open_sqlite_store((folder_ / "jobs.db").string());
+        store_ = open_sqlite_store((folder_ / "jobs.db").string(), SchemaSteps::take);
         store_->recover(0, 10, "");
         followers_ = std::make_unique<Followers>(*store_, held_, outage_, 10ms);
     }
@@ -77,7 +77,7 @@ protected:
     }
     void finish(const JobRecord& job) {
         done<bool>([&](auto callback) {
-            store_->finish({job.id, job.attempts, JobStatus::succeeded, "{\"of\":1}", "", "1", 5}, callback);
+            store_->finish({job.seq, job.id, job.attempts, JobStatus::succeeded, "{\"of\":1}", "", "1", 5}, callback);
         });
     }
 
@@ -96,8 +96,8 @@ TEST_F(FollowersTest, AWaitingJobIsToldAtOnceThenItsStartItsProgressAndItsEnd) {
     // Claimed by another process, which tells its progress through the store.
     const JobRecord job = claim();
     EXPECT_EQ(ear.next().view->job.status, JobStatus::running);
-    done<std::vector<Renewed>>([&](auto callback) {
-        store_->renew({{"a", 1, R"({"fraction":0.5})"}}, 0, 10s, callback);
+    done<std::vector<Holding>>([&](auto callback) {
+        store_->beat({"worker", 0, 10s, {{job.seq, "a", 1, R"({"fraction":0.5})"}}}, callback);
     });
     EXPECT_EQ(ear.next().view->job.progress, R"({"fraction":0.5})");
     finish(job);
@@ -109,7 +109,7 @@ TEST_F(FollowersTest, AWaitingJobIsToldAtOnceThenItsStartItsProgressAndItsEnd) {
 
 TEST_F(FollowersTest, ProgressOfAJobOfThisProcessNeedsNoStore) {
     accept("a");
-    const auto held = held_.add(claim());
+    const auto held = held_.add(claim(), true);
     held->enter(HeldJob::Stage::computing);
     Ear ear;
     followers_->follow("a", ear.listener());

@@ -7,7 +7,7 @@
 
 #include "server/jobs/sweeper.h"
 #include "server/random.h"
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 
 namespace tunewright::server {
 namespace {
@@ -36,7 +36,7 @@ protected:
     JobServiceTest() {
         std::string name = (std::filesystem::temp_directory_path() / "tunewright-jobs-XXXXXX").string();
         folder_ = ::mkdtemp(name.data());
-        store_ = open_sqlite_store((folder_ / "jobs.db").string());
+        store_ = open_sqlite_store((folder_ / "jobs.db").string(), SchemaSteps::take);
     }
     ~JobServiceTest() override {
         if (service_) service_->drain(std::chrono::seconds(0));
@@ -81,13 +81,13 @@ protected:
         order.job.request_json = request;
         std::promise<Submission> promise;
         service_->submit(
-            order, [&](Submission made) { promise.set_value(std::move(made)); }, [] {});
+            order, [&](Submission made) { promise.set_value(std::move(made)); }, [](const auto&) {});
         return promise.get_future().get();
     }
 
     JobRecord ended(const std::string& id) {
         std::promise<void> promise;
-        service_->wait(id, std::chrono::seconds(60), [&] { promise.set_value(); });
+        service_->wait(id, std::chrono::seconds(60), [&](const auto&) { promise.set_value(); });
         promise.get_future().get();
         return service_->find(id).value().job;
     }
@@ -101,6 +101,18 @@ protected:
         std::promise<CancelEffect> promise;
         service_->cancel(id, [&](Outcome<CancelEffect> effect) { promise.set_value(std::get<CancelEffect>(effect)); });
         return promise.get_future().get();
+    }
+
+    std::string submit_and_cancel(const std::string& request) {
+        const std::string id = submit(request).job.id;
+        EXPECT_EQ(cancel(id), CancelEffect::cancelled);
+        return id;
+    }
+
+    void pause(bool paused) {
+        std::promise<void> done;
+        service_->pause(paused, [&](const auto&) { done.set_value(); });
+        done.get_future().get();
     }
 
     Gate gate_;
@@ -178,7 +190,8 @@ TEST_F(JobServiceTest, AClockThatIsSetDeletesNothing) {
     start();
     const std::string id = submit("a").job.id;
     ended(id);
-    Sweeper sweeper(*store_, std::chrono::seconds(1), [this] { return now_.load(); });
+    const Retention second{std::chrono::seconds(1), std::chrono::seconds(1), std::chrono::seconds(1)};
+    Sweeper sweeper(*store_, second, [this] { return now_.load(); });
     const auto swept = [&] {
         std::this_thread::sleep_for(sweeper.sweep());
         std::this_thread::sleep_for(std::chrono::milliseconds(1100));
@@ -190,7 +203,7 @@ TEST_F(JobServiceTest, AClockThatIsSetDeletesNothing) {
     now_ += 8 * 24 * 3600 * 1000LL;
     EXPECT_FALSE(swept());
     // A service that starts with that clock has seen no jump.
-    Sweeper fresh(*store_, std::chrono::seconds(1), [this] { return now_.load(); });
+    Sweeper fresh(*store_, second, [this] { return now_.load(); });
     fresh.sweep();
     while (store_->find(id)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
@@ -255,7 +268,7 @@ TEST_F(JobServiceTest, CancellingAQueuedJobTellsWhoWaitsForIt) {
     const std::string queued = submit("a").job.id;
     until_running(running);
     std::promise<void> notified;
-    service_->wait(queued, std::chrono::seconds(60), [&] { notified.set_value(); });
+    service_->wait(queued, std::chrono::seconds(60), [&](const auto&) { notified.set_value(); });
     EXPECT_EQ(cancel(queued), CancelEffect::cancelled);
     notified.get_future().get();
     EXPECT_EQ(service_->queued(), 0U);
@@ -280,7 +293,7 @@ TEST_F(JobServiceTest, AWaitThatIsOverIsToldWhileTheJobRuns) {
     start();
     const std::string id = submit("wait").job.id;
     std::promise<void> notified;
-    service_->wait(id, std::chrono::milliseconds(5), [&] { notified.set_value(); });
+    service_->wait(id, std::chrono::milliseconds(5), [&](const auto&) { notified.set_value(); });
     notified.get_future().get();
     EXPECT_FALSE(has_ended(service_->find(id)->job.status));
 }
@@ -291,9 +304,35 @@ TEST_F(JobServiceTest, WaitingForAnEndedOrUnknownJobIsToldAtOnce) {
     ended(id);
     for (const std::string& asked : {id, std::string("nothing")}) {
         std::promise<void> notified;
-        service_->wait(asked, std::chrono::hours(1), [&] { notified.set_value(); });
+        service_->wait(asked, std::chrono::hours(1), [&](const auto&) { notified.set_value(); });
         notified.get_future().get();
     }
+}
+
+TEST_F(JobServiceTest, WhileTheQueueIsPausedRunningJobsEndAndNoneIsBegun) {
+    start();
+    const std::string running = submit("wait").job.id;
+    until_running(running);
+    pause(true);
+    const std::string waiting = submit("a").job.id;
+    gate_.open();
+    EXPECT_EQ(ended(running).status, JobStatus::succeeded);
+    EXPECT_EQ(ended(submit_and_cancel("b")).attempts, 0);
+    EXPECT_EQ(store_->find(waiting)->status, JobStatus::queued);
+    pause(false);
+    EXPECT_EQ(ended(waiting).status, JobStatus::succeeded) << "at once: nothing else has to arrive";
+}
+
+TEST_F(JobServiceTest, AJobThatIsQueuedAgainIsComputedAgain) {
+    start();
+    const std::string id = submit("fail").job.id;
+    EXPECT_EQ(ended(id).attempts, 1);
+    std::promise<RequeueEffect> effect;
+    service_->requeue(id, [&](const auto& outcome) { effect.set_value(std::get<RequeueEffect>(outcome)); });
+    EXPECT_EQ(effect.get_future().get(), RequeueEffect::requeued);
+    const JobRecord job = ended(id);
+    EXPECT_EQ(job.status, JobStatus::failed);
+    EXPECT_EQ(job.attempts, 2);
 }
 
 TEST_F(JobServiceTest, DrainingLetsARunningJobEndAndTakesNoMore) {
@@ -313,7 +352,7 @@ TEST_F(JobServiceTest, DrainingWithoutGraceGivesRunningJobsBackToTheQueueAndTell
     const std::string id = submit("partial").job.id;
     until_running(id);
     std::promise<void> notified;
-    service_->wait(id, std::chrono::hours(1), [&] { notified.set_value(); });
+    service_->wait(id, std::chrono::hours(1), [&](const auto&) { notified.set_value(); });
     EXPECT_TRUE(service_->drain(std::chrono::seconds(0)));
     notified.get_future().get();
     EXPECT_EQ(store_->find(id)->status, JobStatus::queued);

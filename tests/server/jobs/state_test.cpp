@@ -9,17 +9,20 @@ namespace {
 
 constexpr std::array kStates{JobStatus::queued, JobStatus::running, JobStatus::succeeded, JobStatus::failed,
                              JobStatus::cancelled};
-constexpr std::array kEvents{JobEvent::claim, JobEvent::succeed, JobEvent::fail, JobEvent::cancel, JobEvent::release};
+constexpr std::array kEvents{JobEvent::claim,  JobEvent::succeed, JobEvent::fail,
+                             JobEvent::cancel, JobEvent::release, JobEvent::requeue};
 
 TEST(JobState, TheWaysBetweenStatesAreExactlyTheDocumentedOnes) {
     using S = JobStatus;
     using E = JobEvent;
-    const std::array<std::tuple<S, E, S>, 6> ways{{{S::queued, E::claim, S::running},
+    const std::array<std::tuple<S, E, S>, 8> ways{{{S::queued, E::claim, S::running},
                                                    {S::queued, E::cancel, S::cancelled},
                                                    {S::running, E::succeed, S::succeeded},
                                                    {S::running, E::fail, S::failed},
                                                    {S::running, E::cancel, S::cancelled},
-                                                   {S::running, E::release, S::queued}}};
+                                                   {S::running, E::release, S::queued},
+                                                   {S::failed, E::requeue, S::queued},
+                                                   {S::cancelled, E::requeue, S::queued}}};
     for (const S from : kStates) {
         for (const E event : kEvents) {
             std::optional<S> expected;
@@ -30,11 +33,12 @@ TEST(JobState, TheWaysBetweenStatesAreExactlyTheDocumentedOnes) {
     }
 }
 
-TEST(JobState, AnEndedJobIsNeverMovedAgain) {
+TEST(JobState, AnEndedJobIsMovedOnlyWhereItsOwnerHasItQueuedAgain) {
     for (const JobStatus state : kStates) {
         if (!has_ended(state)) continue;
-        for (const JobEvent event : kEvents) EXPECT_FALSE(transition(state, event));
+        for (const JobEvent event : kEvents) EXPECT_TRUE(event == JobEvent::requeue || !transition(state, event));
     }
+    EXPECT_FALSE(transition(JobStatus::succeeded, JobEvent::requeue)) << "there is nothing to be tried again";
 }
 
 TEST(JobState, NamesReadBackAsTheirStates) {

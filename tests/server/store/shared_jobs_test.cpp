@@ -1,11 +1,12 @@
 // Several services on one store: what each does for the others, and what becomes of jobs whose service is gone.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <future>
 
 #include "server/jobs/service.h"
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 #include "tests/server/store/shared_store.h"
 
 namespace tunewright::server {
@@ -78,13 +79,13 @@ protected:
     SharedJobs() {
         std::string name = (std::filesystem::temp_directory_path() / "tunewright-shared-XXXXXX").string();
         folder_ = ::mkdtemp(name.data());
-        store_ = open_sqlite_store((folder_ / "jobs.db").string());
+        store_ = open_sqlite_store((folder_ / "jobs.db").string(), SchemaSteps::take);
         store_->recover(now_, 10, "");
     }
     ~SharedJobs() override {
         for (const auto& process : processes_) process->open_gate();
         for (const auto& process : processes_) {
-            process->view.broken = process->view.mute = false;
+            process->view.broken = process->view.mute = process->view.lossy = false;
             process->jobs->drain(0s);
         }
         timer_.stop();
@@ -105,14 +106,14 @@ protected:
         order.job.timeout_s = timeout_s;
         std::promise<Submission> promise;
         to.jobs->submit(
-            order, [&](Submission made) { promise.set_value(std::move(made)); }, [] {});
+            order, [&](Submission made) { promise.set_value(std::move(made)); }, [](const auto&) {});
         return promise.get_future().get();
     }
     static std::string post(Process& to, const std::string& request) { return submit(to, request).job.id; }
 
     static JobRecord ended(Process& at, const std::string& id) {
         std::promise<void> promise;
-        at.jobs->wait(id, 60s, [&] { promise.set_value(); });
+        at.jobs->wait(id, 60s, [&](const auto&) { promise.set_value(); });
         promise.get_future().get();
         return at.jobs->find(id).value().job;
     }
@@ -121,6 +122,24 @@ protected:
         std::promise<void> promise;
         at.jobs->cancel(id, [&](const auto&) { promise.set_value(); });
         promise.get_future().get();
+    }
+
+    /// Twenty entries whose requests begin so.
+    void add_batch(const std::string& request) {
+        std::promise<void> opened;
+        store_->open_batch({"batch", "", "", "", now_}, [&](const auto&) { opened.set_value(); });
+        opened.get_future().get();
+        std::vector<NewEntry> entries;
+        for (int i = 0; i < 20; i++) {
+            NewEntry entry;
+            entry.index = i;
+            entry.id = "entry" + std::to_string(i);
+            entry.request = request + entry.id;
+            entries.push_back(entry);
+        }
+        std::promise<void> added;
+        store_->add_entries("batch", entries, now_, [&](const auto&) { added.set_value(); });
+        added.get_future().get();
     }
 
     static void until(const std::function<bool()>& holds) {
@@ -188,7 +207,7 @@ TEST_F(SharedJobs, JobsOfADeadServiceEndOnAnother) {
     EXPECT_EQ(job.attempts, 2);
 }
 
-TEST_F(SharedJobs, AWorkerWhoseLeaseWasLostEndsNothing) {
+TEST_F(SharedJobs, AWorkerThatWasThoughtDeadEndsNothing) {
     Process& slow = add("slow", 1);
     const std::string id = post(slow, "deaf");
     until([&] { return slow.waiting == 1; });
@@ -207,7 +226,7 @@ TEST_F(SharedJobs, AWorkerWhoseLeaseWasLostEndsNothing) {
     EXPECT_EQ(heir.dropped, 0);
 }
 
-TEST_F(SharedJobs, AWorkerThatLearnsThatItsLeaseIsLostStops) {
+TEST_F(SharedJobs, AWorkerThatLearnsThatItsJobIsAnothersStops) {
     Process& slow = add("slow", 1);
     post(slow, "long");
     until([&] { return slow.waiting == 1; });
@@ -219,6 +238,25 @@ TEST_F(SharedJobs, AWorkerThatLearnsThatItsLeaseIsLostStops) {
     until([&] { return slow.waiting == 0; });
     until([&] { return slow.dropped == 1; });
     EXPECT_EQ(slow.jobs->running(), 0U);
+}
+
+TEST_F(SharedJobs, AJobWhoseClaimWasNeverAnsweredIsGivenBackByItsWorkerItself) {
+    Process& process = add("process", 2);
+    const std::string running = post(process, "long");
+    until([&] { return process.waiting == 1; });
+    process.view.lossy = true;
+    const std::string stray = post(process, "a");
+    until([&] { return store_->find(stray)->status == JobStatus::running; });
+    process.view.lossy = false;
+    // In steps that are no jump of the clock, each with a sign of life in it: no lease is ever over.
+    for (UnixMs end = now_ + kLease + 1; now_ <= end;) {
+        now_ += kLease / 5;
+        until([&] { return process.view.last_beat == now_.load(); });
+    }
+    EXPECT_EQ(ended(process, stray).status, JobStatus::succeeded);
+    EXPECT_EQ(store_->find(stray)->attempts, 2);
+    EXPECT_EQ(store_->find(running)->attempts, 1) << "what it knows of it keeps";
+    EXPECT_EQ(process.dropped, 0);
 }
 
 TEST_F(SharedJobs, AJobThatIsInterruptedTooOftenFailsWithTheReason) {
@@ -296,7 +334,7 @@ TEST_F(SharedJobs, ResultsThatTheStoreCannotTakeAreKeptUntilItCan) {
 
 TEST_F(SharedJobs, EndedJobsAreSweptWhenTheirRetentionIsOver) {
     JobSettings settings;
-    settings.retention = 60s;
+    settings.retention = {60s, 60s, 60s};
     Process& process = add("process", 1, settings);
     const std::string old = post(process, "old");
     ended(process, old);
@@ -310,29 +348,30 @@ TEST_F(SharedJobs, EndedJobsAreSweptWhenTheirRetentionIsOver) {
 }
 
 TEST_F(SharedJobs, SingleJobsOvertakeEntriesOfABatch) {
-    Process& process = add("process", 1);
-    const std::string blocker = post(process, "long");
+    // Now and then a claim takes entries first; the first ones do not. So that none of these is spent on an empty
+    // queue, the worker's first job is there before the worker.
+    const std::string blocker = post(add("api", 0), "long");
+    Process& process = add("worker", 1);
     until([&] { return process.waiting == 1; });
-    std::promise<void> opened;
-    store_->open_batch({"batch", "", "", "", now_}, [&](const auto&) { opened.set_value(); });
-    opened.get_future().get();
-    std::vector<NewEntry> entries;
-    for (int i = 0; i < 20; i++) {
-        NewEntry entry;
-        entry.index = i;
-        entry.id = "entry" + std::to_string(i);
-        entry.request = "long" + entry.id;
-        entries.push_back(entry);
-    }
-    std::promise<void> added;
-    store_->add_entries("batch", entries, now_, [&](const auto&) { added.set_value(); });
-    added.get_future().get();
+    add_batch("long");
     process.jobs->work_arrived();
     const std::string single = post(process, "single");
     cancel(process, blocker);
     EXPECT_EQ(ended(process, single).status, JobStatus::succeeded);
     until([&] { return process.computed().size() == 3; });
     EXPECT_THAT(process.computed(), testing::ElementsAre("long", "single", "longentry0"));
+}
+
+TEST_F(SharedJobs, ABatchGoesOnHoweverManySingleJobsWait) {
+    Process& api = add("api", 0);
+    std::string last;
+    for (int i = 0; i < 400; i++) last = post(api, "single");
+    add_batch("");
+    Process& process = add("worker", 1);
+    EXPECT_EQ(ended(api, last).status, JobStatus::succeeded);
+    const auto computed = process.computed();
+    const auto first_entry = std::find(computed.begin(), computed.end(), "entry0");
+    EXPECT_NE(std::find(first_entry, computed.end(), "single"), computed.end()) << "no single job came after it";
 }
 
 }  // namespace

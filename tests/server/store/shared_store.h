@@ -1,11 +1,14 @@
 // One store seen by several processes: each has a view of its own, over one store that is really there. A view can be
-// deaf (no notices reach it), mute (its signs of life and its results do not reach the store: its process seems dead)
-// or out of order (every write fails).
+// deaf (no notices reach it), mute (its signs of life and its results do not reach the store: its process seems dead),
+// lossy (what it claims is handed out, but the answer never comes) or out of order (every write fails).
 #pragma once
 
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "server/store/store.h"
@@ -31,9 +34,11 @@ public:
 
     std::atomic<bool> deaf = false;
     std::atomic<bool> mute = false;
+    std::atomic<bool> lossy = false;
     std::atomic<bool> broken = false;
-    std::atomic<int> claims = 0;    ///< asked for so far
-    std::atomic<int> reclaims = 0;  ///< likewise
+    std::atomic<int> claims = 0;        ///< asked for so far
+    std::atomic<int> reclaims = 0;      ///< likewise
+    std::atomic<UnixMs> last_beat = 0;  ///< the moment of the last sign of life that the store has heard
 
     void hear(const StoreNotice& notice) {
         const std::lock_guard lock(mutex_);
@@ -46,7 +51,7 @@ public:
         notify_ = std::move(notify);
     }
     bool healthy() const override { return !broken && store_.healthy(); }
-    /// Whoever recovers while others are at work must leave theirs alone: the leases tell.
+    /// Whoever recovers while others are at work must leave theirs alone: signs of life tell.
     Recovery recover(UnixMs, int, const std::string&) override { return {}; }
     void reclaim(Reclaim what, Done<Recovery> done) override {
         reclaims++;
@@ -55,7 +60,15 @@ public:
     std::optional<JobRecord> find(const std::string& id) override { return store_.find(id); }
     std::vector<JobState> states(const std::vector<std::string>& ids) override { return store_.states(ids); }
     JobPage list(const JobQuery& query) override { return store_.list(query); }
-    Depth depth() override { return store_.depth(); }
+    QueueDepth depth() override { return store_.depth(); }
+    void pause(bool paused, Done<bool> done) override {
+        write(done, [&] {
+            store_.pause(paused, [this, paused, done](Outcome<bool> outcome) {
+                done(std::move(outcome));
+                if (!paused) board_.tell(this, {StoreNotice::Kind::queued, ""});
+            });
+        });
+    }
     void accept(NewJob job, Done<Accepted> done) override {
         write(done, [&] {
             store_.accept(std::move(job), [this, done](Outcome<Accepted> outcome) {
@@ -67,12 +80,22 @@ public:
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
         claims++;
         if (mute) return done(std::vector<JobRecord>{});
-        write(done, [&] { store_.claim(std::move(claim), done); });
+        write(done, [&] {
+            store_.claim(std::move(claim), [done, lost = lossy.load()](Outcome<std::vector<JobRecord>> outcome) {
+                if (lost) return done(StoreFault{StoreFault::Kind::unknown, "lossy"});
+                done(std::move(outcome));
+            });
+        });
     }
-    void renew(std::vector<Renewal> renewals, UnixMs now, std::chrono::milliseconds lease,
-               Done<std::vector<Renewed>> done) override {
+    void beat(Heartbeat beat, Done<std::vector<Holding>> done) override {
         if (mute) return done(StoreFault{StoreFault::Kind::unavailable, "mute"});
-        write(done, [&] { store_.renew(std::move(renewals), now, lease, done); });
+        write(done, [&] {
+            const UnixMs at = beat.now;
+            store_.beat(std::move(beat), [this, at, done](Outcome<std::vector<Holding>> outcome) {
+                done(std::move(outcome));
+                last_beat = at;
+            });
+        });
     }
     void finish(JobEnd end, Done<bool> done) override {
         if (mute) return done(StoreFault{StoreFault::Kind::unavailable, "mute"});
@@ -83,9 +106,9 @@ public:
             });
         });
     }
-    void release(std::string id, int attempts, Done<bool> done) override {
+    void release(std::int64_t seq, int attempts, Done<bool> done) override {
         write(done, [&] {
-            store_.release(std::move(id), attempts, [this, done](Outcome<bool> outcome) {
+            store_.release(seq, attempts, [this, done](Outcome<bool> outcome) {
                 done(std::move(outcome));
                 board_.tell(this, {StoreNotice::Kind::queued, ""});
             });
@@ -96,6 +119,14 @@ public:
             store_.cancel(id, now, [this, id, done](Outcome<CancelEffect> outcome) {
                 done(std::move(outcome));
                 board_.tell(this, {StoreNotice::Kind::cancel, id});
+            });
+        });
+    }
+    void requeue(std::string id, Done<RequeueEffect> done) override {
+        write(done, [&] {
+            store_.requeue(std::move(id), [this, done](Outcome<RequeueEffect> outcome) {
+                done(std::move(outcome));
+                board_.tell(this, {StoreNotice::Kind::queued, ""});
             });
         });
     }
@@ -121,8 +152,16 @@ public:
         store_.cancel_batch(std::move(id), now, done);
     }
     void remove_batch(std::string id, Done<RemoveEffect> done) override { store_.remove_batch(std::move(id), done); }
-    void sweep(UnixMs now, std::chrono::milliseconds age, std::size_t most, Done<std::size_t> done) override {
-        store_.sweep(now, age, most, done);
+    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
+        store_.sweep(now, retention, most, done);
+    }
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+                         Done<std::vector<Delivery>> done) override {
+        write(done, [&] { store_.take_deliveries(now, hold, most, done); });
+    }
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                         Done<bool> done) override {
+        write(done, [&] { store_.settle_delivery(seq, now, pause, done); });
     }
 
 private:

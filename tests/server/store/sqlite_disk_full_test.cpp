@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 #include "tests/server/store/store_conformance.h"
 #include "tests/server/store/store_file.h"
 
@@ -35,7 +35,7 @@ TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAg
     if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
     std::vector<std::string> accepted;
     {
-        const auto store = open_sqlite_store(folder.file());
+        const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
         store->recover(1, 10, "{}");
         std::optional<StoreFault> fault;
         while (!fault) {
@@ -60,7 +60,7 @@ TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAg
             store->claim({"worker", 1, std::chrono::minutes(1), 1}, callback);
         });
         ASSERT_EQ(claimed.size(), 1U);
-        const JobEnd end{claimed[0].id, 1, JobStatus::succeeded, std::string(100'000, 'r'), "", "1", 2};
+        const JobEnd end{claimed[0].seq, claimed[0].id, 1, JobStatus::succeeded, std::string(100'000, 'r'), "", "1", 2};
         EXPECT_TRUE(completed<bool>([&](auto callback) { store->finish(end, callback); }));
         EXPECT_EQ(store->find(claimed[0].id).value().result.size(), 100'000U);
     }
@@ -72,14 +72,14 @@ TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     const TemporaryFolder folder;
     const SmallDisk disk(folder.path());
     if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
-    const auto store = open_sqlite_store(folder.file());
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
     NewJob job;
     job.id = "a";
     completed<Accepted>([&](auto callback) { store->accept(job, callback); });
-    completed<std::vector<JobRecord>>([&](auto callback) {
+    const auto claimed = completed<std::vector<JobRecord>>([&](auto callback) {
         store->claim({"worker", 1, std::chrono::minutes(1), 1}, callback);
     });
-    const JobEnd end{"a", 1, JobStatus::succeeded, std::string(4'000'000, 'r'), "", "1", 2};
+    const JobEnd end{claimed.at(0).seq, "a", 1, JobStatus::succeeded, std::string(4'000'000, 'r'), "", "1", 2};
     std::promise<Outcome<bool>> answer;
     store->finish(end, [&](Outcome<bool> outcome) { answer.set_value(std::move(outcome)); });
     const Outcome<bool> refused = answer.get_future().get();

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "server/store/sqlite/sqlite_store.h"
+#include "server/store/open_store.h"
 #include "tests/server/store/store_conformance.h"
 #include "tests/server/store/store_file.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 class SqlitePlace : public StorePlace {
 public:
-    std::unique_ptr<JobStore> open() override { return open_sqlite_store(folder_.file()); }
+    std::unique_ptr<JobStore> open() override { return open_sqlite_store(folder_.file(), SchemaSteps::take); }
 
 private:
     TemporaryFolder folder_;
@@ -26,9 +26,9 @@ INSTANTIATE_TEST_SUITE_P(Sqlite, StoreConformance, testing::Values(MakePlace(sql
 
 TEST(SqliteStore, TwoServicesCannotOpenTheSameFile) {
     const TemporaryFolder folder;
-    const auto first = open_sqlite_store(folder.file());
+    const auto first = open_sqlite_store(folder.file(), SchemaSteps::take);
     try {
-        open_sqlite_store(folder.file());
+        open_sqlite_store(folder.file(), SchemaSteps::take);
         FAIL() << "the second one was opened";
     } catch (const StoreError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("another tunewright is using it"));
@@ -37,7 +37,7 @@ TEST(SqliteStore, TwoServicesCannotOpenTheSameFile) {
 
 TEST(SqliteStore, AFileOfANewerProgramIsLeftAlone) {
     const TemporaryFolder folder;
-    open_sqlite_store(folder.file()).reset();
+    open_sqlite_store(folder.file(), SchemaSteps::take).reset();
     {
         // SQLite keeps user_version as a big-endian number at offset 60 of the file.
         std::fstream file(folder.file(), std::ios::in | std::ios::out | std::ios::binary);
@@ -45,7 +45,7 @@ TEST(SqliteStore, AFileOfANewerProgramIsLeftAlone) {
         file.write("\0\0\0\x63", 4);
     }
     try {
-        open_sqlite_store(folder.file());
+        open_sqlite_store(folder.file(), SchemaSteps::take);
         FAIL() << "it was opened";
     } catch (const StoreError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("schema 99 of a newer program"));
@@ -54,7 +54,7 @@ TEST(SqliteStore, AFileOfANewerProgramIsLeftAlone) {
 
 TEST(SqliteStore, AFailedWriteIsToldAndTheStoreRecovers) {
     const TemporaryFolder folder;
-    const auto store = open_sqlite_store(folder.file());
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
     NewJob job;
     job.id = "big";
     job.request.assign(4 * 1024 * 1024, 'x');
@@ -80,7 +80,7 @@ TEST(SqliteStore, AFailedWriteIsToldAndTheStoreRecovers) {
 
 TEST(SqliteStore, OneBadChangeDoesNotTakeTheOthersOfItsGroupWithIt) {
     const TemporaryFolder folder;
-    const auto store = open_sqlite_store(folder.file());
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
     NewJob job;
     job.request = "{}";
     job.id = "twice";

@@ -1,6 +1,4 @@
-// Batches: received, sealed, counted, read row by row, cancelled, dropped, removed, swept.
-#include <limits>
-
+// Batches: received, sealed, counted, read row by row, cancelled, dropped, removed.
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {
@@ -9,17 +7,23 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
+using namespace std::chrono_literals;
 
 /// More than any store handles in one piece.
 constexpr std::int64_t kLarge = 1300;
 
 TEST_P(StoreConformance, ABatchIsReceivedPieceByPieceAndItsEntriesAreJobs) {
-    open_batch("x", "me", "flow");
+    NewBatch made{"x", "name of x", "me", "flow", now()};
+    made.origin = {"call 7", "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01"};
+    open_batch(made);
     EXPECT_FALSE(batch("x").sealed);
     EXPECT_TRUE(add_waiting("x", 0, 2));
     EXPECT_TRUE(add_entries("x", {})) << "a sign of life";
     EXPECT_TRUE(add_waiting("x", 2, 1));
-    EXPECT_EQ(claim().value().id, "x-0") << "before it is sealed";
+    const JobRecord claimed = claim().value();
+    EXPECT_EQ(claimed.id, "x-0") << "before it is sealed";
+    EXPECT_EQ(claimed.batch, "x");
+    EXPECT_EQ(claimed.request_id, made.origin.request_id);
     EXPECT_EQ(seal("x").kind, Sealed::Kind::sealed);
     const BatchSummary found = batch("x");
     EXPECT_EQ(found.name, "name of x");
@@ -36,6 +40,8 @@ TEST_P(StoreConformance, ABatchIsReceivedPieceByPieceAndItsEntriesAreJobs) {
     EXPECT_EQ(entry.name, "name of x-1");
     EXPECT_EQ(entry.request, R"({"plant":"x-1"})");
     EXPECT_EQ(entry.status, JobStatus::queued);
+    EXPECT_EQ(entry.request_id, made.origin.request_id) << "that of the call which posted the batch";
+    EXPECT_EQ(entry.traceparent, made.origin.traceparent);
     EXPECT_FALSE(store_->find_batch("y"));
 }
 
@@ -188,6 +194,7 @@ TEST_P(StoreConformance, ADroppedBatchIsGoneWithEverythingOfIt) {
     add_waiting("x", 0, kLarge);
     add_entries("x", {entry("x", kLarge, R"({"type":"bad"})")});
     claim();
+    const JobEnd late = end_of("x-0", JobStatus::succeeded, "{}");
     make_batch("y", 1);
     EXPECT_TRUE(drop("x"));
     EXPECT_FALSE(drop("x"));
@@ -196,11 +203,25 @@ TEST_P(StoreConformance, ADroppedBatchIsGoneWithEverythingOfIt) {
     EXPECT_FALSE(store_->find("x-" + std::to_string(kLarge)));
     EXPECT_THAT(store_->states({"x-5"}), IsEmpty());
     EXPECT_THAT(store_->batch_rows("x", 0, 10), IsEmpty());
-    EXPECT_FALSE(renew({{"x-0", 1, ""}})[0].held);
-    EXPECT_FALSE(finish("x-0", JobStatus::succeeded, "{}"));
+    EXPECT_THAT(beat(), IsEmpty()) << "who was at one of its entries learns it";
+    EXPECT_FALSE(finish(late));
     EXPECT_FALSE(add_waiting("x", kLarge + 1, 1));
     EXPECT_EQ(store_->depth().entries, 1U);
     EXPECT_THAT(claim_all(), ElementsAre("y-0"));
+}
+
+TEST_P(StoreConformance, WhatIsLeftOfABatchThatIsBeingDroppedCountsNoMore) {
+    open_batch("x");
+    add_waiting("x", 0, kLarge);
+    make_batch("y", 1);
+    std::promise<void> dropped;
+    store_->drop_batch("x", [&](const Outcome<bool>&) { dropped.set_value(); });
+    // Its entries go slice by slice, and nobody may post less because of them meanwhile.
+    std::set<std::size_t> seen;
+    for (auto end = dropped.get_future(); end.wait_for(0s) != std::future_status::ready;)
+        seen.insert(store_->depth().entries);
+    EXPECT_THAT(seen, testing::IsSubsetOf({std::size_t{1}, static_cast<std::size_t>(kLarge) + 1}));
+    EXPECT_EQ(store_->depth().entries, 1U);
 }
 
 TEST_P(StoreConformance, CancellingABatchEndsWhatWaitsAndNamesWhatRuns) {
@@ -222,7 +243,7 @@ TEST_P(StoreConformance, CancellingABatchEndsWhatWaitsAndNamesWhatRuns) {
     EXPECT_EQ(status("x-0"), JobStatus::succeeded);
     EXPECT_TRUE(store_->find("x-1").value().cancel_requested);
     EXPECT_TRUE(store_->find("x-" + std::to_string(kLarge - 1)).value().finished_at);
-    EXPECT_TRUE(renew({{"x-1", 1, ""}})[0].cancel_requested);
+    EXPECT_TRUE(holding("x-1").value().cancel_requested);
     EXPECT_FALSE(cancel_batch("nobody"));
     EXPECT_THAT(cancel_batch("x").value(), testing::SizeIs(running->size())) << "once more does no harm";
 }
@@ -230,7 +251,7 @@ TEST_P(StoreConformance, CancellingABatchEndsWhatWaitsAndNamesWhatRuns) {
 TEST_P(StoreConformance, ACancelledBatchTakesNoMoreAndItsInterruptedEntriesAreNotQueuedAgain) {
     open_batch("x");
     add_waiting("x", 0, 3);
-    claim(kDead);
+    claim(kDead, "dead");
     claim(kAlive);
     cancel_batch("x");
     EXPECT_FALSE(add_waiting("x", 3, 1));
@@ -257,28 +278,6 @@ TEST_P(StoreConformance, OnlyAnEndedBatchIsRemovedAndOnlyAsAWhole) {
     EXPECT_FALSE(store_->find_batch("x"));
     EXPECT_FALSE(store_->find("x-0"));
     EXPECT_FALSE(store_->batch_of_key("", "key"));
-}
-
-TEST_P(StoreConformance, SweepingTakesEndedBatchesAndCountsTheirJobs) {
-    make_batch("x", kLarge);
-    make_batch("running", 2);
-    open_batch("receiving");
-    cancel_batch("x");
-    claim();
-    accept(job("single"));
-    cancel("single");
-    EXPECT_EQ(sweep(1000, 10), 0U);
-    const UnixMs later = now() + 1000;
-    EXPECT_EQ(sweep(later, 100), 100U);
-    EXPECT_FALSE(store_->find_batch("x")) << "a batch is not shown in part";
-    std::size_t gone = 100;
-    for (std::size_t last = 100; last == 100;) gone += last = sweep(later, 100);
-    EXPECT_EQ(gone, static_cast<std::size_t>(kLarge) + 1);
-    EXPECT_EQ(sweep(later, 100), 0U);
-    EXPECT_TRUE(store_->find_batch("running"));
-    EXPECT_TRUE(store_->find_batch("receiving"));
-    EXPECT_FALSE(store_->find("x-7"));
-    EXPECT_FALSE(store_->find("single"));
 }
 
 TEST_P(StoreConformance, BatchesAreListedNewestFirstByOwnerAndPageByPage) {

@@ -5,12 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/store/store.h"
@@ -27,21 +30,6 @@ T completed(Start start) {
     return std::get<T>(std::move(outcome));
 }
 
-/// Changes of jobs that a store's tables must refuse, of the jobs "ended", "running" and "waiting" in these states:
-/// what follows UPDATE ... SET.
-inline constexpr const char* kForbiddenChanges[] = {
-    "status = 'queued', finished_at = NULL WHERE id = 'ended'",
-    "status = 'failed' WHERE id = 'ended'",
-    "attempts = 0 WHERE id = 'running'",
-    "attempts = 5 WHERE id = 'running'",
-    "worker = NULL WHERE id = 'running'",
-    "lease_until = NULL WHERE id = 'running'",
-    "status = 'succeeded', worker = NULL, lease_until = NULL WHERE id = 'running'",
-    "status = 'succeeded', finished_at = 1 WHERE id = 'waiting'",
-    "status = 'running' WHERE id = 'waiting'",
-    "finished_at = 1 WHERE id = 'waiting'",
-};
-
 /// A place for a store, empty at first; open() may be called again after the store before has gone.
 class StorePlace {
 public:
@@ -55,9 +43,11 @@ using MakePlace = std::function<std::unique_ptr<StorePlace>()>;
 class StoreConformance : public testing::TestWithParam<MakePlace> {
 protected:
     using Ids = std::vector<std::string>;
-    /// A worker that holds a job no longer than the call: dead as soon as it has it.
-    static constexpr std::chrono::milliseconds kDead{0};
-    static constexpr std::chrono::milliseconds kAlive{600'000};
+    using Milliseconds = std::chrono::milliseconds;
+    /// The lease of a worker that is dead as soon as it has its jobs, and of one that outlives the test. Workers of one
+    /// name share one life: who is to die needs a name of his own.
+    static constexpr Milliseconds kDead{0};
+    static constexpr Milliseconds kAlive{600'000};
 
     void SetUp() override {
         place_ = GetParam()();
@@ -71,11 +61,11 @@ protected:
         return store_->recover(9000, most_attempts, kGivenUp);
     }
 
-    static UnixMs now() {
-        using std::chrono::system_clock;
-        return std::chrono::duration_cast<std::chrono::milliseconds>(system_clock::now().time_since_epoch()).count();
-    }
+    static UnixMs now() { return wall_clock(); }
+    /// What a store's own clock calls now lies before it.
+    static UnixMs soon() { return now() + 1000; }
 
+    // ---- jobs
     static NewJob job(const std::string& id, const std::string& flow = "") {
         NewJob made;
         made.id = id;
@@ -87,16 +77,29 @@ protected:
         made.created_at = 1000;
         return made;
     }
+    static NewJob low_job(const std::string& id, const std::string& flow = "") {
+        NewJob made = job(id, flow);
+        made.priority = Priority::low;
+        return made;
+    }
+    /// Its end is to be told to somebody.
+    static NewJob noted_job(const std::string& id) {
+        NewJob made = job(id);
+        made.notify = {"https://example.org/" + id, "main"};
+        return made;
+    }
 
     Accepted accept(NewJob made) {
         return completed<Accepted>([&](auto done) { store_->accept(std::move(made), done); });
     }
-    std::vector<JobRecord> claim_many(std::size_t most, std::chrono::milliseconds lease = kAlive,
-                                      const std::string& worker = "worker") {
-        const Claim claim{worker, now(), lease, most};
+    std::vector<JobRecord> claim_by(const Claim& claim) {
         return completed<std::vector<JobRecord>>([&](auto done) { store_->claim(claim, done); });
     }
-    std::optional<JobRecord> claim(std::chrono::milliseconds lease = kAlive, const std::string& worker = "worker") {
+    std::vector<JobRecord> claim_many(std::size_t most, Milliseconds lease = kAlive,
+                                      const std::string& worker = "worker") {
+        return claim_by({worker, now(), lease, most});
+    }
+    std::optional<JobRecord> claim(Milliseconds lease = kAlive, const std::string& worker = "worker") {
         std::vector<JobRecord> claimed = claim_many(1, lease, worker);
         if (claimed.empty()) return std::nullopt;
         return std::move(claimed.front());
@@ -107,38 +110,85 @@ protected:
         for (auto claimed = claim(); claimed; claimed = claim()) ids.push_back(claimed->id);
         return ids;
     }
-    bool finish(const std::string& id, JobStatus status, const std::string& result, const std::string& error = "",
-                int attempts = 1) {
-        const JobEnd end{id, attempts, status, result, error, "1.2.3", 3000};
+    /// 0 where there is no such job.
+    std::int64_t seq_of(const std::string& id) {
+        const std::optional<JobRecord> found = store_->find(id);
+        return found ? found->seq : 0;
+    }
+    JobEnd end_of(const std::string& id, JobStatus status, const std::string& result, const std::string& error = "",
+                  int attempts = 1, UnixMs finished_at = 3000) {
+        return {seq_of(id), id, attempts, status, result, error, "1.2.3", finished_at};
+    }
+    bool finish(const JobEnd& end) {
         return completed<bool>([&](auto done) { store_->finish(end, done); });
     }
+    bool finish(const std::string& id, JobStatus status, const std::string& result, const std::string& error = "",
+                int attempts = 1, UnixMs finished_at = 3000) {
+        return finish(end_of(id, status, result, error, attempts, finished_at));
+    }
     bool release(const std::string& id, int attempts = 1) {
-        return completed<bool>([&](auto done) { store_->release(id, attempts, done); });
-    }
-    std::vector<Renewed> renew(std::vector<Renewal> renewals, std::chrono::milliseconds lease = kAlive) {
-        return completed<std::vector<Renewed>>(
-            [&](auto done) { store_->renew(std::move(renewals), now(), lease, done); });
-    }
-    Recovery reclaim(int most_attempts = 10) {
-        return completed<Recovery>([&](auto done) { store_->reclaim({now(), most_attempts, kGivenUp}, done); });
+        const std::int64_t seq = seq_of(id);
+        return completed<bool>([&](auto done) { store_->release(seq, attempts, done); });
     }
     CancelEffect cancel(const std::string& id) {
         return completed<CancelEffect>([&](auto done) { store_->cancel(id, 2500, done); });
     }
+    RequeueEffect requeue(const std::string& id) {
+        return completed<RequeueEffect>([&](auto done) { store_->requeue(id, done); });
+    }
     RemoveEffect remove(const std::string& id) {
         return completed<RemoveEffect>([&](auto done) { store_->remove(id, done); });
     }
+    std::size_t sweep(UnixMs at, const Retention& retention, std::size_t most = 10) {
+        return completed<std::size_t>([&](auto done) { store_->sweep(at, retention, most, done); });
+    }
+    /// Whatever state they ended in.
     std::size_t sweep(UnixMs ended_before, std::size_t most) {
-        return completed<std::size_t>(
-            [&](auto done) { store_->sweep(ended_before, std::chrono::milliseconds(0), most, done); });
+        constexpr Milliseconds none{0};
+        return sweep(ended_before, {none, none, none}, most);
+    }
+    void pause(bool paused) {
+        EXPECT_TRUE(completed<bool>([&](auto done) { store_->pause(paused, done); }));
     }
     /// Jobs in the queue, those of batches included.
     std::size_t waiting() { return store_->depth().single + store_->depth().entries; }
     JobStatus status(const std::string& id) { return store_->find(id).value().status; }
 
-    void open_batch(const std::string& id, const std::string& owner = "", const std::string& flow = "") {
-        const NewBatch batch{id, "name of " + id, owner, flow, now()};
+    // ---- signs of life
+    ProgressNote note(const std::string& id, const std::string& progress, int attempts = 1) {
+        return {seq_of(id), id, attempts, progress};
+    }
+    /// What the store takes for that worker's, in the order of acceptance.
+    std::vector<Holding> beat(const std::string& worker = "worker", Milliseconds lease = kAlive,
+                              std::vector<ProgressNote> progress = {}) {
+        const Heartbeat beat{worker, now(), lease, std::move(progress)};
+        auto found = completed<std::vector<Holding>>([&](auto done) { store_->beat(beat, done); });
+        std::sort(found.begin(), found.end(), [](const Holding& a, const Holding& b) { return a.seq < b.seq; });
+        return found;
+    }
+    /// The same as the numbers of the jobs alone.
+    std::vector<std::int64_t> holdings(const std::string& worker = "worker", Milliseconds lease = kAlive) {
+        std::vector<std::int64_t> seqs;
+        for (const Holding& holding : beat(worker, lease)) seqs.push_back(holding.seq);
+        return seqs;
+    }
+    /// That job as the worker learns of it; nothing where it is not the worker's.
+    std::optional<Holding> holding(const std::string& id, const std::string& worker = "worker") {
+        const std::int64_t seq = seq_of(id);
+        for (const Holding& holding : beat(worker))
+            if (holding.seq == seq) return holding;
+        return std::nullopt;
+    }
+    Recovery reclaim(int most_attempts = 10) {
+        return completed<Recovery>([&](auto done) { store_->reclaim({now(), most_attempts, kGivenUp}, done); });
+    }
+
+    // ---- batches
+    void open_batch(const NewBatch& batch) {
         EXPECT_TRUE(completed<bool>([&](auto done) { store_->open_batch(batch, done); }));
+    }
+    void open_batch(const std::string& id, const std::string& owner = "", const std::string& flow = "") {
+        open_batch({id, "name of " + id, owner, flow, now()});
     }
     /// The id of entry i of a batch is "<batch>-<i>".
     static NewEntry entry(const std::string& batch, std::int64_t index, const std::string& error = "") {
@@ -174,12 +224,32 @@ protected:
         return completed<RemoveEffect>([&](auto done) { store_->remove_batch(batch, done); });
     }
     /// A sealed batch of so many waiting entries.
+    void make_batch(const NewBatch& batch, std::int64_t count) {
+        open_batch(batch);
+        add_waiting(batch.id, 0, count);
+        EXPECT_EQ(seal(batch.id).kind, Sealed::Kind::sealed);
+    }
     void make_batch(const std::string& id, std::int64_t count, const std::string& flow = "") {
-        open_batch(id, "", flow);
-        add_waiting(id, 0, count);
-        EXPECT_EQ(seal(id).kind, Sealed::Kind::sealed);
+        make_batch({id, "name of " + id, "", flow, now()}, count);
     }
     BatchSummary batch(const std::string& id) { return store_->find_batch(id).value(); }
+
+    // ---- deliveries
+    std::vector<Delivery> take(UnixMs at, std::size_t most = 100, Milliseconds hold = kAlive) {
+        return completed<std::vector<Delivery>>([&](auto done) { store_->take_deliveries(at, hold, most, done); });
+    }
+    bool settle(std::int64_t seq, UnixMs at = 0, std::optional<Milliseconds> pause = std::nullopt) {
+        return completed<bool>([&](auto done) { store_->settle_delivery(seq, at, pause, done); });
+    }
+    /// Ids of the jobs and batches whose ends are to be told; they are, and nothing is left.
+    Ids tell() {
+        Ids ids;
+        for (const Delivery& delivery : take(soon())) {
+            ids.push_back(delivery.job + delivery.batch);
+            EXPECT_TRUE(settle(delivery.seq));
+        }
+        return ids;
+    }
 
     static constexpr const char* kGivenUp = R"({"type":"given-up"})";
     std::unique_ptr<StorePlace> place_;

@@ -1,5 +1,4 @@
-// Single jobs: accepted, claimed, ended, cancelled, removed, listed, swept.
-#include <limits>
+// Single jobs: accepted, claimed, ended, cancelled, removed, listed.
 #include <map>
 
 #include "tests/server/store/store_conformance.h"
@@ -8,7 +7,9 @@ namespace tunewright::server {
 namespace {
 
 TEST_P(StoreConformance, AnAcceptedJobIsReadBackAsItWasGiven) {
-    const Accepted accepted = accept(job("a"));
+    NewJob made = job("a");
+    made.origin = {"call 7", "00-0af7651916cd43dd8448eb211c80319c-b7ad6b7169203331-01"};
+    const Accepted accepted = accept(made);
     EXPECT_EQ(accepted.kind, Accepted::Kind::created);
     const JobRecord found = store_->find("a").value();
     EXPECT_EQ(found.seq, accepted.job.seq);
@@ -19,8 +20,14 @@ TEST_P(StoreConformance, AnAcceptedJobIsReadBackAsItWasGiven) {
     EXPECT_EQ(found.timeout_s, 12.5);
     EXPECT_EQ(found.created_at, 1000);
     EXPECT_EQ(found.attempts, 0);
+    EXPECT_EQ(found.request_id, made.origin.request_id);
+    EXPECT_EQ(found.traceparent, made.origin.traceparent);
     EXPECT_FALSE(found.started_at || found.finished_at);
     EXPECT_FALSE(store_->find("b"));
+    const JobRecord claimed = claim().value();
+    EXPECT_EQ(claimed.seq, found.seq);
+    EXPECT_EQ(claimed.request_id, made.origin.request_id) << "whoever computes it can name the call";
+    EXPECT_EQ(claimed.traceparent, made.origin.traceparent);
 }
 
 TEST_P(StoreConformance, TextsKeepQuotesZeroBytesAndOtherLanguages) {
@@ -91,11 +98,32 @@ TEST_P(StoreConformance, AFailedJobKeepsItsErrorAndACancelledOneItsPartialResult
     EXPECT_EQ(store_->find("b").value().result, R"({"partial":true})");
 }
 
+TEST_P(StoreConformance, ManyEndsAtOnceKeepTheirOwnTextsWhateverIsInThem) {
+    const std::vector<std::string> texts{"",     R"({"a":"\\ ' \" {} , NULL"})", "süß 温度 😀",
+                                         "last", std::string("\0\x01\xff", 3),   std::string(100'000, 'r') + "é"};
+    const std::size_t count = texts.size();
+    for (std::size_t i = 0; i < count; i++) accept(job("job" + std::to_string(i)));
+    claim_many(count);
+    std::vector<JobEnd> ends;
+    for (std::size_t i = 0; i < count; i++)
+        ends.push_back(end_of("job" + std::to_string(i), JobStatus::failed, texts[i], texts[count - 1 - i]));
+    std::vector<std::promise<bool>> ended(count);
+    for (std::size_t i = 0; i < count; i++)
+        store_->finish(ends[i], [&ended, i](const auto& outcome) { ended[i].set_value(std::get<bool>(outcome)); });
+    for (std::size_t i = 0; i < count; i++) {
+        EXPECT_TRUE(ended[i].get_future().get());
+        const JobRecord found = store_->find(ends[i].id).value();
+        EXPECT_EQ(found.result, texts[i]) << i;
+        EXPECT_EQ(found.error, texts[count - 1 - i]) << i;
+    }
+}
+
 TEST_P(StoreConformance, AnOutlineStandsInListsAndIsSearchedByItsMethod) {
     for (const char* id : {"a", "b", "c"}) accept(job(id));
     claim_many(2);
-    const JobEnd end{"a", 1, JobStatus::succeeded, "{}", "", "1.2.3", 3000, R"({"plant":"b%","method":"simc"})"};
-    EXPECT_TRUE(completed<bool>([&](auto done) { store_->finish(end, done); }));
+    JobEnd end = end_of("a", JobStatus::succeeded, "{}");
+    end.outline = R"({"plant":"b%","method":"simc"})";
+    EXPECT_TRUE(finish(end));
     const auto ids_with = [&](const std::string& text) {
         JobQuery query;
         query.text = text;
@@ -129,9 +157,11 @@ TEST_P(StoreConformance, OnlyEndedJobsAreRemovedAndNothingOfThemStays) {
     EXPECT_EQ(remove("a"), RemoveEffect::not_ended);
     claim();
     EXPECT_EQ(remove("a"), RemoveEffect::not_ended);
-    finish("a", JobStatus::succeeded, "{}");
+    const JobEnd end = end_of("a", JobStatus::succeeded, "{}");
+    EXPECT_TRUE(finish(end));
     EXPECT_EQ(remove("a"), RemoveEffect::removed);
     EXPECT_FALSE(store_->find("a"));
+    EXPECT_FALSE(finish(end));
     made.id = "b";
     EXPECT_EQ(accept(made).kind, Accepted::Kind::created) << "its idempotency key went with it";
 }
@@ -248,21 +278,6 @@ TEST_P(StoreConformance, DepthCountsWhatWaits) {
     claim();
     EXPECT_EQ(store_->depth().single, 0U);
     EXPECT_EQ(store_->depth().entries, 1U);
-}
-
-TEST_P(StoreConformance, SweepingTakesWhatEndedBeforeAndNothingElse) {
-    for (const char* id : {"old", "older", "running", "waiting"}) accept(job(id));
-    for (int i = 0; i < 3; i++) claim();
-    finish("old", JobStatus::succeeded, "{}");
-    finish("older", JobStatus::failed, "", "{}");
-    EXPECT_EQ(sweep(3000, 10), 0U) << "both ended at 3000";
-    EXPECT_EQ(sweep(3001, 1), 1U);
-    EXPECT_EQ(sweep(3001, 10), 1U);
-    EXPECT_EQ(sweep(std::numeric_limits<UnixMs>::max() / 2, 10), 0U);
-    EXPECT_FALSE(store_->find("old"));
-    EXPECT_FALSE(store_->find("older"));
-    EXPECT_EQ(status("running"), JobStatus::running);
-    EXPECT_EQ(status("waiting"), JobStatus::queued);
 }
 
 }  // namespace

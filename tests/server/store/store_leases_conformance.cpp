@@ -1,4 +1,6 @@
-// Jobs that a worker has: leases, attempts as fencing tokens, what becomes of a job whose worker is gone.
+// Jobs that a worker has: attempts as fencing tokens, what becomes of a job whose worker is gone or gives it back.
+#include <thread>
+
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {
@@ -47,7 +49,7 @@ TEST_P(StoreConformance, GivingAJobBackIsNoCrash) {
         ASSERT_TRUE(claim());
         EXPECT_TRUE(release("a", attempt));
     }
-    claim(kDead);
+    claim(kDead, "dead");
     EXPECT_EQ(reclaim(2).given_up, 0U) << "six claims, and one crash";
     EXPECT_EQ(status("a"), JobStatus::queued);
 }
@@ -62,13 +64,14 @@ TEST_P(StoreConformance, AJobThatHasCrashedTwiceWaitsAWhileAndIsClaimedByItself)
     const auto usual = claim_many(5);
     ASSERT_EQ(usual.size(), 1U);
     EXPECT_EQ(usual[0].id, "b");
-    const auto suspects = [&] {
-        const Claim claim{"worker", now(), kAlive, 5, true};
-        return completed<std::vector<JobRecord>>([&](auto done) { store_->claim(claim, done); });
-    };
+    const auto suspects = [&] { return claim_by({"worker", now(), kAlive, 5, true}); };
     EXPECT_TRUE(suspects().empty()) << "its pause is not over";
+    EXPECT_EQ(store_->depth().suspects, 0U);
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
     EXPECT_EQ(store_->depth().suspects, 1U);
+    pause(true);
+    EXPECT_TRUE(suspects().empty());
+    pause(false);
     const auto alone = suspects();
     ASSERT_EQ(alone.size(), 1U);
     EXPECT_EQ(alone[0].id, "a");
@@ -80,8 +83,12 @@ TEST_P(StoreConformance, AReleasedJobIsQueuedAgain) {
     accept(job("a"));
     EXPECT_FALSE(release("a"));
     claim();
+    EXPECT_TRUE(store_->find("a").value().started_at);
     EXPECT_TRUE(release("a"));
-    EXPECT_EQ(status("a"), JobStatus::queued);
+    const JobRecord found = store_->find("a").value();
+    EXPECT_EQ(found.status, JobStatus::queued);
+    EXPECT_EQ(found.attempts, 1);
+    EXPECT_FALSE(found.started_at) << "that was of an attempt which came to nothing";
     EXPECT_EQ(claim().value().attempts, 2);
 }
 
@@ -106,76 +113,42 @@ TEST_P(StoreConformance, AClaimGivesAsManyAsAskedForInTheirOrder) {
 
 TEST_P(StoreConformance, ALeaseThatIsOverIsReclaimedAndOneThatIsNotStays) {
     for (const char* id : {"dead", "alive", "waiting"}) accept(job(id));
-    claim(kDead);
-    claim(kAlive);
+    claim(kDead, "one");
+    claim(kAlive, "another");
     const Recovery recovery = reclaim();
     EXPECT_EQ(recovery.interrupted, 1U);
     EXPECT_EQ(recovery.given_up, 0U);
     EXPECT_EQ(waiting(), 2U);
     EXPECT_TRUE(recovery.ended.empty());
     EXPECT_EQ(status("dead"), JobStatus::queued);
+    EXPECT_FALSE(store_->find("dead").value().started_at);
     EXPECT_EQ(status("alive"), JobStatus::running);
     const JobRecord again = claim().value();
     EXPECT_EQ(again.id, "dead") << "at its old place";
     EXPECT_EQ(again.attempts, 2);
 }
 
-TEST_P(StoreConformance, ARenewedLeaseIsNotReclaimed) {
-    accept(job("a"));
-    claim(kDead);
-    const auto renewed = renew({{"a", 1, ""}}, kAlive);
-    ASSERT_EQ(renewed.size(), 1U);
-    EXPECT_EQ(renewed[0].id, "a");
-    EXPECT_TRUE(renewed[0].held);
-    EXPECT_FALSE(renewed[0].cancel_requested);
-    EXPECT_EQ(reclaim().interrupted, 0U);
-    EXPECT_EQ(status("a"), JobStatus::running);
+TEST_P(StoreConformance, AllJobsOfADeadWorkerWaitAgain) {
+    for (const char* id : {"a", "b", "c"}) accept(job(id));
+    claim_many(3, kDead);
+    EXPECT_EQ(reclaim().interrupted, 3U);
+    EXPECT_EQ(reclaim().interrupted, 0U) << "a crash is counted once";
+    EXPECT_THAT(claim_all(), testing::ElementsAre("a", "b", "c"));
 }
 
-TEST_P(StoreConformance, AWorkerThatWasThoughtDeadCannotEndReleaseOrRenewTheJob) {
+TEST_P(StoreConformance, AWorkerThatWasThoughtDeadCanNeitherEndTheJobNorReleaseIt) {
     accept(job("a"));
-    claim(kDead);
+    claim(kDead, "first");
     reclaim();
     EXPECT_FALSE(finish("a", JobStatus::succeeded, "{}", "", 1)) << "nobody has it now";
-    ASSERT_EQ(claim(kAlive, "another").value().attempts, 2);
+    EXPECT_FALSE(release("a", 1));
+    ASSERT_EQ(claim(kAlive, "second").value().attempts, 2);
     EXPECT_FALSE(finish("a", JobStatus::succeeded, R"({"from":"the first"})", "", 1));
     EXPECT_FALSE(release("a", 1));
-    EXPECT_FALSE(renew({{"a", 1, "{}"}})[0].held);
+    EXPECT_THAT(holdings("first"), testing::IsEmpty());
     EXPECT_EQ(status("a"), JobStatus::running);
-    EXPECT_EQ(store_->find("a").value().progress, "");
     EXPECT_TRUE(finish("a", JobStatus::succeeded, R"({"from":"the second"})", "", 2));
     EXPECT_EQ(store_->find("a").value().result, R"({"from":"the second"})");
-    EXPECT_FALSE(renew({{"a", 2, ""}})[0].held) << "it has ended";
-}
-
-TEST_P(StoreConformance, RenewalsAreAnsweredInTheirOrder) {
-    for (const char* id : {"a", "b", "c"}) accept(job(id));
-    claim_many(2);
-    cancel("b");
-    const auto renewed = renew({{"nobody", 1, ""}, {"b", 1, ""}, {"c", 1, ""}, {"a", 1, ""}});
-    ASSERT_EQ(renewed.size(), 4U);
-    EXPECT_FALSE(renewed[0].held);
-    EXPECT_EQ(renewed[1].id, "b");
-    EXPECT_TRUE(renewed[1].held);
-    EXPECT_TRUE(renewed[1].cancel_requested);
-    EXPECT_FALSE(renewed[2].held) << "it waits";
-    EXPECT_TRUE(renewed[3].held);
-    EXPECT_FALSE(renewed[3].cancel_requested);
-}
-
-TEST_P(StoreConformance, ProgressIsThatOfThePresentAttempt) {
-    accept(job("a"));
-    claim(kDead);
-    EXPECT_EQ(store_->find("a").value().progress, "");
-    renew({{"a", 1, R"({"stage":"one"})"}}, kDead);
-    EXPECT_EQ(store_->find("a").value().progress, R"({"stage":"one"})");
-    renew({{"a", 1, R"({"stage":"two"})"}}, kDead);
-    renew({{"a", 1, ""}}, kDead);
-    EXPECT_EQ(store_->states({"a"}).at(0).progress, R"({"stage":"two"})") << "an empty one leaves what is there";
-    reclaim();
-    claim();
-    EXPECT_EQ(store_->find("a").value().progress, "") << "that was of the attempt before";
-    EXPECT_EQ(store_->states({"a"}).at(0).progress, "");
 }
 
 TEST_P(StoreConformance, AJobReclaimedTooOftenFailsWithItsReason) {
@@ -218,11 +191,13 @@ TEST_P(StoreConformance, OfManyEndsOfOneJobOneCounts) {
     accept(job("a"));
     claim();
     std::vector<std::promise<bool>> ends(20);
-    for (std::size_t i = 0; i < ends.size(); i++)
-        store_->finish({"a", 1, JobStatus::succeeded, "{\"n\":" + std::to_string(i) + "}", "", "1", 3000},
-                       [&ends, i](const Outcome<bool>& outcome) { ends[i].set_value(std::get<bool>(outcome)); });
+    JobEnd end = end_of("a", JobStatus::succeeded, "");
+    for (std::size_t i = 0; i < ends.size(); i++) {
+        end.result = "{\"n\":" + std::to_string(i) + "}";
+        store_->finish(end, [&ends, i](const Outcome<bool>& outcome) { ends[i].set_value(std::get<bool>(outcome)); });
+    }
     int counted = 0;
-    for (auto& end : ends) counted += end.get_future().get() ? 1 : 0;
+    for (auto& counts : ends) counted += counts.get_future().get() ? 1 : 0;
     EXPECT_EQ(counted, 1);
     EXPECT_EQ(store_->find("a").value().result, R"({"n":0})");
 }

@@ -11,7 +11,7 @@
 
 #include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
-#include "server/store/store.h"
+#include "server/store/queue.h"
 
 namespace tunewright::server {
 
@@ -23,7 +23,7 @@ struct Ended {
     std::string method;  ///< as in api::JobOutcome; "" where it was not computed
 };
 
-class Ends {
+class ResultOutbox {
 public:
     struct Listener {
         /// On the store's thread, once: the store has it, or (`kept` false) it was not this process's any longer.
@@ -33,7 +33,7 @@ public:
         std::function<void(std::size_t bytes)> unsaved;
     };
 
-    Ends(JobStore& store, Outage& outage, Listener listener);
+    ResultOutbox(JobQueue& queue, Outage& outage, Listener listener);
 
     void finish(Ended ended);
     /// The job is queued again; where that cannot be written its lease runs out instead.
@@ -45,7 +45,7 @@ private:
     void offer(const std::shared_ptr<const Ended>& ended);
     void count(std::size_t more, std::size_t less);
 
-    JobStore& store_;
+    JobQueue& queue_;
     Outage& outage_;
     Listener listener_;
     std::mutex mutex_;

@@ -1,11 +1,11 @@
-#include "server/jobs/pulse.h"
+#include "server/jobs/periodic_thread.h"
 
 namespace tunewright::server {
 
-Pulse::Pulse(std::function<std::chrono::milliseconds()> beat)
+PeriodicThread::PeriodicThread(std::function<std::chrono::milliseconds()> beat)
     : beat_(std::move(beat)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
-void Pulse::wake() {
+void PeriodicThread::wake() {
     {
         const std::lock_guard lock(mutex_);
         woken_ = true;
@@ -13,12 +13,12 @@ void Pulse::wake() {
     changed_.notify_all();
 }
 
-void Pulse::stop() {
+void PeriodicThread::stop() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
 }
 
-void Pulse::work(const std::stop_token& stop) {
+void PeriodicThread::work(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         const std::chrono::milliseconds pause = beat_();
         std::unique_lock lock(mutex_);

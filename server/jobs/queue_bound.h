@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <mutex>
 
-#include "server/store/store.h"
+#include "server/store/queue.h"
 
 namespace tunewright::server {
 
-class Depth {
+class QueueBound {
 public:
-    Depth(std::size_t single_limit, std::size_t entry_limit) : single_limit_(single_limit), entry_limit_(entry_limit) {}
+    QueueBound(std::size_t single_limit, std::size_t entry_limit)
+        : single_limit_(single_limit), entry_limit_(entry_limit) {}
 
     /// Takes a place for a single job that is being accepted; false where there is none. Then one of the next two.
     bool reserve();
@@ -22,16 +23,16 @@ public:
     /// Counts so many entries as waiting where there is room for them; else changes nothing.
     bool reserve_entries(std::size_t count);
     /// Asks the store. Throws StoreError.
-    void refresh(JobStore& store);
+    void refresh(JobQueue& queue);
 
-    JobStore::Depth now() const;
+    QueueDepth now() const;
 
 private:
     std::size_t single_limit_;
     std::size_t entry_limit_;
     mutable std::mutex mutex_;
     std::size_t accepting_ = 0;
-    JobStore::Depth waiting_;
+    QueueDepth waiting_;
     std::uint64_t changes_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "server/jobs/running/ends.h"
+#include "server/jobs/running/result_outbox.h"
 
 #include "api/problem.h"
 #include "engine/error.h"
@@ -11,18 +11,18 @@ std::size_t size_of(const Ended& ended) { return ended.end.result.size() + ended
 
 }  // namespace
 
-Ends::Ends(JobStore& store, Outage& outage, Listener listener)
-    : store_(store), outage_(outage), listener_(std::move(listener)) {}
+ResultOutbox::ResultOutbox(JobQueue& queue, Outage& outage, Listener listener)
+    : queue_(queue), outage_(outage), listener_(std::move(listener)) {}
 
-void Ends::finish(Ended ended) {
+void ResultOutbox::finish(Ended ended) {
     ended.held->enter(HeldJob::Stage::ending);
     const auto kept = std::make_shared<const Ended>(std::move(ended));
     count(size_of(*kept), 0);
     offer(kept);
 }
 
-void Ends::offer(const std::shared_ptr<const Ended>& ended) {
-    store_.finish(ended->end, [this, ended](const Outcome<bool>& outcome) {
+void ResultOutbox::offer(const std::shared_ptr<const Ended>& ended) {
+    queue_.finish(ended->end, [this, ended](const Outcome<bool>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
             outage_.failed("a result is kept in memory", *fault);
             const std::lock_guard lock(mutex_);
@@ -35,15 +35,15 @@ void Ends::offer(const std::shared_ptr<const Ended>& ended) {
     });
 }
 
-void Ends::release(const std::shared_ptr<HeldJob>& held) {
-    store_.release(held->job.id, held->job.attempts, [this, held](const Outcome<bool>& outcome) {
+void ResultOutbox::release(const std::shared_ptr<HeldJob>& held) {
+    queue_.release(held->job.seq, held->job.attempts, [this, held](const Outcome<bool>& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome))
             outage_.failed("a job cannot be queued again", *fault);
         listener_.released(held);
     });
 }
 
-void Ends::retry() {
+void ResultOutbox::retry() {
     std::vector<std::shared_ptr<const Ended>> refused;
     {
         const std::lock_guard lock(mutex_);
@@ -52,7 +52,7 @@ void Ends::retry() {
     for (const auto& ended : refused) offer(ended);
 }
 
-void Ends::count(std::size_t more, std::size_t less) {
+void ResultOutbox::count(std::size_t more, std::size_t less) {
     std::size_t bytes = 0;
     {
         const std::lock_guard lock(mutex_);

@@ -9,13 +9,13 @@
 
 namespace tunewright::server {
 
-class Pulse {
+class PeriodicThread {
 public:
     /// `beat` returns how long to pause; it must not throw. The first beat comes at once.
-    explicit Pulse(std::function<std::chrono::milliseconds()> beat);
-    ~Pulse() { stop(); }
-    Pulse(const Pulse&) = delete;
-    Pulse& operator=(const Pulse&) = delete;
+    explicit PeriodicThread(std::function<std::chrono::milliseconds()> beat);
+    ~PeriodicThread() { stop(); }
+    PeriodicThread(const PeriodicThread&) = delete;
+    PeriodicThread& operator=(const PeriodicThread&) = delete;
 
     /// The next beat begins now, or again after the one that is going on.
     void wake();

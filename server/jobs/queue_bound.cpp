@@ -1,4 +1,4 @@
-#include "server/jobs/depth.h"
+#include "server/jobs/queue_bound.h"
 
 #include <algorithm>
 
@@ -11,33 +11,33 @@ void take(std::size_t& from, std::size_t count) { from -= std::min(from, count);
 
 }  // namespace
 
-bool Depth::reserve() {
+bool QueueBound::reserve() {
     const std::lock_guard lock(mutex_);
     if (waiting_.single + accepting_ >= single_limit_) return false;
     accepting_++;
     return true;
 }
 
-void Depth::accepted() {
+void QueueBound::accepted() {
     const std::lock_guard lock(mutex_);
     accepting_--;
     waiting_.single++;
     changes_++;
 }
 
-void Depth::refused() {
+void QueueBound::refused() {
     const std::lock_guard lock(mutex_);
     accepting_--;
 }
 
-void Depth::gone(std::size_t singles, std::size_t entries) {
+void QueueBound::gone(std::size_t singles, std::size_t entries) {
     const std::lock_guard lock(mutex_);
     take(waiting_.single, singles);
     take(waiting_.entries, entries);
     changes_++;
 }
 
-bool Depth::reserve_entries(std::size_t count) {
+bool QueueBound::reserve_entries(std::size_t count) {
     const std::lock_guard lock(mutex_);
     if (waiting_.entries + count > entry_limit_) return false;
     waiting_.entries += count;
@@ -45,14 +45,14 @@ bool Depth::reserve_entries(std::size_t count) {
     return true;
 }
 
-void Depth::refresh(JobStore& store) {
+void QueueBound::refresh(JobQueue& queue) {
     for (int i = 0; i < kTries; i++) {
         std::uint64_t before = 0;
         {
             const std::lock_guard lock(mutex_);
             before = changes_;
         }
-        const JobStore::Depth counted = store.depth();
+        const QueueDepth counted = queue.depth();
         const std::lock_guard lock(mutex_);
         // What came or went while the store counted may be counted twice or not at all; on the last try so be it.
         if (changes_ != before && i + 1 < kTries) continue;
@@ -61,9 +61,9 @@ void Depth::refresh(JobStore& store) {
     }
 }
 
-JobStore::Depth Depth::now() const {
+QueueDepth QueueBound::now() const {
     const std::lock_guard lock(mutex_);
-    JobStore::Depth now = waiting_;
+    QueueDepth now = waiting_;
     now.single += accepting_;
     if (waiting_.single == 0) now.next_single.reset();
     if (waiting_.entries == 0) now.next_entry.reset();

@@ -1,0 +1,101 @@
+#include "server/lobby.h"
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "server/http/problems.h"
+#include "server/http/router.h"
+#include "server/http/server.h"
+#include "server/json_text.h"
+#include "server/log.h"
+#include "server/store/open_store.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::chrono::milliseconds kMoment{700};       // most stores open sooner, and nobody need know
+constexpr std::chrono::seconds kBetweenTries{2};        // where somebody else takes the steps
+constexpr std::chrono::milliseconds kSignalsLook{100};  // between two looks whether the process is to end
+constexpr const char* kNotYet = "The tables of the store are being brought up to date. Try again in a while.";
+
+/// A port that says so.
+class Desk {
+public:
+    explicit Desk(const std::string& listen) : server_(http::Limits(), application()) {
+        const std::string alive =
+            std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
+        router_.quick("GET", "/healthz", [alive](const http::Call&) { return http::json_response(alive); });
+        const HostPort address = parse_listen(listen);
+        server_.listen(address.host, address.port);
+        serving_ = std::jthread([this] { server_.run(); });
+    }
+    ~Desk() {
+        server_.stop();
+        serving_.join();
+        server_.idle_within(std::chrono::seconds(2));
+    }
+
+private:
+    http::Application application() {
+        http::Application made;
+        made.handle = [this](http::Request request) {
+            if (request.path() == "/healthz") return router_.handle(std::move(request));
+            http::Response response = http::problem_response(503, kNotYet);
+            http::add_common_headers(response);
+            return response;
+        };
+        made.refuse = [](int status, const std::string& detail, const std::string&) {
+            return http::problem_response(status, detail);
+        };
+        return made;
+    }
+
+    http::Router router_;
+    http::Server server_;
+    std::jthread serving_;
+};
+
+/// One that others are to bring up to date is waited for.
+std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_token& stop) {
+    const SchemaSteps steps = config.migrate == "manual" ? SchemaSteps::leave : SchemaSteps::take;
+    for (bool told = false; !stop.stop_requested();) {
+        try {
+            return open_store(config.store, steps);
+        } catch (const SchemaBehind& behind) {
+            if (!std::exchange(told, true)) log_info(std::string("waiting: ") + behind.what());
+        }
+        for (auto waited = kSignalsLook; waited < kBetweenTries && !stop.stop_requested(); waited += kSignalsLook)
+            std::this_thread::sleep_for(kSignalsLook);
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<JobStore> open_in_lobby(const Config& config, const sigset_t& signals) {
+    std::promise<std::unique_ptr<JobStore>> opened;
+    std::future<std::unique_ptr<JobStore>> store = opened.get_future();
+    std::jthread opening([&](const std::stop_token& stop) {
+        try {
+            opened.set_value(open_patiently(config, stop));
+        } catch (...) {
+            opened.set_exception(std::current_exception());
+        }
+    });
+    if (store.wait_for(kMoment) == std::future_status::ready) return store.get();
+    const Desk desk(config.listen);
+    const auto probes = config.metrics_listen.empty() ? nullptr : std::make_unique<Desk>(config.metrics_listen);
+    const timespec look{0, std::chrono::nanoseconds(kSignalsLook).count()};
+    while (store.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        if (sigtimedwait(&signals, nullptr, &look) > 0) {
+            log_info("asked to stop before the store was there");
+            opening.request_stop();
+            // A step that is under way is undone by the end of the process.
+            if (store.wait_for(std::chrono::seconds(1)) != std::future_status::ready) ::_exit(0);
+            return nullptr;
+        }
+    return store.get();
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,107 @@
+// Batches: many jobs posted at once, received piece by piece, looked at, cancelled and deleted as one.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/clock.h"
+#include "server/store/archive.h"
+#include "server/store/fault.h"
+#include "server/store/queue.h"
+
+namespace tunewright::server {
+
+struct NewBatch {
+    std::string id;
+    std::string name;
+    std::string owner;
+    std::string flow;
+    UnixMs created_at = 0;
+    NotifyTarget notify = {};
+    JobOrigin origin = {};
+};
+
+struct NewEntry {
+    std::int64_t index = 0;  ///< from 0 without gaps, ascending over the calls
+    std::string id;
+    std::string name;
+    double timeout_s = 60;
+    std::string request;  ///< "" where it could not be read
+    std::string request_hash;
+    std::string error;         ///< problem of an entry that is failed from the start; "" for one that waits
+    std::string outline = {};  ///< of one that is failed from the start
+};
+
+struct BatchSummary {
+    std::int64_t seq = 0;
+    std::string id;
+    std::string name;
+    std::string owner;
+    UnixMs created_at = 0;
+    bool sealed = false;  ///< all its entries have come
+    bool cancel_requested = false;
+    std::size_t total = 0;
+    std::size_t queued = 0, running = 0, succeeded = 0, failed = 0, cancelled = 0;
+    std::optional<UnixMs> finished_at;  ///< of its last job, once all have ended and it is sealed
+
+    bool ended() const { return sealed && queued == 0 && running == 0; }
+};
+
+struct BatchPage {
+    std::vector<BatchSummary> batches;  ///< newest first
+    bool more = false;
+};
+
+struct BatchRow {
+    std::int64_t index = 0;
+    std::string id;
+    std::string name;
+    JobStatus status = JobStatus::queued;
+    std::string result;
+    std::string error;
+};
+
+/// The end of a batch's way in.
+struct BatchSeal {
+    std::string batch;
+    std::string request_hash;
+    std::string idempotency_key;  ///< "" if none; each owner has keys of his own
+    std::string name;             ///< where it was known only after the batch was opened; "" leaves the name
+};
+
+struct Sealed {
+    enum class Kind { none, sealed, existing, conflict };  ///< existing, conflict: the batch itself has been dropped
+    Kind kind = Kind::none;
+    std::string id;  ///< of sealed and existing
+};
+
+class BatchStore {
+public:
+    virtual ~BatchStore() = default;
+
+    /// Entries may run as soon as they are added. Until it is sealed a batch must hear from its receiver (add_entries,
+    /// also with none) every `kReceiving`; then it is dropped by reclaim(), as drop_batch() does.
+    static constexpr std::chrono::milliseconds kReceiving{60'000};
+    virtual void open_batch(NewBatch batch, Done<bool> done) = 0;
+    /// False where the batch is not there, sealed or cancelled.
+    virtual void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) = 0;
+    /// With a known key ("" if none): the earlier batch, or a conflict where its hash was another; this one is dropped.
+    virtual void seal_batch(BatchSeal seal, Done<Sealed> done) = 0;
+    /// The batch and its jobs are gone, whatever their state; a worker that has one learns it from beat().
+    virtual void drop_batch(std::string batch, Done<bool> done) = 0;
+    virtual std::optional<BatchSummary> find_batch(const std::string& id) = 0;
+    virtual std::optional<std::string> batch_of_key(const std::string& owner, const std::string& idempotency_key) = 0;
+    virtual BatchPage list_batches(const std::optional<std::string>& owner, int limit,
+                                   std::optional<std::int64_t> before_seq) = 0;
+    /// At most `limit` rows with index >= from, in order.
+    virtual std::vector<BatchRow> batch_rows(const std::string& id, std::int64_t from, std::size_t limit) = 0;
+    /// Waiting jobs are cancelled, running ones asked to stop: their ids. Nothing where there is no such batch.
+    virtual void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) = 0;
+    /// Only a batch whose jobs have all ended.
+    virtual void remove_batch(std::string id, Done<RemoveEffect> done) = 0;
+};
+
+}  // namespace tunewright::server

@@ -1,0 +1,126 @@
+// Single jobs: accepted, ended, cancelled, queued again, removed.
+#include "server/store/sqlite/changes.h"
+#include "server/store/sqlite/moves.h"
+#include "server/store/sqlite/reading.h"
+
+namespace tunewright::server {
+namespace {
+
+std::optional<Accepted> find_by_key(Connection& store, const NewJob& job) {
+    static const std::string sql =
+        "SELECT " + kSummaryColumns + kJobTables + " WHERE j.owner = ?1 AND j.idempotency_key = ?2";
+    Connection::Use row = store.use(sql);
+    if (!row.with(job.owner, job.idempotency_key).next()) return std::nullopt;
+    Accepted accepted;
+    accepted.job = read_summary(row);
+    accepted.kind = accepted.job.request_hash == job.request_hash ? Accepted::Kind::existing : Accepted::Kind::conflict;
+    return accepted;
+}
+
+/// A job that is not of a batch being deleted.
+struct FoundJob : Place {
+    JobStatus status = JobStatus::queued;
+    bool batch_cancelled = false;
+};
+
+std::optional<FoundJob> find_job(Connection& store, const std::string& id) {
+    static const std::string sql = "SELECT j.seq, j.class, j.turn, j.flow, j.batch, " + kAttempts +
+                                   ", coalesce(w.crashes, 0), " + kStatus + ", coalesce(b.cancel_requested, 0)" +
+                                   kJobTables + " WHERE j.id = ?1 AND " + kVisible;
+    Connection::Use row = store.use(sql);
+    if (!row.with(id).next()) return std::nullopt;
+    FoundJob found;
+    static_cast<Place&>(found) = read_place(row);
+    found.status = job_status(row.text(7)).value();
+    found.batch_cancelled = row.integer(8) != 0;
+    return found;
+}
+
+void move_in_batch(Connection& store, const Place& job, JobStatus from, JobStatus to, UnixMs ended_at = 0) {
+    BatchCounts counts;
+    counts.move(job.batch, from, to, ended_at);
+    counts.write(store);
+}
+
+}  // namespace
+
+Accepted accept_job(Connection& store, const NewJob& job) {
+    if (!job.idempotency_key.empty())
+        if (std::optional<Accepted> earlier = find_by_key(store, job)) return *std::move(earlier);
+    const int priority = static_cast<int>(job.priority);
+    Place place{0, priority, next_turn(store, priority, job.flow), job.flow, {}, 0, 0};
+    const std::string target = job.notify.text();
+    store
+        .use(
+            "INSERT INTO jobs (id, name, owner, flow, class, turn, created_at, timeout_s, request_hash, "
+            "idempotency_key, notify, request_id, traceparent, request) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, "
+            "nullif(?10, ''), nullif(?11, ''), ?12, ?13, ?14)")
+        .with(job.id, job.name, job.owner, job.flow, priority, place.turn, job.created_at, job.timeout_s,
+              job.request_hash, job.idempotency_key, target, job.origin.request_id, job.origin.traceparent, job.request)
+        .run();
+    place.seq = store.database().getLastInsertRowid();
+    put_waiting(store, place);
+    Accepted accepted;
+    accepted.job.seq = place.seq;
+    accepted.job.id = job.id;
+    accepted.job.name = job.name;
+    accepted.job.created_at = job.created_at;
+    accepted.job.timeout_s = job.timeout_s;
+    accepted.job.request_hash = job.request_hash;
+    accepted.job.owner = job.owner;
+    return accepted;
+}
+
+bool finish_job(Connection& store, const JobEnd& end) {
+    const std::optional<Run> run = take_running(store, end.seq, end.attempts);
+    if (!run) return false;
+    put_ended(store, *run, run->started_at,
+              {end.status, end.finished_at, run->cancel_requested, end.version, end.outline, end.error, end.result});
+    move_in_batch(store, *run, JobStatus::running, end.status, end.finished_at);
+    return true;
+}
+
+CancelEffect cancel_job(Connection& store, const std::string& id, UnixMs now) {
+    const std::optional<FoundJob> found = find_job(store, id);
+    if (!found) return CancelEffect::none;
+    if (has_ended(found->status)) return CancelEffect::ended;
+    if (found->status == JobStatus::running) {
+        store.use("UPDATE running SET cancel_requested = 1 WHERE seq = ?1").with(found->seq).run();
+        return CancelEffect::requested;
+    }
+    take_waiting(store, *found);
+    put_ended(store, *found, std::nullopt, Ending::cancelled(now));
+    move_in_batch(store, *found, JobStatus::queued, JobStatus::cancelled, now);
+    return CancelEffect::cancelled;
+}
+
+RequeueEffect requeue_job(Connection& store, const std::string& id) {
+    std::optional<FoundJob> found = find_job(store, id);
+    if (!found) return RequeueEffect::none;
+    if (found->status != JobStatus::failed && found->status != JobStatus::cancelled) return RequeueEffect::not_failed;
+    {
+        // What could never be read cannot be computed either.
+        Connection::Use row = store.use("SELECT request IS NULL OR request = '' FROM jobs WHERE seq = ?1");
+        if (row.with(found->seq).next() && row.integer(0) != 0) return RequeueEffect::not_failed;
+    }
+    if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
+    found->turn = next_turn(store, found->priority, found->flow);
+    store.use("UPDATE jobs SET turn = ?2 WHERE seq = ?1").with(found->seq, found->turn).run();
+    store.use("DELETE FROM ended WHERE seq = ?1").with(found->seq).run();
+    put_waiting(store, *found);
+    move_in_batch(store, *found, found->status, JobStatus::queued);
+    if (found->batch) store.use("UPDATE batches SET ended_at = NULL WHERE seq = ?1").with(*found->batch).run();
+    return RequeueEffect::requeued;
+}
+
+RemoveEffect remove_job(Connection& store, const std::string& id) {
+    const std::optional<FoundJob> found = find_job(store, id);
+    if (!found) return RemoveEffect::none;
+    if (found->batch) return RemoveEffect::in_batch;
+    if (!has_ended(found->status)) return RemoveEffect::not_ended;
+    store.use("DELETE FROM ended WHERE seq = ?1").with(found->seq).run();
+    store.use("DELETE FROM jobs WHERE seq = ?1").with(found->seq).run();
+    return RemoveEffect::removed;
+}
+
+}  // namespace tunewright::server

@@ -103,8 +103,8 @@ public:
                     if (claimed.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
                     for (const JobRecord& job : claimed) {
                         ends.enter();
-                        JobEnd end{job.id, job.attempts, JobStatus::succeeded, std::string(10'000, 'r'), "",
-                                   "1",    now()};
+                        JobEnd end{job.seq, job.id, job.attempts, JobStatus::succeeded, std::string(10'000, 'r'),
+                                   "",      "1",    now()};
                         store_.finish(std::move(end), [&](Outcome<bool> outcome) {
                             value(std::move(outcome));
                             left--;

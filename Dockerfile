@@ -26,6 +26,7 @@ RUN npm run build
 FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
         libcpp-httplib0.11 libnlopt0 libsqlite3-0 libpqxx-6.4 libspdlog1.10 libfmt9 libprometheus-cpp-core1.0 \
+        ca-certificates \
     && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
     && useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin tunewright \
     && install -d -o tunewright -g tunewright /var/lib/tunewright

@@ -107,8 +107,14 @@ std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
     const bool typed = has_typed_plant(value);
     if (typed) value["plant"] = plant_json(*request.plant);
-    PreparedJob job{request.name.value_or(""), given ? request.timeout_s : limits.default_timeout_s,
-                    typed ? value.dump() : text(), sha256_hex(canonical(value))};
+    PreparedJob job{request.name.value_or(""),
+                    given ? request.timeout_s : limits.default_timeout_s,
+                    typed ? value.dump() : text(),
+                    {},
+                    request.notify,
+                    request.low_priority};
+    leave_out_terms(value);
+    job.request_hash = sha256_hex(canonical(value));
     job.request = std::make_shared<const JobRequest>(std::move(request));
     return job;
 }
@@ -193,6 +199,7 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
     auto& value = std::get<Json>(parsed);
+    if (auto problem = refuse_terms_of_entry(value)) return *std::move(problem);
     ask_for_no_traces(value);
     auto job = prepared(value, limits, [&] { return value.dump(); });
     // Entries wait for the store in groups, as text alone.

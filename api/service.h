@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/contract/terms.h"
 #include "api/problem.h"
 #include "engine/progress.h"
 
@@ -18,8 +19,10 @@ struct JobRequest;
 struct PreparedJob {
     std::string name;  ///< "" if none
     double timeout_s = 60;
-    std::string request_json;  ///< the request as sent, compact: what the store keeps and run_job takes
-    std::string request_hash;  ///< of the canonical request, hexadecimal
+    std::string request_json;           ///< the request as sent, compact: what the store keeps and run_job takes
+    std::string request_hash;           ///< of the canonical request without the terms it is run on, hexadecimal
+    std::optional<Notify> notify = {};  ///< whom to tell of its end
+    bool low_priority = false;
     std::shared_ptr<const JobRequest> request = {};  ///< decoded, for a run in this process; null for a batch's entry
 };
 
@@ -54,7 +57,7 @@ struct JobLimits {
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits = {});
 
 /// The same for an entry of a batch, which answers no traces unless it asks for them: evaluate.points is 0 by default,
-/// and stands in the request that is kept.
+/// and stands in the request that is kept. 422 where it has terms that only the batch as a whole can have.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
 
 /// Runs a prepared request to its end. Never throws for anything in the request.

@@ -34,6 +34,10 @@ struct Config {
     double job_timeout_s = 60;
     double max_timeout_s = 3600;
 
+    // Telling others of an end
+    std::vector<std::string> notify_targets;  ///< where to: ORIGIN[/PATH]; none: nobody may be told
+    std::string notify_secrets;               ///< the file of secrets that sign it
+
     // The port
     std::size_t max_body = 8 << 20;          ///< bytes of one request
     std::size_t max_batch_body = 256 << 20;  ///< bytes of one batch

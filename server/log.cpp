@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -22,6 +23,15 @@ spdlog::level::level_enum level_of(const http::Answered& answered) {
     const bool probe = answered.route == "/healthz" || answered.route == "/readyz" || answered.route == "/metrics";
     if (answered.status >= 500) return spdlog::level::warn;
     return probe ? spdlog::level::debug : spdlog::level::info;
+}
+
+/// What was asked for, in quotes. Whom a batch tells may have a secret in his address.
+std::string shown_target(std::string_view target) {
+    constexpr std::string_view secret = "notify_url=";
+    const std::size_t at = target.find(secret);
+    if (at == std::string_view::npos) return json_string(target);
+    const std::size_t from = at + secret.size(), to = std::min(target.find('&', from), target.size());
+    return json_string(std::string(target.substr(0, from)).append("...").append(target.substr(to)));
 }
 
 void log_message(spdlog::level::level_enum level, std::string_view message) {
@@ -66,7 +76,7 @@ void log_answer(const http::Answered& answered) {
     const auto level = level_of(answered);
     if (!spdlog::should_log(level)) return;
     const double ms = static_cast<double>(answered.duration.count()) * 1e-3;
-    const std::string target = json_string(answered.target);
+    const std::string target = shown_target(answered.target);
     if (as_json)
         spdlog::log(
             level,

@@ -10,6 +10,7 @@
 #include "server/access/keys.h"
 #include "server/commands.h"
 #include "server/config.h"
+#include "server/notify/secrets.h"
 #include "server/serve.h"
 #include "server/store/open_store.h"
 
@@ -103,6 +104,15 @@ void add_job_options(CLI::App& app, Config& config) {
              "Longest timeout_s that a request may ask for");
 }
 
+void add_notify_options(CLI::App& app, Config& config) {
+    option(app, "notify-target", config.notify_targets,
+           "Where a job's or batch's notify may lead: https://HOST[:PORT][/PATH]; may be repeated (default: nowhere)")
+        ->type_name("ORIGIN")
+        ->delimiter(',');
+    option(app, "notify-secrets", config.notify_secrets,
+           "File of the secrets that sign it, made by `tunewright secret`");
+}
+
 void add_port_options(CLI::App& app, Config& config) {
     size(app, "max-body", config.max_body, "8MiB", "Largest body of one request; larger ones are answered 413");
     size(app, "max-batch-body", config.max_batch_body, "256MiB", "Largest body of one batch");
@@ -123,6 +133,7 @@ void add_port_options(CLI::App& app, Config& config) {
 void add_serve_options(CLI::App& app, Config& config) {
     add_process_options(app, config);
     add_job_options(app, config);
+    add_notify_options(app, config);
     add_port_options(app, config);
 }
 
@@ -228,6 +239,12 @@ int main(int argc, char** argv) {
     migrate_app->add_option("--grant", migrating.grant, "A role of PostgreSQL that may then run the service");
     migrate_app->add_flag("--compact", migrating.compact, "Write a SQLite file anew, without what deleted jobs left");
 
+    SecretCommand sharing;
+    CLI::App* secret_app = app.add_subcommand(
+        "secret", "Make a secret that signs what others are told of ends: printed on stdout, kept in a file");
+    secret_app->add_option("name", sharing.name, "Its name, which a request gives as notify.secret_id")->required();
+    secret_app->add_option("--file", sharing.file, "The file it is added to (default: the line goes to stderr)");
+
     std::string asked;
     CLI::App* health_app = app.add_subcommand("health", "Ask a running service whether it is well: exit code 0 if so");
     health_app->add_option("url", asked, "Default: /healthz of this machine's service, by TUNEWRIGHT_LISTEN");
@@ -239,6 +256,7 @@ int main(int argc, char** argv) {
         if (health_app->parsed()) return check_health(asked.empty() ? health_url(listening) : asked);
         if (key_app->parsed()) return make_key(naming);
         if (migrate_app->parsed()) return migrate_store(migrating, std::cout), 0;
+        if (secret_app->parsed()) return make_secret(sharing);
         if (identify_app->parsed()) return identify(identifying);
         if (plant_app->parsed()) return plant(typing);
         if (code_app->parsed()) return code(coding);

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <tuple>
 
+#include "server/notify/notifier.h"
 #include "server/process_figures.h"
 
 namespace tunewright::server {
@@ -70,6 +71,12 @@ struct Metrics::Families {
     Counter& given_up = family(BuildCounter(), registry, "tunewright_jobs_given_up_total",
                                "Jobs that were interrupted too often and have failed")
                             .Add({});
+    prometheus::Family<Counter>& told_family =
+        family(BuildCounter(), registry, "tunewright_notify_deliveries_total",
+               "Tries to tell somebody of an end, by outcome: delivered, failed (it is tried again), given_up");
+    Counter& delivered = told_family.Add({{"outcome", "delivered"}});
+    Counter& not_told = told_family.Add({{"outcome", "failed"}});
+    Counter& never_told = told_family.Add({{"outcome", "given_up"}});
     prometheus::Family<Histogram>& wait_family =
         family(BuildHistogram(), registry, "tunewright_job_wait_seconds",
                "Time from a job's acceptance to the begin of its computation, by class: single, or entry of a batch");
@@ -168,6 +175,11 @@ void Metrics::count_dropped() { families_->dropped.Increment(); }
 
 void Metrics::count_begun(bool entry_of_batch, double waited_s) {
     (entry_of_batch ? families_->entry_wait : families_->single_wait).Observe(waited_s);
+}
+
+void Metrics::count(Told outcome) {
+    Families& all = *families_;
+    (outcome == Told::delivered ? all.delivered : outcome == Told::failed ? all.not_told : all.never_told).Increment();
 }
 
 void Metrics::count(const Recovery& found) {

@@ -11,6 +11,8 @@
 
 namespace tunewright::server {
 
+enum class Told;
+
 /// How things stand when somebody looks. Nothing in it waits for the store: what the queue holds is as last counted.
 struct Standing {
     QueueDepth queue;
@@ -38,6 +40,8 @@ public:
     /// A worker begins with a job that was accepted so long ago.
     void count_begun(bool entry_of_batch, double waited_s);
     void count(const Recovery& found);
+    /// A try to tell somebody of an end.
+    void count(Told outcome);
     /// An operation of the store; its name must be one of a few.
     void count_store(std::string_view operation, double seconds, bool done);
 

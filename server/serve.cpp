@@ -23,6 +23,8 @@
 #include "server/lobby.h"
 #include "server/log.h"
 #include "server/metrics.h"
+#include "server/notify/notifier.h"
+#include "server/routes/job_json.h"
 #include "server/routes/routes.h"
 #include "server/store/open_store.h"
 
@@ -89,6 +91,8 @@ public:
           places_(places_of(limits(config))),
           batch_lane_(kBatchThreads, kBatchNiceness),
           batches_(*store_, jobs_, batch_lane_, [this] { return now(); }),
+          policy_(config.notify_targets, config.notify_secrets),
+          notifier_(*store_, policy_, notifier_settings()),
           page_(config.web.empty() ? default_web_folder() : config.web),
           gate_(gate_settings(config)),
           server_(limits(config), application(router_)) {
@@ -113,6 +117,7 @@ public:
             log_info(std::to_string(jobs_.queued()) + " jobs of an earlier run are waiting, " +
                      std::to_string(recovery.interrupted) + " of them were interrupted; " +
                      std::to_string(recovery.given_up) + " were given up");
+        notifier_.start();
         serving_ = std::jthread([this] { server_.run(); });
         if (metrics_server_) serving_metrics_ = std::jthread([this] { metrics_server_->run(); });
     }
@@ -120,6 +125,7 @@ public:
     /// False where a computation did not stop: the process must end without waiting for it.
     bool stop() {
         closing_.request_stop();
+        notifier_.close();
         const bool idle = jobs_.drain(std::chrono::duration<double>(config_.drain_timeout_s));
         server_.stop();
         serving_.join();
@@ -127,12 +133,13 @@ public:
             metrics_server_->stop();
             serving_metrics_.join();
         }
+        const bool told = notifier_.stop(kStopPatience);
         if (!server_.idle_within(kStopPatience) || (metrics_server_ && !metrics_server_->idle_within(kStopPatience)))
             return false;
         batch_lane_.stop();
         timer_.stop();
-        if (idle) store_.reset();
-        return idle;
+        if (idle && told) store_.reset();
+        return idle && told;
     }
 
 private:
@@ -153,12 +160,25 @@ private:
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
             log_job(ended);
+            // A hint: who looks for it where nobody asked is the worse for one look.
+            const JobRecord& job = ended.held->job;
+            if (job.batch.empty() && job.request.find("\"notify\"") != std::string::npos) notifier_.wake();
         };
         made.observer.dropped = [this] { metrics_.count_dropped(); };
         made.observer.begun = [this](const JobRecord& job) {
             metrics_.count_begun(!job.batch.empty(), std::max(0.0, static_cast<double>(now() - job.created_at) * 1e-3));
         };
         made.observer.recovered = [this](const Recovery& found) { metrics_.count(found); };
+        return made;
+    }
+
+    NotifierSettings notifier_settings() {
+        NotifierSettings made;
+        made.now = [this] { return now(); };
+        made.job_text = job_told_json;
+        made.batch_text = batch_json;
+        made.count = [this](Told outcome) { metrics_.count(outcome); };
+        made.version = TUNEWRIGHT_VERSION;
         return made;
     }
 
@@ -212,13 +232,13 @@ private:
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, places_, {config_.job_timeout_s, config_.max_timeout_s});
+        add_job_routes(router_, jobs_, places_, policy_, {config_.job_timeout_s, config_.max_timeout_s});
         add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_);
         add_code_routes(router_, jobs_);
         add_report_routes(router_, jobs_);
         add_queue_routes(router_, jobs_);
-        add_batch_routes(router_, batches_, jobs_, places_, batch_lane_,
+        add_batch_routes(router_, batches_, jobs_, places_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, turns_, timer_, closing_.get_token());
         add_description_routes(router_);
@@ -264,6 +284,8 @@ private:
     Places places_;
     Executor batch_lane_;
     Batches batches_;
+    NotifyPolicy policy_;
+    Notifier notifier_;
     http::Router router_;
     http::StaticFiles page_;
     Gate gate_;
@@ -307,6 +329,7 @@ int serve(const Config& config) {
     } catch (const std::invalid_argument& error) {
         return failed(kBadConfiguration, error.what());
     }
+    std::signal(SIGPIPE, SIG_IGN);  // a receiver or a client that goes is an error of one write
     raise_file_limit();
     keep_small_memory();
 

@@ -109,13 +109,20 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
         case At::member_name: return c == '"' && !escaped_ ? end_member_name() : collect(c);
         case At::colon:
             if (c != ':') return unexpected(c, "a colon");
-            at_ = text_ == "jobs" ? At::array : At::name_value;
+            at_ = text_ == "jobs" ? At::array : text_ == "name" ? At::name_value : At::notify_value;
             return std::nullopt;
         case At::name_value:
             if (c == 'n') return not_valid("/name", "name is not a string; leave it out where the batch has none.");
             if (c != '"') return not_valid("/name", "name is not a string; it must be one of at most 200 characters.");
             return text_.clear(), at_ = At::name_text, std::nullopt;
         case At::name_text: return c == '"' && !escaped_ ? end_name() : collect(c);
+        case At::notify_value:
+            if (c != '{')
+                return not_valid(
+                    "/notify",
+                    "notify is no object; it must be one such as {\"url\": \"https://hooks.example.com/x\"}.");
+            in_notify_ = true;
+            return open_element(c);
         case At::array:
             if (c != '[')
                 return not_valid("/jobs", "jobs is no array; it must hold the requests. " + std::string(kCure));
@@ -160,12 +167,12 @@ std::optional<Problem> JobsArray::collect(char c) {
 std::optional<Problem> JobsArray::end_member_name() {
     const auto name = spelled(text_);
     if (!name) return not_json("The body is not JSON: the member's name at " + place() + " cannot be read.");
-    if (*name != "jobs" && *name != "name") {
+    if (*name != "jobs" && *name != "name" && *name != "notify") {
         return not_valid("", (name->size() > 40 ? "A long name" : *name) +
-                                 " is not a member of a batch; known are jobs and name. " + std::string(kCure) +
+                                 " is not a member of a batch; known are jobs, name and notify. " + std::string(kCure) +
                                  " Requests one a line are sent with Content-Type: application/x-ndjson.");
     }
-    bool& found = *name == "jobs" ? found_jobs_ : found_name_;
+    bool& found = *name == "jobs" ? found_jobs_ : *name == "name" ? found_name_ : found_notify_;
     if (found) return not_valid("/" + *name, *name + " is given twice; only one value can hold. Remove one.");
     found = true;
     text_ = *name;
@@ -216,6 +223,14 @@ std::optional<Problem> JobsArray::bracket(char c, std::vector<RawEntry>& entries
 }
 
 void JobsArray::end_element(std::vector<RawEntry>& entries) {
+    if (in_notify_) {
+        notify_ = entry_bytes_ > longest_ ? "{}" : std::move(entry_.text);
+        entry_ = {};
+        entry_bytes_ = 0;
+        in_notify_ = false;
+        at_ = At::after_member;
+        return;
+    }
     if (entry_bytes_ > longest_) entry_.fault = too_long(entry_bytes_, longest_);
     if (entry_.fault) entry_.text.clear();
     entries.push_back(std::move(entry_));

@@ -1,5 +1,6 @@
-// Finds the requests in {"jobs": [...]} while the text arrives, without a document of it in memory: only brackets,
-// quotes and commas are looked at. What stands between them is each request's own matter.
+// Finds the requests in {"jobs": [...]}, and what else is said of the batch, while the text arrives, without a document
+// of it in memory: only brackets, quotes and commas are looked at. What stands between them is each request's own
+// matter.
 #pragma once
 
 #include <string>
@@ -23,6 +24,8 @@ public:
 
     bool found_jobs() const { return found_jobs_; }
     const std::string& name() const { return name_; }  ///< of the batch; "" if none was read yet
+    /// The text of its member `notify`; "" if none was read yet.
+    const std::string& notify() const { return notify_; }
 
 private:
     enum class At {
@@ -33,6 +36,7 @@ private:
         colon,          ///< :
         name_value,     ///< the quote of the batch's name
         name_text,      ///< inside its quotes
+        notify_value,   ///< the bracket of whom to tell, from where on it is read as a request is
         array,          ///< [
         first_element,  ///< a request or ]
         element,        ///< a request
@@ -59,10 +63,11 @@ private:
     std::size_t longest_;
     At at_ = At::start;
     bool escaped_ = false;
-    bool found_jobs_ = false, found_name_ = false;
-    std::string brackets_;  ///< the closing ones that are awaited, outermost first
-    std::string text_;      ///< of a member's name or of the batch's
-    std::string name_;
+    bool found_jobs_ = false, found_name_ = false, found_notify_ = false;
+    bool in_notify_ = false;  ///< what is being read is no request
+    std::string brackets_;    ///< the closing ones that are awaited, outermost first
+    std::string text_;        ///< of a member's name or of the batch's
+    std::string name_, notify_;
     RawEntry entry_;
     std::size_t entry_bytes_ = 0;
     long line_ = 1, column_ = 0;

@@ -40,6 +40,8 @@ public:
     virtual std::optional<Problem> finish(std::vector<RawEntry>& entries) = 0;
     /// The name that stands in the body.
     virtual std::string name() const { return {}; }
+    /// The text of whom to tell that stands there.
+    virtual std::string notify() const { return {}; }
     /// False where each request says itself what is asked for.
     virtual bool takes_options() const { return false; }
 };
@@ -53,6 +55,7 @@ public:
     }
     std::optional<Problem> finish(std::vector<RawEntry>&) override { return array_.finish(); }
     std::string name() const override { return array_.name(); }
+    std::string notify() const override { return array_.notify(); }
     bool found_jobs() const { return array_.found_jobs(); }
 
 private:
@@ -149,6 +152,7 @@ public:
     }
 
     std::string name() const override { return chosen_ ? chosen_->name() : std::string(); }
+    std::string notify() const override { return chosen_ ? chosen_->notify() : std::string(); }
     bool takes_options() const override { return !chosen_ || chosen_->takes_options(); }
 
 private:
@@ -220,6 +224,7 @@ std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
 std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                           std::vector<BatchEntry>& entries) {
     if (auto problem = refuse_options()) return problem;
+    if (auto problem = take_notify()) return problem;
     if (auto problem = take(std::move(raw), entries)) return problem;
     return found;
 }
@@ -229,6 +234,20 @@ std::optional<Problem> BatchReader::refuse_options() const {
     const std::string& name = question_.options.front().first;
     return not_valid("/" + pointer_segment(name),
                      name + " is a parameter for a CSV of loops; requests in JSON say themselves what they ask for.");
+}
+
+std::optional<Problem> BatchReader::take_notify() {
+    if (notify_taken_) return std::nullopt;
+    const std::string text = cutter_->notify();
+    if (text.empty()) return std::nullopt;
+    notify_taken_ = true;
+    if (question_.notify)
+        return not_valid("/notify",
+                         "notify stands in the body and in the parameter notify_url; only one can hold. Remove one.");
+    auto read = read_notify(text);
+    if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
+    question_.notify = std::get<Notify>(std::move(read));
+    return question_.judge_notify ? question_.judge_notify(*question_.notify) : std::nullopt;
 }
 
 std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries) {

@@ -1,7 +1,9 @@
 // Requests of a batch out of its body, while it arrives: JSON {"jobs": [...]}, NDJSON, or a CSV of loops.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -18,7 +20,10 @@ enum class BatchForm { json, ndjson, csv };
 struct BatchQuestion {
     std::optional<BatchForm> form;  ///< nothing: its first bytes show it
     std::string name;               ///< of the batch; "" if none
-    LoopOptions options;            ///< for a CSV of loops; the other forms know none
+    std::optional<Notify> notify;   ///< whom to tell of its end
+    /// Whether whom the body names may be told; nothing where he may. Empty: everybody may.
+    std::function<std::optional<Problem>(const Notify& notify)> judge_notify = {};
+    LoopOptions options;  ///< for a CSV of loops; the other forms know none
     JobLimits limits;
     std::size_t longest_entry = std::size_t{8} << 20;
     std::size_t most_entries = 100'000;
@@ -44,6 +49,8 @@ public:
 
     /// Of the batch, from the call or, so far, from its body.
     const std::string& name() const { return name_; }
+    /// Whom to tell, likewise.
+    const std::optional<Notify>& notify() const { return question_.notify; }
     /// Entries so far.
     std::size_t count() const { return count_; }
 
@@ -57,11 +64,13 @@ private:
     std::optional<Problem> judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                  std::vector<BatchEntry>& entries);
     std::optional<Problem> refuse_options() const;
+    std::optional<Problem> take_notify();
     std::optional<Problem> take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries);
 
     BatchQuestion question_;
     std::unique_ptr<Cutter> cutter_;
     std::string name_;
+    bool notify_taken_ = false;  ///< from the body
     std::size_t count_ = 0;
 };
 

@@ -274,6 +274,10 @@ const Description<JobRequest>& job_contract() {
                 "design on the model alone breaks a limit there, both are answered, the one that holds it first.")
             .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
+            .field("priority", &JobRequest::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
+                   "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
+            .field("notify", &JobRequest::notify, maybe(object(notify_contract())),
+                   "Whom to tell when the job has ended.")
             .check_presence(check_source)
             .check(check_implement)
             .check(check_job)

@@ -4,6 +4,7 @@
 #include "api/contract/built/built.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/record.h"
+#include "api/contract/terms.h"
 #include "api/describe/description.h"
 #include "engine/request/tune.h"
 
@@ -23,6 +24,8 @@ struct JobRequest {
     EvaluateOptions evaluate;
     std::string uncertainty = "auto";
     double timeout_s = 60;
+    std::optional<Notify> notify;
+    bool low_priority = false;
     ReadRecord read;                             ///< of `record`
     std::optional<built::Build> build;           ///< of `implement`
     std::optional<built::Build> baseline_build;  ///< of `baseline_settings`

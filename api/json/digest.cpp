@@ -1,6 +1,7 @@
 #include "api/json/digest.h"
 
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 
 #include <array>
 #include <stdexcept>
@@ -52,6 +53,29 @@ std::string base64(std::string_view bytes) {
                         reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
     out.resize(static_cast<std::size_t>(length));
     return out;
+}
+
+std::optional<std::string> base64_bytes(std::string_view text) {
+    if (text.size() % 4 != 0) return std::nullopt;
+    std::string out(3 * (text.size() / 4), '\0');
+    const int length =
+        EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()),
+                        reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
+    if (length < 0) return std::nullopt;
+    // The padding counts as bytes there.
+    for (std::size_t back = 0; back < 2 && text.size() > back && text[text.size() - 1 - back] == '='; back++)
+        out.pop_back();
+    if (base64(out) != text) return std::nullopt;
+    return out;
+}
+
+std::string hmac_sha256(std::string_view key, std::string_view text) {
+    std::array<unsigned char, 32> mac{};
+    const unsigned char* done =
+        HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
+             reinterpret_cast<const unsigned char*>(text.data()), text.size(), mac.data(), nullptr);
+    must(done != nullptr ? 1 : 0);
+    return {mac.begin(), mac.end()};
 }
 
 std::string sha256_base64(std::string_view text) {

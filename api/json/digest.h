@@ -1,7 +1,8 @@
-// SHA-256 (FIPS 180-4) of a text: names a request in results. By OpenSSL.
+// SHA-256 (FIPS 180-4) of a text, which names a request in results, and what signs with it. By OpenSSL.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,5 +33,10 @@ std::string sha256_hex(std::string_view text);
 /// Base64 with padding (RFC 4648, section 4): of any bytes, and of the digest, as policies of pages name a stylesheet.
 std::string base64(std::string_view bytes);
 std::string sha256_base64(std::string_view text);
+/// What such a text stands for; nothing where it is none, or not spelled as base64() spells it.
+std::optional<std::string> base64_bytes(std::string_view text);
+
+/// HMAC-SHA256 (RFC 2104), its 32 bytes.
+std::string hmac_sha256(std::string_view key, std::string_view text);
 
 }  // namespace tunewright::api

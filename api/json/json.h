@@ -2,6 +2,7 @@
 // contain is refused here.
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <variant>
@@ -22,6 +23,10 @@ std::variant<Json, Problem> parse(std::string_view text);
 
 /// `text` without the white space between its tokens. `text` must be JSON.
 std::string compact(std::string_view text);
+
+/// `json`, an object or an array as compact() or a Writer spells it, without the members of these names, wherever they
+/// stand. Everything else is passed on as it is spelled.
+std::string without_members(std::string_view json, std::initializer_list<std::string_view> names);
 
 /// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
 std::string canonical(const Json& value);

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "api/contract/terms.h"
 #include "api/embed/files.h"
 #include "api/json/digest.h"
 #include "api/report/figures.h"
@@ -99,6 +100,8 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
                            .origin = words.origin};
     Json document = Json::object();
     document["result"] = std::move(found.result);
+    // Whoever runs a printed request again is not to be announced to somebody else by it.
+    if (found.request.is_object()) leave_out_terms(found.request);
     document["request"] = std::move(found.request);
     const ReportSubject subject = subject_of(document, number);
 

@@ -21,6 +21,8 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "tunes PID controllers over HTTP, in a bro
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A plant model or a recorded test goes in; controller settings come out, with their
  robustness, their performance and the responses of the loop.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# By which it verifies those whom it tells of ends.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ca-certificates)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm
                                        ${CMAKE_CURRENT_LIST_DIR}/postrm)

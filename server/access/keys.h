@@ -4,7 +4,6 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -12,6 +11,8 @@
 #include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include "server/access/watched_file.h"
 
 namespace tunewright::server {
 
@@ -36,8 +37,6 @@ std::vector<KeyLine> parse_keys(std::string_view text);
 /// "tw_" and 256 random bits as 64 hexadecimal digits.
 std::string new_key();
 
-bool is_key_name(std::string_view name);
-
 /// `tunewright key NAME`: a new API key.
 struct KeyCommand {
     std::string name;
@@ -49,20 +48,15 @@ struct KeyCommand {
 /// Returns the exit code of the process: 0; 1 where the file cannot be written; 2 for a name that is not allowed.
 int make_key(const KeyCommand& command);
 
-/// The keys that are in force. The file is looked at once a second at most, and read again when it has changed.
-///
-/// - A file without a key admits nobody.
-/// - A file that is gone or cannot be read admits nobody, and usable() is false: a revoked key never comes back because
-///   of a fault.
-/// - A file with a line that is no key's is perhaps being written: the last good keys stay in force for kPatience, then
-///   it admits nobody and usable() is false.
+/// The keys that are in force, by a watched file: one that holds nothing admits nobody, and usable() tells the file
+/// that has no key from the one that cannot be used.
 class KeyRing {
 public:
-    static constexpr std::chrono::seconds kPatience{10};
-    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::seconds kPatience = WatchedFile::kPatience;
+    using Clock = WatchedFile::Clock;
 
     /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or has no key.
-    explicit KeyRing(std::string path, std::function<Clock::time_point()> now = Clock::now);
+    explicit KeyRing(const std::string& path, std::function<Clock::time_point()> now = Clock::now);
 
     /// Whose key that is; nothing for one that is not known. The time that this takes depends on the digest alone,
     /// of which nobody can choose a part.
@@ -72,26 +66,11 @@ public:
     bool usable();
 
 private:
-    /// What tells one state of the file from another.
-    struct Stamp {
-        std::filesystem::file_time_type modified;
-        std::uintmax_t size = 0;
-        bool operator==(const Stamp&) const = default;
-    };
+    WatchedFile::Meaning meaning();
 
-    static std::optional<Stamp> stamp_of(const std::string& path);
-    void look();
-    void read_again(const std::optional<Stamp>& stamp);
-    void admit_nobody(const std::string& why);
-
-    std::string path_;
-    std::function<Clock::time_point()> now_;
     std::mutex mutex_;
     std::unordered_map<std::string, KeyHolder> holders_;  ///< by digest
-    std::optional<Stamp> stamp_;                          ///< of what was read last; empty: nothing could be
-    Clock::time_point looked_;
-    std::optional<Clock::time_point> broken_since_;  ///< a line that is no key's, the last good keys still in force
-    bool usable_ = true;
+    WatchedFile file_;
 };
 
 }  // namespace tunewright::server

@@ -76,6 +76,8 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
     job.flow = std::move(order.flow);
     job.origin = std::move(order.origin);
     job.created_at = settings_.now();
+    job.priority = order.job.low_priority ? Priority::low : Priority::normal;
+    job.notify = target_of(order.job.notify);
     auto request = std::make_shared<std::string>(order.job.request_json);
     job.request = std::move(order.job.request_json);
 

@@ -60,6 +60,11 @@ struct Submission {
     StoreFault fault;  ///< of store_failed
 };
 
+/// Whom a job or a batch tells of its end, as a store keeps it.
+inline NotifyTarget target_of(const std::optional<api::Notify>& notify) {
+    return notify ? NotifyTarget{notify->url, notify->secret_id} : NotifyTarget{};
+}
+
 /// A request that is to become a job.
 struct Order {
     api::PreparedJob job;

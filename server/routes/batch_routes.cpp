@@ -74,8 +74,26 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
     return std::nullopt;
 }
 
+/// Whom to tell, where the parameters say it.
+std::optional<Response> judge_notify(NotifyPolicy& policy, const http::Request& request, BatchOrder& order) {
+    order.question.judge_notify = [&policy](const api::Notify& notify) { return policy.refuse(notify, "notify."); };
+    const auto url = request.query.find("notify_url"), secret = request.query.find("notify_secret_id");
+    const std::string secret_id = secret == request.query.end() ? "" : secret->second;
+    api::Problem problem = bad_parameters("batch");
+    if (request.query.count("notify_url") > 1)
+        refuse_parameter(problem, "notify_url", url->second, "it must be given once: a batch tells one address.");
+    if (url == request.query.end() && secret != request.query.end())
+        refuse_parameter(problem, "notify_secret_id", secret_id, "it goes with notify_url, which is missing.");
+    if (!problem.errors.empty()) return http::problem_response(problem);
+    if (url == request.query.end()) return std::nullopt;
+    order.question.notify = api::Notify{url->second, secret_id};
+    if (const auto refusal = policy.refuse(*order.question.notify, "notify_")) return http::problem_response(*refusal);
+    return std::nullopt;
+}
+
 /// Reads head and parameters of the call.
-std::optional<Response> read_order(const http::Request& request, const BatchLimits& limits, BatchOrder& order) {
+std::optional<Response> read_order(const http::Request& request, NotifyPolicy& policy, const BatchLimits& limits,
+                                   BatchOrder& order) {
     if (auto refusal = refuse_form(request)) return refusal;
     if (auto refusal = read_form(request, order.question.form)) return refusal;
     order.idempotency_key = request.header("Idempotency-Key");
@@ -88,9 +106,10 @@ std::optional<Response> read_order(const http::Request& request, const BatchLimi
         order.asked.append(name).append("=").append(value).append("\n");
         if (name == "name")
             order.question.name = value;
-        else
+        else if (name != "notify_url" && name != "notify_secret_id")
             order.question.options.emplace_back(name, value);
     }
+    if (auto refusal = judge_notify(policy, request, order)) return refusal;
     if (order.question.name.size() > kMaxNameLength)
         return problem_response(
             422, "name has " + std::to_string(order.question.name.size()) + " characters; at most 200 are accepted.");
@@ -125,9 +144,10 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     return store_failed(receipt.fault);
 }
 
-Response post_batch(Batches& batches, Places& places, const BatchLimits& limits, const Call& call) {
+Response post_batch(Batches& batches, Places& places, NotifyPolicy& policy, const BatchLimits& limits,
+                    const Call& call) {
     BatchOrder order;
-    if (auto refusal = read_order(call.request, limits, order)) return *std::move(refusal);
+    if (auto refusal = read_order(call.request, policy, limits, order)) return *std::move(refusal);
     const auto place = places.take(call.request.client);
     if (!place) return problem_response(503, "Too many batches are being received. Try again in a moment.");
     return receipt_response(batches, call.request, batches.receive(std::move(order), call.request.read_body));
@@ -248,9 +268,9 @@ Response delete_batch(Batches& batches, const Call& call) {
 }  // namespace
 
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
-                      const BatchLimits& limits) {
-    router.streamed("POST", "/v1/batches", [&batches, &places, limits](const Call& call) {
-        return post_batch(batches, places, limits, call);
+                      NotifyPolicy& policy, const BatchLimits& limits) {
+    router.streamed("POST", "/v1/batches", [&batches, &places, &policy, limits](const Call& call) {
+        return post_batch(batches, places, policy, limits, call);
     });
     router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, call); });
     router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <iterator>
 
+#include "api/json/json.h"
 #include "api/service.h"
 #include "server/json_text.h"
 
@@ -122,6 +123,13 @@ std::string job_news_json(const JobView& view) {
     if (is_partial(job)) object.boolean("partial", true);
     object.raw("links", links(job));
     return std::move(object).str();
+}
+
+std::string job_told_json(JobRecord job) {
+    job.request = api::without_members(job.request, {"record"});
+    job.result = api::without_members(job.result, {"responses", "frequency", "fit", "y_model"});
+    job.error = api::without_members(job.error, {"record"});
+    return job_json({std::move(job), std::nullopt});
 }
 
 std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners) {

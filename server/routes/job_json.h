@@ -16,6 +16,9 @@ std::string job_json(const JobView& view);
 /// The same without request and result.
 std::string job_news_json(const JobView& view);
 
+/// The same with both, but for traces: what others are told of an ended job.
+std::string job_told_json(JobRecord job);
+
 /// The contract's progress object, also of a job that waits or has just begun; null for one that has ended.
 std::string job_progress_json(const JobView& view);
 

@@ -100,7 +100,8 @@ Submitted submit(JobService& jobs, Order order) {
     return std::move(*made);
 }
 
-Response post_job(JobService& jobs, Places& places, const api::JobLimits& limits, const Call& call) {
+Response post_job(JobService& jobs, Places& places, NotifyPolicy& policy, const api::JobLimits& limits,
+                  const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
     if (key.size() > kMaxKeyLength)
@@ -111,6 +112,8 @@ Response post_job(JobService& jobs, Places& places, const api::JobLimits& limits
 
     Order order;
     order.job = std::get<api::PreparedJob>(std::move(prepared));
+    if (order.job.notify)
+        if (const auto problem = policy.refuse(*order.job.notify, "notify.")) return http::problem_response(*problem);
     order.idempotency_key = key;
     order.owner = call.request.owner.value_or("");
     order.flow = call.request.client;
@@ -251,9 +254,11 @@ Response delete_job(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, const api::JobLimits& limits) {
-    router.add("POST", "/v1/jobs",
-               [&jobs, &places, limits](const Call& call) { return post_job(jobs, places, limits, call); });
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, NotifyPolicy& policy,
+                    const api::JobLimits& limits) {
+    router.add("POST", "/v1/jobs", [&jobs, &places, &policy, limits](const Call& call) {
+        return post_job(jobs, places, policy, limits, call);
+    });
     router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
     router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
     router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });

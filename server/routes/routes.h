@@ -13,11 +13,14 @@
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
+#include "server/notify/policy.h"
 
 namespace tunewright::server {
 
-/// /v1/jobs and what is below it. Who waits for a job takes one of `places`.
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, const api::JobLimits& limits);
+/// /v1/jobs and what is below it. Who waits for a job takes one of `places`; whom a job may tell of its end, `policy`
+/// says.
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, NotifyPolicy& policy,
+                    const api::JobLimits& limits);
 
 /// /v1/jobs/{id}/events: progress as server-sent events.
 void add_event_routes(http::Router& router, JobService& jobs, Places& places);
@@ -41,7 +44,7 @@ struct BatchLimits {
 
 /// /v1/batches and what is below it. Bodies are read and results are made on `lane`.
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
-                      const BatchLimits& limits);
+                      NotifyPolicy& policy, const BatchLimits& limits);
 
 /// /v1/evaluate, /v1/design, /v1/frontier, /v1/identify, /v1/experiments/relay and the conversions below
 /// /v1/controllers: computed while the client waits, when its turn has come, with a deadline, or until `closing`.

@@ -70,6 +70,7 @@ struct BatchSeal {
     std::string request_hash;
     std::string idempotency_key;  ///< "" if none; each owner has keys of his own
     std::string name;             ///< where it was known only after the batch was opened; "" leaves the name
+    NotifyTarget notify = {};     ///< likewise
 };
 
 struct Sealed {

@@ -8,7 +8,7 @@ that answer.
     tests/server/api_fuzz.py --seconds 300        a new seed for each round; the seed of a fault is printed
     tests/server/api_fuzz.py --seed 7             that round again
 
-api_fuzz_test.py is a short round that is always the same."""
+hostile_test.py has a short round that is always the same."""
 
 import argparse
 import collections

@@ -1,6 +1,7 @@
 """Clients that mean harm: streams that two parsers could read differently, floods, and crowds that never finish. Each
 bad stream gets one answer at most and a closed connection, and the service is as healthy after it as before."""
 
+import collections
 import json
 import os
 import re
@@ -10,6 +11,7 @@ import threading
 import time
 import unittest
 
+from api_fuzz import OPTIONS, Api, round_of_calls
 from service import BINARY, LONG, QUICK, Service
 
 HOST = b"Host: localhost\r\n"
@@ -234,6 +236,18 @@ class ManyAtOnceTest(unittest.TestCase):
             self.assertEqual(service.stop(), 0)
             self.assertLess(time.monotonic() - started, 15)
             connection.close()
+
+
+class MadeUpCallsTest(unittest.TestCase):
+    """A short round of calls made up from the service's own document, the same each time."""
+
+    def test_made_up_calls_get_documented_answers(self):
+        counts = collections.Counter()
+        with Service(*OPTIONS) as service:
+            api = Api(service.get("/openapi.json").json)
+            round_of_calls(service, api, 1500, counts=counts)
+        self.assertEqual({name for name, _ in counts}, {operation["operationId"] for _, _, operation in api.operations})
+        self.assertGreater(sum(count for (_, status), count in counts.items() if status < 300), 200)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """Several processes on one PostgreSQL: what a client sees does not depend on which of them he asks."""
 
+import json
+import os
+import tempfile
 import threading
 import time
 import unittest
@@ -7,6 +10,7 @@ import unittest
 from events_test import Stream
 from faulty_places import OwnPostgres
 from service import LONG, QUICK, Service
+from webhook_test import Receiver, make_secret
 
 
 class ReplicasTest(unittest.TestCase):
@@ -104,6 +108,26 @@ class ReplicasTest(unittest.TestCase):
         other.__exit__()
         waiter.join()
         self.assertEqual((answers[0].status, answers[0].json["status"]), (202, "queued"))
+
+
+class ToldByReplicasTest(unittest.TestCase):
+    """Two processes tell, and a third that may tell nobody gives up nothing of theirs."""
+
+    def test_each_end_is_told_once(self):
+        with OwnPostgres() as place, Receiver() as receiver, tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "secrets")
+            make_secret("first", path)
+            options = ("--notify-target", receiver.origin, "--notify-secrets", path)
+            with Service("--workers", "1", store=place.store), Service("--workers", "1", *options, store=place.store), \
+                    Service("--role", "api", *options, store=place.store) as api:
+                notify = {"url": receiver.origin + "/in"}
+                ids = {api.post_job(dict(QUICK, notify=notify))["id"] for _ in range(40)}
+                ids |= {api.post("/v1/batches", {"jobs": [QUICK] * 3, "notify": notify}).json["id"],
+                        api.post("/v1/batches", {"notify": notify, "jobs": [QUICK]}).json["id"]}
+                told = [json.loads(note[3])["data"]["id"] for note in receiver.wait_for(len(ids))]
+                time.sleep(2)
+                self.assertEqual(len(receiver.notes), len(ids))
+                self.assertEqual(set(told), ids)
 
 
 if __name__ == "__main__":

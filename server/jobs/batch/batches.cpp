@@ -182,7 +182,7 @@ void Reception::open() {
         ++out_;
     }
     last_sent_ = Clock::now();
-    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_(), {}, order_.origin},
+    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_(), target_of(reader_.notify()), order_.origin},
                       [this](const Outcome<bool>& outcome) { sent(outcome, 0, false); });
 }
 
@@ -222,7 +222,8 @@ bool Reception::wait_until(std::size_t bytes_out) {
 
 BatchReceipt Reception::seal() {
     const auto outcome = await<Outcome<Sealed>>([this](const Done<Sealed>& done) {
-        store_.seal_batch({id_, digest_.hex(), order_.idempotency_key, reader_.name()}, done);
+        store_.seal_batch({id_, digest_.hex(), order_.idempotency_key, reader_.name(), target_of(reader_.notify())},
+                          done);
     });
     if (const auto* fault = std::get_if<StoreFault>(&outcome))
         return {BatchReceipt::Kind::store_failed, {}, {}, *fault};

@@ -111,9 +111,14 @@ SealedBatch seal_batch(Work& work, const BatchSeal& seal) {
     }
     session.run(
         "UPDATE batches SET state = 'sealed', request_hash = $2, idempotency_key = nullif($3, ''), "
-        "name = coalesce(nullif($4, ''), name) "
+        "name = coalesce(nullif($4, ''), name), notify = coalesce(nullif($5, ''), notify) "
         "WHERE seq = $1",
-        Values().number(seq).text(seal.request_hash).text(seal.idempotency_key).text(seal.name));
+        Values()
+            .number(seq)
+            .text(seal.request_hash)
+            .text(seal.idempotency_key)
+            .text(seal.name)
+            .text(seal.notify.text()));
     return {{Sealed::Kind::sealed, seal.batch}, std::nullopt};
 }
 

@@ -93,11 +93,12 @@ SealedBatch seal_batch(Connection& store, const BatchSeal& seal) {
             return {{same ? Sealed::Kind::existing : Sealed::Kind::conflict, same ? row.text(0) : ""}, batch->seq};
         }
     }
+    const std::string target = seal.notify.text();
     store
         .use(
             "UPDATE batches SET state = 'sealed', request_hash = ?2, name = coalesce(nullif(?3, ''), name), "
-            "idempotency_key = nullif(?4, '') WHERE seq = ?1")
-        .with(batch->seq, seal.request_hash, seal.name, seal.idempotency_key)
+            "idempotency_key = nullif(?4, ''), notify = coalesce(nullif(?5, ''), notify) WHERE seq = ?1")
+        .with(batch->seq, seal.request_hash, seal.name, seal.idempotency_key, target)
         .run();
     return {{Sealed::Kind::sealed, seal.batch}, std::nullopt};
 }

@@ -1,0 +1,35 @@
+// The terms on which a job is run, beside what it computes: whom to tell of its end, and when its turn comes. They
+// change no figure, so they are no part of the hash that names a request.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "api/problem.h"
+
+namespace tunewright::api {
+
+template <class T>
+class Description;
+
+/// Whom to tell when a job or a batch has ended. What a url may be is the operator's business.
+struct Notify {
+    std::string url;
+    std::string secret_id;  ///< "": the operator's first secret
+};
+
+const Description<Notify>& notify_contract();
+
+/// What the text of a batch's `notify` says; 422 with pointers below /notify.
+std::variant<Notify, Problem> read_notify(std::string_view json);
+
+/// Takes the terms out of a request, of which what is computed is left.
+void leave_out_terms(nlohmann::ordered_json& request);
+
+/// 422 for a request that carries terms which an entry of a batch cannot have of its own.
+std::optional<Problem> refuse_terms_of_entry(const nlohmann::ordered_json& request);
+
+}  // namespace tunewright::api

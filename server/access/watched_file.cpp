@@ -1,0 +1,122 @@
+#include "server/access/watched_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "server/log.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::size_t kMaxNameLength = 64;
+constexpr std::chrono::seconds kLookInterval{1};
+
+std::string_view trim(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The text of the file; nothing where it cannot be read.
+std::optional<std::string> read_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return std::nullopt;
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (file.bad()) return std::nullopt;
+    return text;
+}
+
+}  // namespace
+
+bool is_key_name(std::string_view name) {
+    return !name.empty() && name.size() <= kMaxNameLength && std::ranges::all_of(name, [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '_' ||
+               c == '-';
+    });
+}
+
+std::vector<NamedLine> named_lines(std::string_view text) {
+    std::vector<NamedLine> lines;
+    for (std::size_t number = 1; !text.empty(); number++) {
+        const std::size_t end = text.find('\n');
+        const std::string_view line = trim(text.substr(0, end));
+        text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+        if (line.empty() || line.front() == '#') continue;
+        const std::size_t blank = line.find_first_of(" \t");
+        const std::string_view rest = blank == std::string_view::npos ? std::string_view{} : trim(line.substr(blank));
+        lines.push_back({number, line.substr(0, blank), rest});
+    }
+    return lines;
+}
+
+bool append_line(const std::string& path, const std::string& line) {
+    const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+    if (fd < 0) return false;
+    const bool written = ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    return ::close(fd) == 0 && written;
+}
+
+WatchedFile::WatchedFile(std::string path, Meaning meaning, std::function<Clock::time_point()> now)
+    : path_(std::move(path)), meaning_(std::move(meaning)), now_(std::move(now)), looked_(now_()) {
+    const auto refuse = [&](const std::string& why) {
+        throw std::invalid_argument("The " + meaning_.what + " " + path_ + " cannot be used: " + why + ".");
+    };
+    stamp_ = stamp_of(path_);
+    const auto text = read_file(path_);
+    if (!text) refuse("it cannot be read");
+    try {
+        meaning_.take(*text);
+    } catch (const std::invalid_argument& error) {
+        refuse(error.what());
+    }
+}
+
+std::optional<WatchedFile::Stamp> WatchedFile::stamp_of(const std::string& path) {
+    std::error_code error;
+    Stamp stamp{std::filesystem::last_write_time(path, error)};
+    if (!error) stamp.size = std::filesystem::file_size(path, error);
+    return error ? std::nullopt : std::optional(stamp);
+}
+
+void WatchedFile::look() {
+    const auto now = now_();
+    if (now - looked_ < kLookInterval) return;
+    looked_ = now;
+    const auto stamp = stamp_of(path_);
+    // What cannot be read may be readable again without having changed.
+    if (!stamp || stamp != stamp_ || !usable_) read_again(stamp);
+    if (broken_since_ && now - *broken_since_ >= kPatience)
+        hold_nothing("it has had a line that is no " + meaning_.kind + "'s for " + std::to_string(kPatience.count()) +
+                     " s");
+}
+
+void WatchedFile::read_again(const std::optional<Stamp>& stamp) {
+    stamp_ = stamp;
+    const auto text = stamp ? read_file(path_) : std::nullopt;
+    if (!text) return hold_nothing("it cannot be read");
+    try {
+        const std::size_t count = meaning_.take(*text);
+        log_info("the " + meaning_.what + " has changed: " + std::to_string(count) + " " + meaning_.kind + "s");
+        usable_ = true;
+        broken_since_.reset();
+    } catch (const std::invalid_argument& fault) {
+        if (!usable_) return;
+        if (!broken_since_) broken_since_ = looked_;
+        log_error("the " + meaning_.what + " has changed and is not used: " + fault.what());
+    }
+}
+
+void WatchedFile::hold_nothing(const std::string& why) {
+    if (usable_) log_error(meaning_.consequence + ": the " + meaning_.what + " " + path_ + " cannot be used, " + why);
+    meaning_.forget();
+    usable_ = false;
+    broken_since_.reset();
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,78 @@
+// A file of lines "NAME VALUE" that an operator edits while the service runs: keys, secrets. It is looked at once a
+// second at most, and read again when it has changed.
+//
+// - A file that is gone or cannot be read holds nothing: what was taken out of it never comes back because of a fault.
+// - A file with a line that cannot be read is perhaps being written: what it held last stays in force for kPatience,
+//   then it holds nothing.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tunewright::server {
+
+/// 1 to 64 of A-Z a-z 0-9 . _ -
+bool is_key_name(std::string_view name);
+
+struct NamedLine {
+    std::size_t number = 0;  ///< from 1
+    std::string_view name, value;
+};
+
+/// The lines of such a file but for blank ones and those that start with #. What is no name is for the caller to see.
+std::vector<NamedLine> named_lines(std::string_view text);
+
+/// Appends the line in one write, so that who reads meanwhile sees it or not. A new file is readable by its owner
+/// alone. False where that fails; errno says why.
+bool append_line(const std::string& path, const std::string& line);
+
+class WatchedFile {
+public:
+    static constexpr std::chrono::seconds kPatience{10};
+    using Clock = std::chrono::steady_clock;
+
+    struct Meaning {
+        std::string what;                                        ///< for sentences: "file of keys"
+        std::string consequence;                                 ///< of holding nothing: "nobody is admitted"
+        std::string kind;                                        ///< of what stands in its lines: "key"
+        std::function<std::size_t(std::string_view text)> take;  ///< how many; throws std::invalid_argument
+        std::function<void()> forget;
+    };
+
+    /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read.
+    WatchedFile(std::string path, Meaning meaning, std::function<Clock::time_point()> now);
+
+    /// Looks at the file if that was not done in the last second. Not to be called by two threads at once.
+    void look();
+    /// Whether it could be used when it was last looked at.
+    bool usable() const { return usable_; }
+    const std::string& path() const { return path_; }
+
+private:
+    /// What tells one state of the file from another.
+    struct Stamp {
+        std::filesystem::file_time_type modified;
+        std::uintmax_t size = 0;
+        bool operator==(const Stamp&) const = default;
+    };
+
+    static std::optional<Stamp> stamp_of(const std::string& path);
+    void read_again(const std::optional<Stamp>& stamp);
+    void hold_nothing(const std::string& why);
+
+    std::string path_;
+    Meaning meaning_;
+    std::function<Clock::time_point()> now_;
+    std::optional<Stamp> stamp_;  ///< of what was read last; empty: nothing could be
+    Clock::time_point looked_;
+    std::optional<Clock::time_point> broken_since_;  ///< a line that cannot be read, what was there before in force
+    bool usable_ = true;
+};
+
+}  // namespace tunewright::server

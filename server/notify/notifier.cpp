@@ -1,0 +1,199 @@
+#include "server/notify/notifier.h"
+
+#include <algorithm>
+#include <random>
+
+#include "server/json_text.h"
+#include "server/log.h"
+#include "server/notify/schedule.h"
+#include "server/notify/signature.h"
+
+namespace tunewright::server {
+namespace {
+
+constexpr std::chrono::milliseconds kWatch{500};  ///< between looks at what is under way
+constexpr int kGone = 410;
+
+static_assert(Notifier::kHold > 2 * Sender::kLongest);
+
+std::string what_ended(const Delivery& delivery) {
+    return delivery.batch.empty() ? "job " + delivery.job : "batch " + delivery.batch;
+}
+
+/// All of a url that a log may show: the rest of it may be a secret.
+std::string shown(const std::string& url) {
+    const auto read = parse_address(url);
+    const auto* address = std::get_if<WebAddress>(&read);
+    return address == nullptr ? "an address that cannot be read" : address->origin();
+}
+
+double chance() {
+    thread_local std::minstd_rand source{std::random_device{}()};
+    return std::uniform_real_distribution<double>()(source);
+}
+
+}  // namespace
+
+Notifier::Notifier(JobStore& store, NotifyPolicy& policy, NotifierSettings settings)
+    : store_(store), policy_(policy), settings_(std::move(settings)) {}
+
+Notifier::~Notifier() { stop(2 * Sender::kLongest); }
+
+void Notifier::start() {
+    // Others on the same store may be allowed what this process is not: it leaves their notes alone.
+    if (store_.shared() && !policy_.allows_any()) return;
+    const std::lock_guard lock(mutex_);
+    looking_ = std::make_unique<PeriodicThread>([this] { return look(); });
+}
+
+void Notifier::wake() {
+    const std::lock_guard lock(mutex_);
+    if (looking_ && !closed_) looking_->wake();
+}
+
+void Notifier::close() { closed_ = true; }
+
+bool Notifier::stop(std::chrono::milliseconds patience) {
+    closed_ = true;
+    if (looking_) looking_->stop();
+    {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [seq, one] : under_way_) one->sender.cut();
+    }
+    return lanes_.stop(patience);
+}
+
+std::chrono::milliseconds Notifier::look() {
+    cut_long_ones();
+    if (!closed_) take();
+    const std::lock_guard lock(mutex_);
+    return under_way_.empty() ? kPoll : kWatch;
+}
+
+void Notifier::cut_long_ones() {
+    const auto now = Lanes::Clock::now();
+    const std::lock_guard lock(mutex_);
+    for (const auto& [seq, one] : under_way_)
+        if (now - one->since > Sender::kLongest) one->sender.cut();
+}
+
+void Notifier::take() {
+    const std::size_t most = lanes_.room();
+    if (most == 0 || taking_.exchange(true)) return;
+    const auto when = Lanes::Clock::now();
+    store_.take_deliveries(settings_.now(), kHold, most, [this, when, most](Outcome<std::vector<Delivery>> outcome) {
+        if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
+            if (!store_failed_.exchange(true)) log_error("nobody is told of an end: " + fault->detail);
+            taking_ = false;
+            return;
+        }
+        store_failed_ = false;
+        const auto& due = std::get<std::vector<Delivery>>(outcome);
+        taken(due, when);
+        taking_ = false;
+        // There may be more, of which some are for others.
+        if (due.size() == most) wake();
+    });
+}
+
+/// What finds no place here comes again when its hold is over.
+void Notifier::taken(const std::vector<Delivery>& due, Lanes::Clock::time_point when) {
+    if (closed_) return;
+    for (const Delivery& delivery : due)
+        lanes_.add({shown(delivery.target.url), when + kHold - Sender::kLongest, [this, delivery] { tell(delivery); }});
+}
+
+void Notifier::tell(const Delivery& delivery) {
+    const auto address = policy_.address_of(delivery.target.url);
+    if (const auto* why = std::get_if<std::string>(&address)) return give_up(delivery, *why);
+    const auto& where = std::get<WebAddress>(address);
+    std::optional<std::string> body;
+    try {
+        body = body_of(delivery);
+    } catch (const StoreError& error) {
+        log_error(what_ended(delivery) + " cannot be read, to tell of its end: " + error.what());
+        return;
+    }
+    // Deleted, or begun anew, meanwhile: there is no end to tell of.
+    if (!body) return settle(delivery, std::nullopt);
+    const auto begun = Lanes::Clock::now();
+    const Reply reply = send(delivery, where, *body);
+    if (reply.status >= 200 && reply.status < 300) {
+        const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Lanes::Clock::now() - begun);
+        log_info(what_ended(delivery) + " was told to " + where.origin() + " in " + std::to_string(took.count()) +
+                 " ms, try " + std::to_string(delivery.tries + 1));
+        settings_.count(Told::delivered);
+        return settle(delivery, std::nullopt);
+    }
+    if (reply.status == kGone) return give_up(delivery, "it answers 410: it wants no more");
+    std::string why = reply.status == 0 ? reply.fault : "it answers " + std::to_string(reply.status);
+    if (reply.status >= 300 && reply.status < 400) why += ", and redirects are not followed";
+    failed(delivery, where.origin(), why, read_retry_after(reply.retry_after, settings_.now()));
+}
+
+/// Nothing where there is nothing to tell.
+std::optional<std::string> Notifier::body_of(const Delivery& delivery) {
+    JsonObject body;
+    if (delivery.batch.empty()) {
+        const std::optional<JobRecord> job = store_.find(delivery.job);
+        if (!job || !has_ended(job->status)) return std::nullopt;
+        body.text("type", "job.ended").text("timestamp", iso_time(delivery.created_at));
+        return std::move(body.raw("data", settings_.job_text(*job))).str();
+    }
+    const std::optional<BatchSummary> batch = store_.find_batch(delivery.batch);
+    if (!batch || !batch->ended()) return std::nullopt;
+    body.text("type", "batch.ended").text("timestamp", iso_time(delivery.created_at));
+    return std::move(body.raw("data", settings_.batch_text(*batch))).str();
+}
+
+Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const std::string& body) {
+    const std::vector<std::string> secrets = policy_.secrets(delivery.target.secret_id);
+    if (secrets.empty()) return {0, "no secret of its name is there to sign with", {}};
+    const std::string ended = delivery.batch.empty() ? delivery.job : delivery.batch;
+    const SignedNote note{"evt_" + ended + "_" + std::to_string(delivery.seq), settings_.now() / 1000, body};
+    const auto under_way = std::make_shared<UnderWay>();
+    under_way->since = Lanes::Clock::now();
+    {
+        const std::lock_guard lock(mutex_);
+        if (closed_) return {0, "the service is being stopped", {}};
+        under_way_.emplace(delivery.seq, under_way);
+    }
+    Reply reply = under_way->sender.send({address,
+                                          {{"Content-Type", "application/json"},
+                                           {"User-Agent", "Tunewright/" + settings_.version},
+                                           {"webhook-id", note.id},
+                                           {"webhook-timestamp", std::to_string(note.timestamp)},
+                                           {"webhook-signature", signature_of(note, secrets)}},
+                                          body});
+    const std::lock_guard lock(mutex_);
+    under_way_.erase(delivery.seq);
+    return reply;
+}
+
+void Notifier::failed(const Delivery& delivery, const std::string& where, const std::string& why,
+                      std::optional<std::chrono::seconds> retry_after) {
+    // It was cut off here, or not even begun: that was no fault of the receiver's, and it comes again after its hold.
+    if (closed_) return;
+    const auto pause = pause_after({delivery.tries, delivery.created_at, settings_.now(), chance(), retry_after});
+    if (!pause) return give_up(delivery, why);
+    settings_.count(Told::failed);
+    log_info(what_ended(delivery) + " could not be told to " + where + ": " + why + "; the next try comes in " +
+             std::to_string(pause->count() / 1000) + " s");
+    settle(delivery, pause);
+}
+
+void Notifier::give_up(const Delivery& delivery, const std::string& why) {
+    settings_.count(Told::given_up);
+    log_error(what_ended(delivery) + " will not be told to " + shown(delivery.target.url) + " any more, after " +
+              std::to_string(delivery.tries + 1) + " tries: " + why);
+    settle(delivery, std::nullopt);
+}
+
+void Notifier::settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause) {
+    store_.settle_delivery(delivery.seq, settings_.now(), pause, [what = what_ended(delivery)](const auto& outcome) {
+        if (const auto* fault = std::get_if<StoreFault>(&outcome))
+            log_error(what + " may be told again, as the store could not take down that it was: " + fault->detail);
+    });
+}
+
+}  // namespace tunewright::server

@@ -1,0 +1,163 @@
+// The terms on which a job is run: whom to tell of its end, and when its turn comes.
+#include "api/contract/terms.h"
+
+#include <gmock/gmock.h>
+
+#include "api/batch/reader.h"
+#include "api/json/json.h"
+#include "support.h"
+
+namespace tunewright::api {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kNotify = R"("notify": {"url": "https://hooks.example.com/x?y=1", "secret_id": "line-1"})";
+
+PreparedJob prepared(const std::string& members) {
+    auto job = prepare_job(request_with(members));
+    if (const auto* problem = std::get_if<Problem>(&job)) ADD_FAILURE() << problem->detail;
+    return std::holds_alternative<PreparedJob>(job) ? std::get<PreparedJob>(std::move(job)) : PreparedJob{};
+}
+
+std::vector<FieldError> faults(const std::string& members) {
+    const auto job = prepare_job(request_with(members));
+    return std::holds_alternative<Problem>(job) ? std::get<Problem>(job).errors : std::vector<FieldError>();
+}
+
+TEST(Terms, AreTakenFromARequest) {
+    const PreparedJob job = prepared(kNotify + R"(, "priority": "low")");
+    ASSERT_TRUE(job.notify);
+    EXPECT_EQ(job.notify->url, "https://hooks.example.com/x?y=1");
+    EXPECT_EQ(job.notify->secret_id, "line-1");
+    EXPECT_TRUE(job.low_priority);
+    EXPECT_THAT(job.request_json, HasSubstr("hooks.example.com"));
+    const PreparedJob plain = prepared(R"("notify": {"url": "https://a"}, "priority": "normal")");
+    EXPECT_EQ(plain.notify->secret_id, "");
+    EXPECT_FALSE(plain.low_priority);
+    EXPECT_FALSE(prepared("").notify);
+}
+
+TEST(Terms, ChangeNeitherTheHashNorTheResult) {
+    const PreparedJob plain = prepared(R"("evaluate": {"points": 0})");
+    const PreparedJob termed = prepared(R"("evaluate": {"points": 0}, "priority": "low", )" + kNotify);
+    EXPECT_EQ(termed.request_hash, plain.request_hash);
+    EXPECT_NE(prepared(R"("evaluate": {"points": 0}, "timeout_s": 5)").request_hash, plain.request_hash);
+    const JobOutcome outcome = run_job(StoredRequest{termed.request_json, termed.request_hash}, {});
+    EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
+}
+
+TEST(Terms, AreRefusedWithTheirPlace) {
+    EXPECT_THAT(detail_at(faults(R"("notify": {})"), "/notify/url"), HasSubstr("url is missing"));
+    EXPECT_THAT(detail_at(faults(R"("notify": "https://a")"), "/notify"), HasSubstr("must be an object"));
+    EXPECT_THAT(detail_at(faults(R"("notify": {"url": 5})"), "/notify/url"), HasSubstr("url is 5"));
+    EXPECT_THAT(detail_at(faults(R"("notify": {"ulr": "https://a", "url": "https://a"})"), "/notify/ulr"),
+                HasSubstr("did you mean url?"));
+    EXPECT_THAT(detail_at(faults(R"("notify": {"url": ")" + std::string(2001, 'x') + "\"}"), "/notify/url"),
+                HasSubstr("2000"));
+    EXPECT_THAT(detail_at(faults(R"("notfy": {"url": "https://a"})"), "/notfy"), HasSubstr("did you mean notify?"));
+    EXPECT_THAT(detail_at(faults(R"("priority": "lwo")"), "/priority"), HasSubstr("Did you mean low?"));
+    EXPECT_THAT(detail_at(faults(R"("priority": 1)"), "/priority"), HasSubstr("normal or low"));
+}
+
+TEST(Terms, AreNotForCallsThatAreAnsweredAtOnce) {
+    const std::string body = R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, )" + kNotify + "}";
+    EXPECT_EQ(design_call(body, {}).status, 422);
+    EXPECT_THAT(design_call(body, {}).body, HasSubstr("/notify"));
+}
+
+TEST(Terms, OfABatchAreNotThoseOfItsEntries) {
+    const auto entry = [](const std::string& members) { return prepare_entry(request_with(members)); };
+    EXPECT_THAT(detail_at(std::get<Problem>(entry(kNotify)).errors, "/notify"), HasSubstr("told as a whole"));
+    EXPECT_THAT(detail_at(std::get<Problem>(entry(R"("priority": "normal")")).errors, "/priority"),
+                HasSubstr("no entry of a batch has"));
+    EXPECT_TRUE(std::holds_alternative<PreparedJob>(entry(R"("priority": "low")")));
+}
+
+/// What a body's reader says and finds, however the bytes are cut.
+struct Read {
+    std::optional<Problem> problem;
+    std::optional<Notify> notify;
+    std::string name;
+    std::size_t entries = 0;
+};
+
+Read read(BatchQuestion question, const std::string& body, std::size_t piece) {
+    BatchReader reader(std::move(question));
+    std::vector<BatchEntry> entries;
+    Read out;
+    for (std::size_t at = 0; at < body.size() && !out.problem; at += piece)
+        out.problem = reader.feed(std::string_view(body).substr(at, piece), entries);
+    if (!out.problem) out.problem = reader.finish(entries);
+    out.notify = reader.notify();
+    out.name = reader.name();
+    out.entries = entries.size();
+    return out;
+}
+
+TEST(Terms, StandBesideTheJobsOfABatchInAnyOrder) {
+    const std::string jobs = R"("jobs": [{"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "notify": {}}, {}])";
+    for (const std::string& body :
+         {"{" + kNotify + ", " + jobs + "}", "{" + jobs + ", " + kNotify + "}",
+          "{\"name\": \"n\", " + kNotify + "," + jobs + "}", "{" + jobs + ", " + kNotify + ", \"name\": \"n\"}"})
+        for (const std::size_t piece : {1UL, 7UL, 10'000UL})
+            for (const bool known : {true, false}) {
+                BatchQuestion question;
+                if (known) question.form = BatchForm::json;
+                const Read out = read(question, body, piece);
+                ASSERT_FALSE(out.problem) << body << out.problem->detail;
+                ASSERT_TRUE(out.notify) << body;
+                EXPECT_EQ(out.notify->url, "https://hooks.example.com/x?y=1");
+                EXPECT_EQ(out.notify->secret_id, "line-1");
+                EXPECT_EQ(out.entries, 2u);
+            }
+}
+
+TEST(Terms, OfABatchAreRefusedAsAWhole) {
+    BatchQuestion json;
+    json.form = BatchForm::json;
+    const auto refusal = [&](const std::string& notify) {
+        const Read out = read(json, "{\"notify\": " + notify + ", \"jobs\": [{}]}", 1000);
+        return out.problem ? std::to_string(out.problem->status) + " " + out.problem->errors.at(0).pointer + " " +
+                                 out.problem->detail
+                           : "nothing";
+    };
+    EXPECT_THAT(refusal("\"https://a\""), HasSubstr("422 /notify notify is no object"));
+    EXPECT_THAT(refusal("null"), HasSubstr("422 /notify notify is no object"));
+    EXPECT_THAT(refusal("{}"), HasSubstr("422 /notify/url url is missing"));
+    EXPECT_THAT(refusal("{\"url\": \"a\", \"b\": [{}]}"), HasSubstr("422 /notify/b b is not a field"));
+    EXPECT_THAT(refusal("{\"url\": \"a\"}, \"notify\": {\"url\": \"a\"}"), HasSubstr("notify is given twice"));
+    json.judge_notify = [](const Notify& notify) {
+        Problem problem{422, "invalid-request", "", "not " + notify.url, {}, {}};
+        problem.errors.push_back({"/notify/url", problem.detail});
+        return problem;
+    };
+    EXPECT_EQ(refusal("{\"url\": \"there\"}"), "422 /notify/url not there");
+    json.notify = Notify{"https://a", ""};
+    EXPECT_THAT(refusal("{\"url\": \"there\"}"), HasSubstr("in the parameter notify_url"));
+}
+
+TEST(Members, AreLeftOutWhereverTheyStand) {
+    const std::string json = R"({"a":[1,{"b":"}\"]","c":[[]]},-2e5],"b":{"c":1},"c":null,"d":{"b":[]}})";
+    EXPECT_EQ(without_members(json, {"b"}), R"({"a":[1,{"c":[[]]},-2e5],"c":null,"d":{}})");
+    EXPECT_EQ(without_members(json, {"a", "c"}), R"({"b":{},"d":{"b":[]}})");
+    EXPECT_EQ(without_members(json, {"a", "b", "c", "d"}), "{}");
+    EXPECT_EQ(without_members(json, {}), json);
+    for (const char* same : {"", "[]", "{}", "5", "\"b\"", "[1,2]", R"(["b","c"])"})
+        EXPECT_EQ(without_members(same, {"b"}), same);
+    // Text that is no JSON ends, whatever comes out.
+    for (const char* broken : {"[}", "{", "{\"", "{]", "[[[", "[,", "{\"a\"", "\"\\"}) without_members(broken, {"b"});
+}
+
+TEST(Document, DescribesWhatIsSent) {
+    const Json document = Json::parse(openapi_json());
+    for (const char* name : {"jobEnded", "batchEnded"}) {
+        const Json& content = document["webhooks"][name]["post"]["requestBody"]["content"]["application/json"];
+        EXPECT_EQ(schema_faults(content["example"], content["schema"], document), std::vector<std::string>{}) << name;
+    }
+    EXPECT_EQ(document["components"]["schemas"]["TuningRequest"]["properties"]["priority"]["default"], "normal");
+    EXPECT_EQ(document["components"]["schemas"]["Notify"]["required"], Json{"url"});
+}
+
+}  // namespace
+}  // namespace tunewright::api

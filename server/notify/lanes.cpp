@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <system_error>
 
 #include "server/log.h"
 
@@ -29,9 +30,18 @@ bool Lanes::add(Task task) {
     if (machine.slow && machine.waiting >= kOfSlow) return false;
     machine.waiting++;
     waiting_.push_back(std::move(task));
-    if (threads_.size() < std::min(kThreads, waiting_.size() + running_)) threads_.emplace_back([this] { work(); });
+    if (threads_.size() < std::min(kThreads, waiting_.size() + running_)) grow();
     changed_.notify_one();
     return true;
+}
+
+/// One thread more; where the system has none, those that there are do the work, or it comes again.
+void Lanes::grow() {
+    try {
+        threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error& fault) {
+        log_error(std::string("no thread to tell others of ends: ") + fault.what());
+    }
 }
 
 /// The first that may run. What has waited for too long is dropped on the way.

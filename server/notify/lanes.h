@@ -45,6 +45,7 @@ private:
         bool slow = false;
     };
 
+    void grow();
     void work();
     bool pick(Task& task);
     void took(const std::string& machine, Clock::duration time);

@@ -30,6 +30,19 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** A menu that opens from its summary closes when the focus leaves it, or by Escape. */
+export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
+  menu.addEventListener("focusout", (event) => {
+    if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
+  });
+  menu.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    menu.open = false;
+    menu.querySelector("summary")?.focus();
+  });
+  return menu;
+}
+
 /** A description of a node outside HTML: what formulas and plots are made of before they touch the page. */
 export interface TreeNode {
   tag: string;

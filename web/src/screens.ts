@@ -1,4 +1,5 @@
 // Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
+import { sentenceOf } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import type { Batch } from "./api/job_lists.ts";
 import type { FieldError, IdentifyRequest } from "./api/types.ts";
@@ -118,7 +119,7 @@ export function screens(
       store.set((workspace) => ({ ...workspace, test }));
       mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
     } catch (error) {
-      mount(noRecordView(error instanceof Error ? error.message : String(error)), "Identify · Tunewright", focus);
+      mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
     }
   }
 
@@ -149,7 +150,7 @@ export function screens(
     } catch (error) {
       store.set((workspace) => ({
         ...workspace,
-        serviceTrouble: error instanceof Error ? error.message : String(error),
+        serviceTrouble: sentenceOf(error),
       }));
     }
   }

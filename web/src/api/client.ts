@@ -12,6 +12,9 @@ export class ApiError extends Error {
   }
 }
 
+/** What went wrong, as a sentence to show. */
+export const sentenceOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
 export interface Reply {
   status: number;
   data: unknown;

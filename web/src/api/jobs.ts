@@ -1,5 +1,5 @@
 // Starting, following and cancelling a job.
-import { ApiError, call } from "./client.ts";
+import { ApiError, call, sentenceOf } from "./client.ts";
 import { withTraces } from "./experiments.ts";
 import { isFinal } from "./types.ts";
 import type { Example, Job, Method, TuningRequest } from "./types.ts";
@@ -90,7 +90,7 @@ function poll(id: string, watcher: Watcher): () => void {
       if (stopped) return;
       troubled = true;
       const gone = error instanceof ApiError && error.status >= 400 && error.status < 500 && error.status !== 429;
-      watcher.onTrouble(error instanceof Error ? error.message : String(error));
+      watcher.onTrouble(sentenceOf(error));
       if (!gone) again(error instanceof ApiError && error.retryAfter ? error.retryAfter * 1000 : LOST_WAIT_MS);
     }
   };

@@ -1,5 +1,5 @@
 // One plot on the page: stacked panes over one x axis, with cursor, zoom, keys, data table and exports.
-import { h, node, say, setAttribute, svgElement, svgWriter, uniqueId } from "../dom.ts";
+import { closesItself, h, node, say, setAttribute, svgElement, svgWriter, uniqueId } from "../dom.ts";
 import { joinLink, moveCursor, zoomTogether } from "./cursor.ts";
 import type { CursorPosition, Listener } from "./cursor.ts";
 import { dataTable } from "./data_table.ts";
@@ -96,14 +96,7 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
       h("button", { type: "button", onclick: () => save("csv") }, "CSV"),
     ),
   );
-  exportMenu.addEventListener("focusout", (event) => {
-    if (!(event.relatedTarget instanceof Node && exportMenu.contains(event.relatedTarget))) exportMenu.open = false;
-  });
-  exportMenu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    exportMenu.open = false;
-    exportMenu.querySelector("summary")?.focus();
-  });
+  closesItself(exportMenu);
   const legend = h("div", { class: "legend-slot", hidden: !frame.ownLegend });
   const element = h(
     "section",

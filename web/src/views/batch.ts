@@ -7,6 +7,7 @@ import { formatRoute } from "../routes.ts";
 import { BATCH_COLUMNS, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
 import { orderOf, sortText } from "../words/league.ts";
+import { jobTable, troubleLine } from "./job_actions.ts";
 import type { View } from "./start.ts";
 
 export interface BatchEvents {
@@ -30,7 +31,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   let readAt = -1;
   let order = orderOf(sort || "index");
   const heading = h("h1", { tabindex: -1 }, "Batch");
-  const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
+  const { element: trouble, complain } = troubleLine("alert");
   const counts = h("p", { role: "status" });
   const bar = h("progress", { max: 1, "aria-label": "Loops done" });
   const cancel = h("button", { type: "button", onclick: () => void work(() => cancelBatch(id)) }, "Cancel the rest");
@@ -42,23 +43,10 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     return { column, element: h("th", { scope: "col" }, button) };
   });
   const rows = h("tbody");
-  const table = h(
-    "div",
-    { class: "scroll", role: "region", "aria-label": "Loops of the batch", tabindex: 0 },
-    h(
-      "table",
-      { class: "figures job-list" },
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          heads.map((head) => head.element),
-        ),
-      ),
-      rows,
-    ),
+  const table = jobTable(
+    "Loops of the batch",
+    heads.map((head) => head.element),
+    rows,
   );
   const element = h(
     "main",
@@ -103,11 +91,6 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     trouble.hidden = true;
     await act().catch(complain);
     if (!disposed) await refresh();
-  }
-
-  function complain(error: unknown): void {
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
   }
 
   async function saveCsv(): Promise<void> {

@@ -141,12 +141,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     otherFigures = others;
   }
 
-  function showPlots(job: Job, result: Result, drawn: Drawn[], selected: number): void {
-    linearNote.hidden = !hasLinear(drawn);
-    showEntryPlots(plots, drawn, job.request, selected);
-    plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
-  }
-
   /** What moves with a slider: verdict, settings, figures and plots. */
   function showMoving(job: Job, result: Result, workspace: Workspace, held: boolean): Drawn[] {
     const entries = result.controllers;
@@ -158,7 +152,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     showVerdict(verdict, result, names, selected, listed);
     settings.show(entries[selected]!, names[selected]!, units);
     showFigures(result, listed, drawn, names, units, held);
-    showPlots(job, result, drawn, selected);
+    linearNote.hidden = !hasLinear(drawn);
+    showEntryPlots(plots, drawn, job.request, selected);
     return drawn;
   }
 
@@ -171,6 +166,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const units = unitNames(job.request?.units);
     if (!main.isConnected) element.append(...bodyParts);
     const drawn = showMoving(job, result, workspace, false);
+    // The record stands still while a slider moves.
+    plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
     const listed = listedEntries(entries.length, drawn, selected);
     element.classList.toggle("broad", listed.length >= BROAD_FROM);
     // Rules and robustness of a nonlinear plant rest on its linear model.

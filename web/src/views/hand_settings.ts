@@ -1,5 +1,5 @@
 // Settings to try by hand: sliders around an optimum, and what the plant answers while they move.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { stepOf } from "../api/evaluate.ts";
 import { latest } from "../api/latest.ts";
 import type { Emulation, EmulationScenario, Tuned } from "../api/reports.ts";
@@ -86,7 +86,7 @@ export function handSettings({ onRun, onTry }: HandEvents): HandSettings {
       },
       onError(error) {
         const first = error instanceof ApiError ? error.problem.errors?.[0]?.detail : undefined;
-        complain(first ?? (error instanceof Error ? error.message : String(error)));
+        complain(first ?? sentenceOf(error));
       },
     },
   );

@@ -1,5 +1,5 @@
 // Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { identify } from "../api/experiments.ts";
 import { previewRecord } from "../api/records.ts";
 import { latest } from "../api/latest.ts";
@@ -164,7 +164,7 @@ export function identifyView(
       draw();
       if (!whole) void look();
       if (!whole) reading.querySelector("details")!.open = true;
-      errors.show(pointed, error instanceof Error ? error.message : String(error));
+      errors.show(pointed, sentenceOf(error));
     },
   });
 
@@ -228,7 +228,7 @@ export function identifyView(
       if (faults.length > 0) errors.show(faults);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+      errors.show(problem.errors ?? [], sentenceOf(error));
     } finally {
       candidates.setBusy(false);
     }

@@ -1,4 +1,5 @@
 // What the screens of a job have in common: stopping it, comparing all methods on its plant, saying what went wrong.
+import { sentenceOf } from "../api/client.ts";
 import { cancelJob } from "../api/jobs.ts";
 import type { Job, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -17,14 +18,32 @@ export interface JobActions {
   cancel(): Promise<void>;
 }
 
+/** Where a screen says what went wrong. */
+export interface TroubleLine {
+  element: HTMLElement;
+  complain(error: unknown): void;
+}
+
+export function troubleLine(role: "status" | "alert"): TroubleLine {
+  const element = h("p", { class: "trouble", role, hidden: true });
+  return {
+    element,
+    complain(error) {
+      element.textContent = sentenceOf(error);
+      element.hidden = false;
+    },
+  };
+}
+
+/** A table with a line for each job, which scrolls by itself where it is wide. */
+export function jobTable(label: string, heads: HTMLElement[], rows: HTMLElement): HTMLElement {
+  const table = h("table", { class: "figures job-list" }, h("thead", {}, h("tr", {}, heads)), rows);
+  return h("div", { class: "scroll", role: "region", "aria-label": label, tabindex: 0 }, table);
+}
+
 export function jobActions(store: Store, events: JobEvents, look = ""): JobActions {
   const all = h("button", { type: "button", class: look, onclick: () => void compareAll() }, "Compare all methods");
-  const trouble = h("p", { class: "trouble", role: "status", hidden: true });
-
-  function complain(error: unknown): void {
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
-  }
+  const { element: trouble, complain } = troubleLine("status");
 
   async function cancel(): Promise<void> {
     const job = store.get().job;

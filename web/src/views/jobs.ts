@@ -1,5 +1,5 @@
 // Jobs: what the service keeps, to be found again, duplicated, tried again or deleted; batches, and a CSV of loops as one.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { deleteBatch, hasEnded, listBatches, listJobs, nextJobs, postLoops } from "../api/job_lists.ts";
 import type { Batch, JobList, ListedJob } from "../api/job_lists.ts";
 import { cancelJob, deleteJob, getJob, postJob } from "../api/jobs.ts";
@@ -10,6 +10,7 @@ import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
 import { formatNumber } from "../words/numbers.ts";
+import { jobTable, troubleLine } from "./job_actions.ts";
 import { reportLink } from "./report_link.ts";
 import type { View } from "./start.ts";
 
@@ -56,7 +57,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
   let next: string | null = null;
   let further: ListedJob[] = [];
   const heading = h("h1", { tabindex: -1 }, "Jobs");
-  const trouble = h("p", { class: "trouble", role: "alert", hidden: true });
+  const { element: trouble, complain } = troubleLine("alert");
   const search = h("input", {
     type: "text",
     value: text,
@@ -65,25 +66,8 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
   });
   const found = h("p", { class: "hint", role: "status" });
   const rows = h("tbody");
-  const table = h(
-    "div",
-    { class: "scroll", role: "region", "aria-label": "List of jobs", tabindex: 0 },
-    h(
-      "table",
-      { class: "figures job-list" },
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          COLUMNS.map((label) => h("th", { scope: "col" }, label)),
-          h("th", { scope: "col" }, "Actions"),
-        ),
-      ),
-      rows,
-    ),
-  );
+  const heads = [...COLUMNS, "Actions"].map((name) => h("th", { scope: "col" }, name));
+  const table = jobTable("List of jobs", heads, rows);
   const more = h("button", { type: "button", hidden: true, onclick: () => void showMore() }, "Older jobs");
   const batchRows = h("ul", { class: "batch-list" });
   const batches = h(
@@ -109,11 +93,6 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     batches,
     loops.element,
   );
-
-  function complain(error: unknown): void {
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
-  }
 
   /** Does something to a job, then looks what the list is now. */
   async function change(work: () => Promise<void>, done: string): Promise<void> {
@@ -344,7 +323,7 @@ function loopsCard(
     } catch (error) {
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
       fault.replaceChildren(
-        h("p", {}, error instanceof Error ? error.message : String(error)),
+        h("p", {}, sentenceOf(error)),
         ...(listed.length > 0
           ? [
               h(

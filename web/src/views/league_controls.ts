@@ -1,5 +1,5 @@
 // What stands above the league table: the limit on Ms, only rows that settle, which columns, the table as a file.
-import { h, uniqueId } from "../dom.ts";
+import { closesItself, h, uniqueId } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import type { LeagueColumn } from "../words/league.ts";
 import { RANK_MS } from "../words/league.ts";
@@ -47,14 +47,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     events.onChange();
   });
   stable.addEventListener("change", () => events.onChange());
-  menu.addEventListener("focusout", (event) => {
-    if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
-  });
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    menu.open = false;
-    menu.querySelector("summary")?.focus();
-  });
+  closesItself(menu);
 
   const shows = (id: string): boolean => chosen.get(id) ?? columns.find((column) => column.id === id)?.main ?? false;
 

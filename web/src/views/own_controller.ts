@@ -1,6 +1,6 @@
 // The user's own controller on Design: what is chosen, what to type into it, today's settings in it, its law, and the
 // entry's controller as code.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { getProduct } from "../api/products.ts";
 import type { AsEntered, Product, SettingValue } from "../api/products.ts";
@@ -67,14 +67,14 @@ export function ownController(
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
-      typed.complain(sentenceOf(error));
+      typed.complain(firstFault(error));
       asked = "";
     },
   });
 
-  function sentenceOf(error: unknown): string {
+  function firstFault(error: unknown): string {
     const listed = error instanceof ApiError ? errors.mark("/implement", underImplement(error)) : [];
-    return listed[0]?.detail ?? (error instanceof Error ? error.message : String(error));
+    return listed[0]?.detail ?? sentenceOf(error);
   }
 
   function chooseMine(next: MyController | null): void {
@@ -155,7 +155,7 @@ export function ownController(
         (product) => {
           if (asked === key) showTyped(product, known, entry);
         },
-        (error: unknown) => typed.complain(sentenceOf(error)),
+        (error: unknown) => typed.complain(firstFault(error)),
       );
       return;
     }
@@ -183,7 +183,7 @@ export function ownController(
   function complain(error: unknown): void {
     const problem = error instanceof ApiError ? (error.problem.errors ?? []) : [];
     const others = errors.mark("", problem);
-    const general = error instanceof Error ? error.message : String(error);
+    const general = sentenceOf(error);
     trouble.textContent = problem.length > 0 ? others.map((item) => item.detail).join(" ") : general;
     trouble.hidden = trouble.textContent === "";
   }

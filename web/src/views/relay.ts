@@ -1,5 +1,5 @@
 // Relay test: what one would show on a plant, how to make it, and its record for Identify.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { simulateRelay } from "../api/experiments.ts";
 import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/experiments.ts";
 import { latest } from "../api/latest.ts";
@@ -166,7 +166,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     },
     onError(error) {
       const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+      errors.show(problem.errors ?? [], sentenceOf(error));
       identify.disabled = true;
     },
   });

@@ -1,5 +1,5 @@
 // "Report": a job's page to print, of the entry that stands on the screen.
-import { getText } from "../api/client.ts";
+import { getText, sentenceOf } from "../api/client.ts";
 import { currentKey } from "../api/key.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
@@ -32,7 +32,7 @@ export function reportLink(): ReportLink {
     if (currentKey() === null) return;
     event.preventDefault();
     void save().catch((error: unknown) => {
-      element.textContent = `Report: ${error instanceof Error ? error.message : String(error)}`;
+      element.textContent = `Report: ${sentenceOf(error)}`;
     });
   });
 

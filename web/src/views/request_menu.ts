@@ -1,5 +1,5 @@
 // The request behind what is shown, for programs: as JSON and as a call that can be pasted into a terminal.
-import { h } from "../dom.ts";
+import { closesItself, h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { copyButton } from "./copy.ts";
 
@@ -39,14 +39,7 @@ export function requestMenu(announce: (sentence: string) => void): RequestMenu {
     if (text !== null) download(new Blob([text], { type: "application/json" }), FILE_NAME);
   }
 
-  menu.addEventListener("focusout", (event) => {
-    if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
-  });
-  menu.addEventListener("keydown", (event) => {
-    if (event.key !== "Escape") return;
-    menu.open = false;
-    menu.querySelector("summary")?.focus();
-  });
+  closesItself(menu);
   return {
     element: menu,
     show(path, request) {

@@ -1,5 +1,5 @@
 // Start: a record, a model, or an example; everything below is optional.
-import { ApiError } from "../api/client.ts";
+import { ApiError, sentenceOf } from "../api/client.ts";
 import { postJob } from "../api/jobs.ts";
 import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -139,7 +139,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
       const listed = problem.errors ?? [];
-      errors.show(listed, error instanceof Error ? error.message : String(error));
+      errors.show(listed, sentenceOf(error));
     } finally {
       busy = false;
       element.removeAttribute("aria-busy");

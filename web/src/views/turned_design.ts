@@ -1,4 +1,5 @@
 // A job's entry that is turned by sliders: what they start from, and the job's result as it reads with the newest answer.
+import { sentenceOf } from "../api/client.ts";
 import { effect, untracked } from "@preact/signals-core";
 import type { LiveSubject } from "../api/live.ts";
 import { isFinal } from "../api/types.ts";
@@ -93,7 +94,7 @@ export function turnedDesign(
     try {
       await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
     } catch (error) {
-      trouble.textContent = error instanceof Error ? error.message : String(error);
+      trouble.textContent = sentenceOf(error);
       trouble.hidden = false;
     } finally {
       again.disabled = false;

@@ -1,6 +1,6 @@
 // The controller as a program: Structured Text, C or Python, to read, to copy and to save.
 import type { TextFile } from "../../api/client.ts";
-import { ApiError } from "../../api/client.ts";
+import { ApiError, sentenceOf } from "../../api/client.ts";
 import { getCode } from "../../api/products.ts";
 import type { CodeQuestion, Language } from "../../api/products.ts";
 import { latest } from "../../api/latest.ts";
@@ -85,7 +85,7 @@ export function codeCard(announce: (sentence: string) => void): CodeCard {
     onError(error) {
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
       const others = errors.mark("", listed);
-      const said = listed.length > 0 ? others.map((item) => item.detail) : [error instanceof Error ? error.message : String(error)];
+      const said = listed.length > 0 ? others.map((item) => item.detail) : [sentenceOf(error)];
       trouble.textContent = said.join(" ");
       trouble.hidden = said.length === 0;
       file = null;

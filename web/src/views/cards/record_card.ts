@@ -1,5 +1,5 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
-import { ApiError } from "../../api/client.ts";
+import { ApiError, sentenceOf } from "../../api/client.ts";
 import { previewFile, previewRecord } from "../../api/records.ts";
 import type { Preview } from "../../api/records.ts";
 import type { FieldError, RecordedTest } from "../../api/types.ts";
@@ -94,7 +94,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     status.textContent = `Reading ${chosen.name}...`;
     const read = await previewFile(chosen).catch((error: unknown) => {
       const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(problem.errors ?? [], error instanceof Error ? error.message : String(error));
+      errors.show(problem.errors ?? [], sentenceOf(error));
       status.textContent = `${chosen.name} could not be read.`;
       return null;
     });

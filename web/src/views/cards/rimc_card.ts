@@ -1,5 +1,5 @@
 // Revised IMC on Design: its one parameter to drag, what it buys, its figures beside those of the full controller.
-import { ApiError } from "../../api/client.ts";
+import { ApiError, sentenceOf } from "../../api/client.ts";
 import type { Entry, Plant } from "../../api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../charts/rimc.ts";
 import { h, uniqueId } from "../../dom.ts";
@@ -69,7 +69,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
       await retune(value);
     } catch (error) {
       const first = error instanceof ApiError ? error.problem.errors?.[0]?.detail : undefined;
-      trouble.textContent = first ?? (error instanceof Error ? error.message : String(error));
+      trouble.textContent = first ?? sentenceOf(error);
       trouble.hidden = false;
       if (shown?.entry.rimc) lambda.set(shown.entry.rimc.lambda);
       draw();

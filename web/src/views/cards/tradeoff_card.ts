@@ -1,4 +1,5 @@
 // Servo against regulation on Design and Compare: charts and figures of controllers that have them, computed on request for others.
+import { sentenceOf } from "../../api/client.ts";
 import { tradeoffProfile, tradeoffsOf } from "../../api/evaluate.ts";
 import type { Tradeoff } from "../../api/reports.ts";
 import type { Entry, Plant } from "../../api/types.ts";
@@ -80,7 +81,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
       if (!profileOf(items()) && items().some(isKnown))
         profiles.set(JSON.stringify(asked), await tradeoffProfile(asked));
     } catch (error) {
-      trouble.textContent = error instanceof Error ? error.message : String(error);
+      trouble.textContent = sentenceOf(error);
       trouble.hidden = false;
     } finally {
       button.disabled = false;

@@ -8,7 +8,7 @@
 #include "api/report/report.h"
 #include "server/clock.h"
 #include "server/config.h"
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 #include "server/jobs/timer.h"
 #include "server/json_text.h"
 

@@ -14,6 +14,7 @@ struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
     std::string store = "sqlite:tunewright.db";
     std::string migrate = "auto";     ///< or manual: the store's tables are brought up to date by `tunewright migrate`
+    bool pooled = false;              ///< PostgreSQL is behind a pooler in transaction mode
     std::string role = "all";         ///< or api, worker
     std::size_t workers = 0;          ///< 0: as many as there are cores
     std::string web;                  ///< "": `web` beside the folder of the binary

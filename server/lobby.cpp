@@ -4,9 +4,9 @@
 #include <future>
 #include <thread>
 
-#include "server/http/problems.h"
-#include "server/http/router.h"
-#include "server/http/server.h"
+#include "server/http/app/problems.h"
+#include "server/http/app/router.h"
+#include "server/http/guard/server.h"
 #include "server/json_text.h"
 #include "server/log.h"
 #include "server/store/open_store.h"
@@ -61,7 +61,7 @@ std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_t
     const SchemaSteps steps = config.migrate == "manual" ? SchemaSteps::leave : SchemaSteps::take;
     for (bool told = false; !stop.stop_requested();) {
         try {
-            return open_store(config.store, steps);
+            return open_store(config.store, steps, config.pooled);
         } catch (const SchemaBehind& behind) {
             if (!std::exchange(told, true)) log_info(std::string("waiting: ") + behind.what());
         }

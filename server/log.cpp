@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "server/http/router.h"
+#include "server/http/app/router.h"
 #include "server/jobs/running/result_outbox.h"
 #include "server/json_text.h"
 

@@ -70,6 +70,8 @@ void add_process_options(CLI::App& app, Config& config) {
     option(app, "migrate", config.migrate,
            "auto: the tables of an older store are brought up to date at the start; manual: by `tunewright migrate`")
         ->capture_default_str();
+    flag(app, "pooled", config.pooled,
+         "PostgreSQL is behind a pooler in transaction mode: no notices, all processes poll");
     option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")
         ->capture_default_str();
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")

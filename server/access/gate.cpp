@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 
 namespace tunewright::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "server/http/negotiation.h"
+#include "server/http/app/negotiation.h"
 
 namespace tunewright::server {
 namespace {

@@ -8,20 +8,15 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "server/http/message.h"
 #include "server/log.h"
 
 namespace tunewright::server {
 namespace {
 
+constexpr std::string_view kBlanks = " \t\r";  // a file may come from another system
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::chrono::seconds kLookInterval{1};
-
-std::string_view trim(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 /// The text of the file; nothing where it cannot be read.
 std::optional<std::string> read_file(const std::string& path) {
@@ -45,11 +40,12 @@ std::vector<NamedLine> named_lines(std::string_view text) {
     std::vector<NamedLine> lines;
     for (std::size_t number = 1; !text.empty(); number++) {
         const std::size_t end = text.find('\n');
-        const std::string_view line = trim(text.substr(0, end));
+        const std::string_view line = http::trim(text.substr(0, end), kBlanks);
         text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
         if (line.empty() || line.front() == '#') continue;
         const std::size_t blank = line.find_first_of(" \t");
-        const std::string_view rest = blank == std::string_view::npos ? std::string_view{} : trim(line.substr(blank));
+        const std::string_view rest =
+            blank == std::string_view::npos ? std::string_view{} : http::trim(line.substr(blank), kBlanks);
         lines.push_back({number, line.substr(0, blank), rest});
     }
     return lines;

@@ -106,4 +106,10 @@ Response json_response(std::string body, int status) {
     return response;
 }
 
+std::string_view trim(std::string_view text, std::string_view blanks) {
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
 }  // namespace tunewright::server::http

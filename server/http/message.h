@@ -62,6 +62,9 @@ struct Request {
     std::string_view path() const;
 };
 
+/// Without `blanks` at both ends.
+std::string_view trim(std::string_view text, std::string_view blanks = " \t");
+
 /// "/v1/jobs" -> {"v1", "jobs"}; "/" -> {}; "/v1/" -> {"v1", ""}. Percent codes are decoded in each segment by itself.
 std::vector<std::string> path_segments(std::string_view path);
 

@@ -3,8 +3,8 @@
 
 #include "api/csv/text.h"
 #include "api/json/json.h"
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 #include "server/jobs/await.h"
 #include "server/routes/batch_results.h"
 #include "server/routes/job_access.h"

@@ -1,5 +1,5 @@
 #include "api/service.h"
-#include "server/http/compression.h"
+#include "server/http/app/compression.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"
 #include "server/routes/routes.h"

@@ -1,4 +1,4 @@
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 #include "server/json_text.h"
 #include "server/routes/routes.h"
 

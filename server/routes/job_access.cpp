@@ -1,6 +1,6 @@
 #include "server/routes/job_access.h"
 
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 
 namespace tunewright::server {
 

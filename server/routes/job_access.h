@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "server/http/router.h"
+#include "server/http/app/router.h"
 #include "server/jobs/service.h"
 
 namespace tunewright::server {

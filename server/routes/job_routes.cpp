@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "api/service.h"
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 #include "server/jobs/await.h"
 #include "server/routes/job_access.h"
 #include "server/routes/job_json.h"

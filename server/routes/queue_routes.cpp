@@ -1,5 +1,5 @@
 // What whoever runs the service sees of the queue, and how he stops and starts it.
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 #include "server/jobs/await.h"
 #include "server/json_text.h"
 #include "server/routes/job_access.h"

@@ -1,6 +1,6 @@
 #include "api/report/report.h"
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 #include "server/json_text.h"
 #include "server/routes/job_access.h"
 #include "server/routes/request_checks.h"

@@ -2,8 +2,8 @@
 
 #include "api/csv/text.h"
 #include "api/json/json.h"
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 
 namespace tunewright::server {
 

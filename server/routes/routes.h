@@ -9,7 +9,7 @@
 #include "server/access/places.h"
 #include "server/access/turns.h"
 #include "server/executor.h"
-#include "server/http/router.h"
+#include "server/http/app/router.h"
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"

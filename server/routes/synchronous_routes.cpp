@@ -8,8 +8,8 @@
 
 #include "api/service.h"
 #include "server/clock.h"
-#include "server/http/negotiation.h"
-#include "server/http/problems.h"
+#include "server/http/app/negotiation.h"
+#include "server/http/app/problems.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 

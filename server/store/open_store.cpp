@@ -24,9 +24,9 @@ void check_store_address(const std::string& address) {
                                 "postgresql://USER:PASSWORD@HOST:PORT/DATABASE.");
 }
 
-std::unique_ptr<JobStore> open_store(const std::string& address, SchemaSteps steps) {
+std::unique_ptr<JobStore> open_store(const std::string& address, SchemaSteps steps, bool pooled) {
     check_store_address(address);
-    if (is_shared_store(address)) return open_postgres_store(address, steps);
+    if (is_shared_store(address)) return open_postgres_store(address, steps, pooled);
     return open_sqlite_store(address.substr(kSqlite.size()), steps);
 }
 

@@ -25,7 +25,11 @@ enum class SchemaSteps {
 /// its folder. Throws as check_store_address() does, and StoreError with a sentence:
 ///
 ///     const auto store = open_store("sqlite:tunewright.db");
-std::unique_ptr<JobStore> open_store(const std::string& address, SchemaSteps steps = SchemaSteps::take);
+///
+/// `pooled`: PostgreSQL is behind a pooler in transaction mode. Nothing is kept in a session then, and what other
+/// processes have done is looked for instead of heard of.
+std::unique_ptr<JobStore> open_store(const std::string& address, SchemaSteps steps = SchemaSteps::take,
+                                     bool pooled = false);
 
 struct MigrateCommand {
     std::string store;
@@ -50,7 +54,7 @@ void migrate_sqlite(const std::string& path, bool compact, std::ostream& out);
 /// Connects, and brings the schema `tunewright` of the database up to date or throws SchemaBehind. `uri`:
 /// postgresql://user:password@host/name. Where the schema is up to date its user needs no right to change it. Throws
 /// StoreError with a sentence that never has the password in it.
-std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps);
+std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps, bool pooled = false);
 
 /// The schema alone. `grant` names a role that is given what a service needs: to read and write rows, nothing else.
 /// Throws as open_postgres_store() does.

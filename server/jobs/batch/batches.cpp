@@ -182,8 +182,9 @@ void Reception::open() {
         ++out_;
     }
     last_sent_ = Clock::now();
-    store_.open_batch({id_, reader_.name(), order_.owner, order_.flow, now_(), target_of(reader_.notify()), order_.origin},
-                      [this](const Outcome<bool>& outcome) { sent(outcome, 0, false); });
+    store_.open_batch(
+        {id_, reader_.name(), order_.owner, order_.flow, now_(), target_of(reader_.notify()), order_.origin},
+        [this](const Outcome<bool>& outcome) { sent(outcome, 0, false); });
 }
 
 void Reception::sign_of_life() { add({}, 0, false); }

@@ -20,14 +20,16 @@ class PostgresStore : public JobStore {
 public:
     PostgresStore(const Address& address, const std::string& tag, std::unique_ptr<Session> session)
         : readers_(address),
-          listener_(address, tag),
-          writer_(address, tag, std::move(session)),
-          bulk_(address, tag, nullptr) {
+          listener_(address.pooled() ? nullptr : std::make_unique<Listener>(address, tag)),
+          writer_(address, address.pooled() ? "" : tag, std::move(session)),
+          bulk_(address, address.pooled() ? "" : tag, nullptr) {
         PostgresStore::depth();  // its clock is known from the start
     }
 
     bool shared() const override { return true; }
-    void watch(std::function<void(const StoreNotice&)> notify) override { listener_.watch(std::move(notify)); }
+    void watch(std::function<void(const StoreNotice&)> notify) override {
+        if (listener_) listener_->watch(std::move(notify));
+    }
     bool healthy() const override { return writer_.healthy() && bulk_.healthy(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
@@ -188,8 +190,8 @@ private:
     }
 
     Readers readers_;
-    std::atomic<UnixMs> ahead_ = 0;  ///< the database's clock, before ours; measured with each count
-    Listener listener_;
+    std::atomic<UnixMs> ahead_ = 0;       ///< the database's clock, before ours; measured with each count
+    std::unique_ptr<Listener> listener_;  ///< nothing behind a pooler
     // The first to go: they end what was asked for. What touches many rows has a connection of its own, so that jobs
     // which somebody waits for never wait behind a batch.
     Writer writer_;
@@ -241,8 +243,8 @@ auto opening(const postgres::Address& address, Work work) {
 
 }  // namespace
 
-std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps) {
-    const postgres::Address address(uri);
+std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps, bool pooled) {
+    const postgres::Address address(uri, pooled);
     return opening(address, [&] {
         auto session = std::make_unique<postgres::Session>(address);
         const postgres::SchemaState state = postgres::schema_state(*session);

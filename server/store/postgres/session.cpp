@@ -58,7 +58,7 @@ std::map<std::string, std::string> options_of(const std::string& uri) {
 
 }  // namespace
 
-Address::Address(const std::string& uri) {
+Address::Address(const std::string& uri, bool pooled) : pooled_(pooled) {
     std::map<std::string, std::string> options = options_of(uri);
     const auto value = [&](const char* keyword, const char* otherwise) {
         const auto found = options.find(keyword);
@@ -73,11 +73,16 @@ namespace {
 
 // A queue's tables grow and shrink faster than the planner's statistics follow: an index, row by row, in the order in
 // which the statement names the tables, is right at every size.
-constexpr const char* kSettings =
-    "SET search_path TO tunewright; SET statement_timeout TO '10s'; SET idle_in_transaction_session_timeout TO '30s'; "
-    "SET enable_seqscan TO off; SET enable_hashjoin TO off; SET enable_mergejoin TO off; SET enable_bitmapscan TO off; "
-    "SET enable_material TO off; SET join_collapse_limit TO 1; SET from_collapse_limit TO 1; SET jit TO off; "
-    "SET synchronous_commit TO on";
+std::string settings(const std::string& set) {
+    std::string text;
+    for (const char* setting :
+         {"search_path TO tunewright", "statement_timeout TO '10s'", "idle_in_transaction_session_timeout TO '30s'",
+          "enable_seqscan TO off", "enable_hashjoin TO off", "enable_mergejoin TO off", "enable_bitmapscan TO off",
+          "enable_material TO off", "join_collapse_limit TO 1", "from_collapse_limit TO 1", "jit TO off",
+          "synchronous_commit TO on"})
+        text.append(set).append(" ").append(setting).append("; ");
+    return text;
+}
 
 Failure::Kind kind_of(const std::string& state) {
     if (state == "53100") return Failure::Kind::full;
@@ -122,7 +127,7 @@ std::string literal(std::string_view text) {
 std::unique_ptr<Link> connect(const Address& address) {
     try {
         auto link = std::make_unique<Link>(address);
-        pqxx::nontransaction(link->connection).exec(kSettings);
+        if (!address.pooled()) pqxx::nontransaction(link->connection).exec(settings("SET"));
         return link;
     } catch (const std::exception& error) {
         throw Failure(Failure::Kind::broken, "PostgreSQL: " + first_line(error.what()));
@@ -142,7 +147,7 @@ Values& Values::real(double value) {
     return plain(error == std::errc{} ? std::string(digits, end) : "NaN");
 }
 
-Session::Session(const Address& address) : link_(connect(address)) {}
+Session::Session(const Address& address) : pooled_(address.pooled()), link_(connect(address)) {}
 Session::~Session() = default;
 
 template <class Work>
@@ -164,31 +169,56 @@ const std::string& Session::prepared(const std::string& sql) {
     return found->second;
 }
 
+template <class Work>
+pqxx::result Session::sent(Work work) {
+    if (!pooled_ || open_) return guarded(work);
+    begin();
+    try {
+        pqxx::result found = guarded(work);
+        commit();
+        return found;
+    } catch (const Failure& failure) {
+        if (failure.kind != Failure::Kind::broken) rollback();
+        throw;
+    }
+}
+
 pqxx::result Session::run(const std::string& sql, const Values& values) {
+    const auto given = pqxx::prepare::make_dynamic_params(values.list);
+    if (pooled_) return sent([&](pqxx::nontransaction& on) { return on.exec_params(sql, given); });
     const std::string& name = prepared(sql);
-    return guarded([&](pqxx::nontransaction& on) {
-        return on.exec_prepared(name, pqxx::prepare::make_dynamic_params(values.list));
-    });
+    return sent([&](pqxx::nontransaction& on) { return on.exec_prepared(name, given); });
 }
 
 pqxx::result Session::run(const std::string& sql, const Values& values, const std::string& bytes) {
+    const auto given = pqxx::prepare::make_dynamic_params(values.list);
+    const pqxx::binarystring last(bytes);
+    if (pooled_) return sent([&](pqxx::nontransaction& on) { return on.exec_params(sql, given, last); });
     const std::string& name = prepared(sql);
-    return guarded([&](pqxx::nontransaction& on) {
-        return on.exec_prepared(name, pqxx::prepare::make_dynamic_params(values.list), pqxx::binarystring(bytes));
-    });
+    return sent([&](pqxx::nontransaction& on) { return on.exec_prepared(name, given, last); });
 }
 
 pqxx::result Session::run_plain(const std::string& sql) {
-    return guarded([&](pqxx::nontransaction& on) { return on.exec(sql); });
+    return sent([&](pqxx::nontransaction& on) { return on.exec(sql); });
 }
 
 std::int64_t Session::begin(bool durable) {
-    const std::string manner = durable ? "" : "SET LOCAL synchronous_commit TO off; ";
-    return run_plain("BEGIN; " + manner + "SELECT txid_current()")[0][0].as<std::int64_t>();
+    std::string manner = pooled_ ? settings("SET LOCAL") : "";
+    if (!durable) manner += "SET LOCAL synchronous_commit TO off; ";
+    const std::string sql = "BEGIN; " + manner + "SELECT txid_current()";
+    const pqxx::result rows = guarded([&](pqxx::nontransaction& on) { return on.exec(sql); });
+    open_ = true;
+    return rows[0][0].as<std::int64_t>();
 }
 
-void Session::commit(const std::string& last) { run_plain(last + "COMMIT"); }
+void Session::commit(const std::string& last) {
+    guarded([&](pqxx::nontransaction& on) { return on.exec(last + "COMMIT"); });
+    open_ = false;
+}
 
-void Session::rollback() { run_plain("ROLLBACK"); }
+void Session::rollback() {
+    open_ = false;
+    guarded([](pqxx::nontransaction& on) { return on.exec("ROLLBACK"); });
+}
 
 }  // namespace tunewright::server::postgres

@@ -21,17 +21,20 @@ class Address {
 public:
     /// Throws StoreError with a sentence where `uri` cannot be read; the sentence does not repeat it, since it may
     /// hold a password.
-    explicit Address(const std::string& uri);
+    /// `pooled`: behind a pooler in transaction mode, where nothing lasts from one transaction to the next.
+    explicit Address(const std::string& uri, bool pooled = false);
 
     /// For libpq, with time limits for what the address leaves open: no call waits without end for a machine that is
     /// gone.
     const std::string& settings() const { return settings_; }
     /// Host, port and database, for logs and errors: never user or password.
     const std::string& shown() const { return shown_; }
+    bool pooled() const { return pooled_; }
 
 private:
     std::string settings_;
     std::string shown_;
+    bool pooled_;
 };
 
 class Failure : public std::runtime_error {
@@ -70,7 +73,8 @@ struct Link {
     pqxx::quiet_errorhandler quiet;
 };
 
-/// Opens a connection with the settings that every part of the store uses. Throws Failure.
+/// Opens a connection with the settings that every part of the store uses; behind a pooler each transaction makes them.
+/// Throws Failure.
 std::unique_ptr<Link> connect(const Address& address);
 
 class Session {
@@ -81,7 +85,8 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// One statement, prepared at its first use. Throws Failure.
+    /// One statement, prepared at its first use; behind a pooler it is sent as it is, in a transaction of its own where
+    /// none is open. Throws Failure.
     pqxx::result run(const std::string& sql, const Values& values = {});
     /// The same; after the values come bytes, as they are.
     pqxx::result run(const std::string& sql, const Values& values, const std::string& bytes);
@@ -98,8 +103,13 @@ public:
 private:
     template <class Work>
     pqxx::result guarded(Work work);
+    /// The same, in a transaction where one is needed.
+    template <class Work>
+    pqxx::result sent(Work work);
     const std::string& prepared(const std::string& sql);
 
+    bool pooled_;
+    bool open_ = false;  ///< a transaction is
     std::unique_ptr<Link> link_;
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };

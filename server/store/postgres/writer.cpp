@@ -241,7 +241,7 @@ std::optional<Failure> Writer::try_once(Group& group) {
         for (const OtherChange& change : group.others) change.apply(work);
         claim_all(*session_, group.claims);
         in_doubt = transaction;
-        session_->commit(notices.statements(tag_));
+        session_->commit(tag_.empty() ? "" : notices.statements(tag_));
         return std::nullopt;
     } catch (const Failure& failure) {
         if (failure.kind != Failure::Kind::broken) {

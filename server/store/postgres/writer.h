@@ -52,7 +52,7 @@ struct Group {
 
 class Writer {
 public:
-    /// Connects by itself where it is given no session.
+    /// Connects by itself where it is given no session. `tag` "": other processes are told nothing.
     Writer(Address address, std::string tag, std::unique_ptr<Session> session);
     /// Does what was asked for, as far as the database is there, then joins.
     ~Writer();

@@ -1,9 +1,9 @@
-#include "server/http/compression.h"
+#include "server/http/app/compression.h"
 
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include "server/http/negotiation.h"
+#include "server/http/app/negotiation.h"
 #include "tests/server/http/loopback.h"
 
 namespace tunewright::server::http {

@@ -1,5 +1,5 @@
 // What a connection makes of a client's bytes, however they are cut.
-#include "server/http/connection.h"
+#include "server/http/guard/connection.h"
 
 #include <gtest/gtest.h>
 

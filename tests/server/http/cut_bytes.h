@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "server/http/connection.h"
+#include "server/http/guard/connection.h"
 
 namespace tunewright::server::http {
 

@@ -1,4 +1,4 @@
-#include "server/http/head.h"
+#include "server/http/guard/head.h"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "server/http/connection.h"
+#include "server/http/guard/connection.h"
 #include "tests/server/http/loopback.h"
 
 namespace tunewright::server::http {

@@ -18,8 +18,8 @@
 #include <thread>
 #include <utility>
 
-#include "server/http/problems.h"
-#include "server/http/server.h"
+#include "server/http/app/problems.h"
+#include "server/http/guard/server.h"
 
 namespace tunewright::server::http {
 

@@ -1,4 +1,4 @@
-#include "server/http/negotiation.h"
+#include "server/http/app/negotiation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/http/exchange.h"
+#include "server/http/guard/exchange.h"
 
 #include <algorithm>
 #include <array>

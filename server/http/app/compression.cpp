@@ -1,4 +1,4 @@
-#include "server/http/compression.h"
+#include "server/http/app/compression.h"
 
 #include <zlib.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "server/http/negotiation.h"
+#include "server/http/app/negotiation.h"
 
 namespace tunewright::server::http {
 namespace {

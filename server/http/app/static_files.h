@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "server/http/compression.h"
+#include "server/http/app/compression.h"
 #include "server/http/message.h"
 
 namespace tunewright::server::http {

@@ -1,4 +1,4 @@
-#include "server/http/crew.h"
+#include "server/http/guard/crew.h"
 
 #include <exception>
 #include <string>

@@ -1,4 +1,4 @@
-#include "server/http/guard.h"
+#include "server/http/guard/guard.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "server/http/exchange.h"
+#include "server/http/guard/exchange.h"
 
 namespace tunewright::server::http {
 namespace {

@@ -8,10 +8,10 @@
 #include <set>
 #include <string>
 
-#include "server/http/budget.h"
-#include "server/http/connection.h"
-#include "server/http/crew.h"
-#include "server/http/server.h"
+#include "server/http/guard/budget.h"
+#include "server/http/guard/connection.h"
+#include "server/http/guard/crew.h"
+#include "server/http/guard/server.h"
 
 namespace tunewright::server::http {
 

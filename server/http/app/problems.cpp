@@ -1,4 +1,4 @@
-#include "server/http/problems.h"
+#include "server/http/app/problems.h"
 
 #include <algorithm>
 #include <array>

@@ -33,9 +33,6 @@ struct Head {
     std::string clean;
 };
 
-/// Without the blanks and tabs around it.
-std::string_view trim(std::string_view text);
-
 /// Reads the head at the start of `input`. Refused are: more than 16 KiB or 100 fields (431), a target over 8,000 bytes
 /// (414), another version than 1.0 and 1.1 (505), a Content-Encoding (415), and as malformed (400) bare line feeds,
 /// folded lines, spaces before a colon, control characters, a missing or double Host, a Content-Length that is repeated

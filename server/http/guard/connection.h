@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/head.h"
-#include "server/http/server.h"
+#include "server/http/guard/head.h"
+#include "server/http/guard/server.h"
 
 namespace tunewright::server::http {
 

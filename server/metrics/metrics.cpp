@@ -1,4 +1,4 @@
-#include "server/metrics.h"
+#include "server/metrics/metrics.h"
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
@@ -11,8 +11,8 @@
 #include <mutex>
 #include <tuple>
 
+#include "server/metrics/process_figures.h"
 #include "server/notify/notifier.h"
-#include "server/process_figures.h"
 
 namespace tunewright::server {
 

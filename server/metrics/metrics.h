@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/router.h"
-#include "server/http/server.h"
+#include "server/http/app/router.h"
+#include "server/http/guard/server.h"
 #include "server/jobs/service.h"
 
 namespace tunewright::server {

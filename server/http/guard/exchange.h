@@ -4,9 +4,9 @@
 
 #include <httplib.h>
 
-#include "server/http/budget.h"
-#include "server/http/connection.h"
-#include "server/http/server.h"
+#include "server/http/guard/budget.h"
+#include "server/http/guard/connection.h"
+#include "server/http/guard/server.h"
 
 namespace tunewright::server::http {
 

@@ -1,9 +1,11 @@
-#include "server/http/head.h"
+#include "server/http/guard/head.h"
 
 #include <strings.h>
 
 #include <algorithm>
 #include <charconv>
+
+#include "server/http/message.h"
 
 namespace tunewright::server::http {
 namespace {
@@ -143,12 +145,6 @@ Head refuse(int status, std::string detail) {
     head.status = status;
     head.detail = std::move(detail);
     return head;
-}
-
-std::string_view trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-    return text;
 }
 
 Head read_head(std::string_view input) {

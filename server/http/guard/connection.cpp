@@ -1,4 +1,4 @@
-#include "server/http/connection.h"
+#include "server/http/guard/connection.h"
 
 #include <poll.h>
 #include <sys/socket.h>

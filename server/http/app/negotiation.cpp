@@ -1,5 +1,4 @@
-#include "server/http/negotiation.h"
-#include "server/http/head.h"
+#include "server/http/app/negotiation.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "server/http/router.h"
+#include "server/http/app/router.h"
 
 #include <algorithm>
 
-#include "server/http/compression.h"
-#include "server/http/problems.h"
+#include "server/http/app/compression.h"
+#include "server/http/app/problems.h"
 #include "server/log.h"
 
 namespace tunewright::server::http {

@@ -75,6 +75,7 @@ std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const do
 }
 
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
+    if (n == 1) return {std::exp(matrix[0])};
     const Matrix result = as_matrix(matrix, n).exp();
     return {result.data(), result.data() + result.size()};
 }

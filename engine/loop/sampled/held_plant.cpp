@@ -28,6 +28,7 @@ SampledDelay in_samples(double delay, double sample_time) {
 }
 
 std::vector<double> integrated_exponential(std::span<const double> A, int n, double h) {
+    if (n == 1) return {A[0] == 0 ? h : std::expm1(A[0] * h) / A[0]};
     // The upper right block of exp([A, I; 0, 0] h).
     const Index m = static_cast<Index>(n), size = 2 * m;
     std::vector<double> block(size * size, 0.0);

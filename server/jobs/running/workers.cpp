@@ -11,7 +11,7 @@ namespace {
 using Status = api::JobOutcome::Status;
 using Stop = HeldJob::Stop;
 
-constexpr int kNiceness = 5;
+constexpr int kNiceness = 10;
 
 }  // namespace
 

@@ -174,6 +174,31 @@ class SqliteTest(unittest.TestCase):
         self.assertRegex(done.stdout, r"The schema is at step 5; it was at 4\.")
         self.assertRegex(migrate("sqlite:" + self.path).stdout, "it was at 5")
 
+    def test_one_that_was_killed_is_done_again(self):
+        self.fill(DATA / "fourth_version.sql")
+        connection = sqlite3.connect(self.path)
+        connection.executescript("""
+            BEGIN;
+            WITH RECURSIVE n (i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n WHERE i < 99999)
+            INSERT INTO jobs (id, name, status, class, turn, owner, flow, created_at, started_at, finished_at, attempts,
+                              timeout_s, request_hash) SELECT 'many' || i, '', 'cancelled', 0, i, '', '', 1, 1, 2, 1, 60, 'h'
+                FROM n;
+            COMMIT;""")
+        kept = connection.execute("SELECT count(*) FROM jobs").fetchone()[0]
+        connection.close()
+        for pause in (0.02, 0.1, 0.25):
+            migrating = subprocess.Popen([BINARY, "migrate", "--store", "sqlite:" + self.path], stdout=subprocess.DEVNULL)
+            time.sleep(pause)
+            migrating.kill()
+            migrating.wait()
+        self.assertEqual(migrate("sqlite:" + self.path).returncode, 0)
+        connection = sqlite3.connect(self.path)
+        counts = connection.execute("SELECT (SELECT count(*) FROM jobs), (SELECT count(*) FROM ended WHERE seq IN "
+                                    "(SELECT seq FROM jobs WHERE id LIKE 'many%'))").fetchone()
+        self.assertEqual(counts, (kept, 100000))
+        self.assertEqual(connection.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
+        connection.close()
+
     def test_a_file_in_use_is_left_alone(self):
         with Service(store=self.path):
             done = migrate("sqlite:" + self.path)

@@ -22,6 +22,7 @@ public:
         : readers_(address),
           listener_(address.pooled() ? nullptr : std::make_unique<Listener>(address, tag)),
           writer_(address, address.pooled() ? "" : tag, std::move(session)),
+          results_(address, address.pooled() ? "" : tag, nullptr),
           bulk_(address, address.pooled() ? "" : tag, nullptr) {
         PostgresStore::depth();  // its clock is known from the start
     }
@@ -30,7 +31,7 @@ public:
     void watch(std::function<void(const StoreNotice&)> notify) override {
         if (listener_) listener_->watch(std::move(notify));
     }
-    bool healthy() const override { return writer_.healthy() && bulk_.healthy(); }
+    bool healthy() const override { return writer_.healthy() && results_.healthy() && bulk_.healthy(); }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         std::promise<Outcome<Recovery>> promise;
@@ -68,7 +69,7 @@ public:
     void beat(Heartbeat beat, Done<std::vector<Holding>> done) override {
         writer_.beat({std::move(beat), std::move(done)});
     }
-    void finish(JobEnd end, Done<bool> done) override { writer_.finish({std::move(end), std::move(done)}); }
+    void finish(JobEnd end, Done<bool> done) override { results_.finish({std::move(end), std::move(done)}); }
     void release(std::int64_t seq, int attempts, Done<bool> done) override {
         write<bool>(
             kQuick,
@@ -193,8 +194,10 @@ private:
     std::atomic<UnixMs> ahead_ = 0;       ///< the database's clock, before ours; measured with each count
     std::unique_ptr<Listener> listener_;  ///< nothing behind a pooler
     // The first to go: they end what was asked for. What touches many rows has a connection of its own, so that jobs
-    // which somebody waits for never wait behind a batch.
+    // which somebody waits for never wait behind a batch; and so have results, which are long, so that nobody who posts
+    // waits behind them.
     Writer writer_;
+    Writer results_;
     Writer bulk_;
     Slices<Work> slices_{[this](std::function<void(Work&)> apply, Slices<Work>::Finished done) {
         bulk_.change({std::move(apply), std::move(done)});

@@ -34,25 +34,22 @@ const TuningEntry* first_ranked(const TuningResult& result) {
     return nullptr;
 }
 
+void write_figure(const char* name, const Figure& figure, Writer& out) {
+    out.key(name);
+    figure ? out.number(*figure) : out.null();
+}
+
 void write_figures(const Evaluation& evaluation, Writer& out) {
-    out.key("Ms");
-    evaluation.robustness.Ms ? out.number(*evaluation.robustness.Ms) : out.null();
-    out.key("load_IAE");
-    evaluation.performance.load.IAE ? out.number(*evaluation.performance.load.IAE) : out.null();
+    write_figure("Ms", evaluation.robustness.Ms, out);
+    write_figure("load_IAE", evaluation.performance.load.IAE, out);
 }
 
 void write_best(const TuningEntry& best, Writer& out) {
     out.key("method");
     out.text(best.method);
     write_figures(*best.evaluation, out);
-    if (best.evaluation->region) {
-        out.key("worst_Ms");
-        best.evaluation->region->worst_Ms ? out.number(*best.evaluation->region->worst_Ms) : out.null();
-    }
-    if (best.optimum_at_Ms) {
-        out.key("excess_percent");
-        best.optimum_at_Ms->excess_percent ? out.number(*best.optimum_at_Ms->excess_percent) : out.null();
-    }
+    if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
+    if (best.optimum_at_Ms) write_figure("excess_percent", best.optimum_at_Ms->excess_percent, out);
 }
 
 }  // namespace

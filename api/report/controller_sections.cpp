@@ -21,11 +21,9 @@ std::string setting_unit(const std::string& name, const ReportSubject& s) {
 /// In full: a setting is typed as it stands here.
 constexpr int kFull = 6;
 
-Row setting_row(const std::string& name, const std::string& unit, const std::vector<Place>& controllers,
-                const std::string& below) {
+Row setting_row(const std::string& name, const std::string& unit, const std::vector<Place>& controllers) {
     Row row = {with_unit(name, unit)};
-    for (const Place& controller : controllers) {
-        const Place place = controller.at(below).exists() && !below.empty() ? controller.at(below) : controller;
+    for (const Place& place : controllers) {
         const Json& value = place.at(name).value();
         if (value.is_null() && !place.at("why_null").at(name).exists())
             row.push_back(name == "Ti" && place.value().is_object() && place.value().contains("Ti") ? Html("∞")
@@ -48,7 +46,7 @@ Html settings_table(const char* caption, const std::vector<std::string>& heads, 
     for (const std::string& head : heads) top.push_back(head);
     std::vector<Row> rows;
     for (const char* name : kSettings)
-        if (any_has(controllers, name)) rows.push_back(setting_row(name, setting_unit(name, s), controllers, ""));
+        if (any_has(controllers, name)) rows.push_back(setting_row(name, setting_unit(name, s), controllers));
     std::vector<Place> filters, leads;
     for (const Place& controller : controllers) {
         filters.push_back(controller.at("filter"));
@@ -65,7 +63,7 @@ Html settings_table(const char* caption, const std::vector<std::string>& heads, 
     }
     if (filtered) rows.push_back(types);
     for (const char* name : {"Tf", "N"})
-        if (any_has(filters, name)) rows.push_back(setting_row(name, *name == 'T' ? s.time : "", filters, ""));
+        if (any_has(filters, name)) rows.push_back(setting_row(name, *name == 'T' ? s.time : "", filters));
     if (any_has(leads, "T")) {
         Row row = {with_unit("Set-point filter T", s.time)};
         for (const Place& lead : leads) row.push_back(lead.exists() ? figure(lead.at("T"), kFull) : Html(""));

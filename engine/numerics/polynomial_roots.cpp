@@ -68,7 +68,6 @@ public:
         return worst;
     }
 
-    Index degree() const { return degree_; }
     double scale() const { return scale_; }
     const std::vector<double>& monic() const { return monic_; }
 

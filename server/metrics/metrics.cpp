@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "server/metrics/process_figures.h"
 #include "server/notify/notifier.h"
@@ -37,6 +39,33 @@ double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
     return then ? std::max(0.0, static_cast<double>(now - *then) * 1e-3) : 0;
 }
 
+/// Histograms of times, one for each value of a label. The family looks one up by building a map of labels; for each
+/// request that is too slow.
+class TimesByLabel {
+public:
+    TimesByLabel(prometheus::Family<Histogram>& family, const char* label, Histogram::BucketBoundaries bounds)
+        : family_(family), label_(label), bounds_(std::move(bounds)) {}
+
+    void observe(std::string_view value, double seconds) { of(value).Observe(seconds); }
+
+private:
+    Histogram& of(std::string_view value) {
+        const std::lock_guard lock(mutex_);
+        auto found = by_value_.find(value);
+        if (found == by_value_.end()) {
+            const std::string name(value);
+            found = by_value_.emplace(name, &family_.Add({{label_, name}}, bounds_)).first;
+        }
+        return *found->second;
+    }
+
+    prometheus::Family<Histogram>& family_;
+    const std::string label_;
+    const Histogram::BucketBoundaries bounds_;
+    std::mutex mutex_;
+    std::map<std::string, Histogram*, std::less<>> by_value_;
+};
+
 /// A counter that somebody else counts.
 void set(Counter& counter, double value) {
     if (const double more = value - counter.Value(); more > 0) counter.Increment(more);
@@ -47,30 +76,33 @@ void set(Counter& counter, double value) {
 struct Metrics::Families {
     prometheus::Registry registry;
     Gauge& gauge(const char* name, const char* help) { return family(BuildGauge(), registry, name, help).Add({}); }
+    Counter& counter(const char* name, const char* help) {
+        return family(BuildCounter(), registry, name, help).Add({});
+    }
 
     prometheus::Family<Counter>& requests = family(BuildCounter(), registry, "tunewright_http_requests_total",
                                                    "Answered requests by route, method and status");
-    prometheus::Family<Histogram>& latency =
-        family(BuildHistogram(), registry, "tunewright_http_request_duration_seconds",
-               "Time from a whole request to its answer, by route");
+    TimesByLabel latency{family(BuildHistogram(), registry, "tunewright_http_request_duration_seconds",
+                                "Time from a whole request to its answer, by route"),
+                         "route",
+                         {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 10}};
     prometheus::Family<Counter>& jobs =
         family(BuildCounter(), registry, "tunewright_jobs_ended_total", "Jobs that workers ended, by status");
-    prometheus::Family<Histogram>& job_time_family =
-        family(BuildHistogram(), registry, "tunewright_job_duration_seconds",
-               "Computing time of jobs that workers ended, by method");
-    prometheus::Family<Histogram>& store_time = family(BuildHistogram(), registry, "tunewright_store_duration_seconds",
-                                                       "Time from a call of the store to its answer, by operation");
+    TimesByLabel job_time{family(BuildHistogram(), registry, "tunewright_job_duration_seconds",
+                                 "Computing time of jobs that workers ended, by method"),
+                          "method", kLongTimes};
+    TimesByLabel store_time{family(BuildHistogram(), registry, "tunewright_store_duration_seconds",
+                                   "Time from a call of the store to its answer, by operation"),
+                            "operation",
+                            {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3}};
     prometheus::Family<Counter>& store_faults = family(BuildCounter(), registry, "tunewright_store_faults_total",
                                                        "Calls that the store could not do, by operation");
-    Counter& dropped = family(BuildCounter(), registry, "tunewright_jobs_dropped_total",
-                              "Results that came too late: the job's lease had gone to another process")
-                           .Add({});
-    Counter& interrupted = family(BuildCounter(), registry, "tunewright_jobs_interrupted_total",
-                                  "Jobs found running without a process, which wait again")
-                               .Add({});
-    Counter& given_up = family(BuildCounter(), registry, "tunewright_jobs_given_up_total",
-                               "Jobs that were interrupted too often and have failed")
-                            .Add({});
+    Counter& dropped = counter("tunewright_jobs_dropped_total",
+                               "Results that came too late: the job's lease had gone to another process");
+    Counter& interrupted =
+        counter("tunewright_jobs_interrupted_total", "Jobs found running without a process, which wait again");
+    Counter& given_up =
+        counter("tunewright_jobs_given_up_total", "Jobs that were interrupted too often and have failed");
     prometheus::Family<Counter>& told_family =
         family(BuildCounter(), registry, "tunewright_notify_deliveries_total",
                "Tries to tell somebody of an end, by outcome: delivered, failed (it is tried again), given_up");
@@ -96,10 +128,9 @@ struct Metrics::Families {
     Gauge& streams = gauge("tunewright_event_streams", "Followers of jobs by server-sent events");
     Gauge& synchronous = gauge("tunewright_synchronous_waiting", "Synchronous calls that wait to be computed");
     Gauge& batch_tasks = gauge("tunewright_batch_tasks_waiting", "Pieces of batches that wait for a thread");
-    Counter& log_dropped = family(BuildCounter(), registry, "tunewright_log_lines_dropped_total",
-                                  "Lines that a slow reader of the log made room for")
-                               .Add({});
-    Counter& cpu = family(BuildCounter(), registry, "process_cpu_seconds_total", "User and system time").Add({});
+    Counter& log_dropped =
+        counter("tunewright_log_lines_dropped_total", "Lines that a slow reader of the log made room for");
+    Counter& cpu = counter("process_cpu_seconds_total", "User and system time");
     Gauge& resident = gauge("process_resident_memory_bytes", "Resident memory");
     Gauge& address_space = gauge("process_virtual_memory_bytes", "Virtual memory");
     Gauge& files = gauge("process_open_fds", "Open file descriptors");
@@ -107,12 +138,9 @@ struct Metrics::Families {
     Gauge& threads = gauge("process_threads", "Threads of this process");
     Gauge& started = gauge("process_start_time_seconds", "Start of this process, in seconds since 1970");
 
-    // The families look a metric up by building a map of labels; for each request that is too slow.
+    // Found again here for the reason for which TimesByLabel keeps its histograms.
     std::mutex mutex;
     std::map<std::tuple<std::string, std::string, int>, Counter*, std::less<>> request_counters;
-    std::map<std::string, Histogram*, std::less<>> latency_by_route;
-    std::map<std::string, Histogram*, std::less<>> time_by_method;
-    std::map<std::string, Histogram*, std::less<>> time_by_operation;
 };
 
 Metrics::Metrics(const std::string& version) : families_(std::make_unique<Families>()) {
@@ -124,8 +152,8 @@ Metrics::~Metrics() = default;
 
 void Metrics::count(const http::Answered& answered) {
     Families& all = *families_;
+    const std::string_view route = answered.route.empty() ? "other" : std::string_view(answered.route);
     Counter* counter = nullptr;
-    Histogram* latency = nullptr;
     {
         const std::lock_guard lock(all.mutex);
         const auto key = std::tie(answered.route, answered.method, answered.status);
@@ -133,42 +161,26 @@ void Metrics::count(const http::Answered& answered) {
         if (found != all.request_counters.end()) {
             counter = found->second;
         } else {
-            const std::string& route = answered.route.empty() ? "other" : answered.route;
-            counter = &all.requests.Add(
-                {{"route", route}, {"method", answered.method}, {"status", std::to_string(answered.status)}});
+            counter = &all.requests.Add({{"route", std::string(route)},
+                                         {"method", answered.method},
+                                         {"status", std::to_string(answered.status)}});
             all.request_counters.emplace(key, counter);
         }
-        Histogram*& slot = all.latency_by_route[answered.route];
-        if (slot == nullptr) {
-            const std::string& route = answered.route.empty() ? "other" : answered.route;
-            slot = &all.latency.Add({{"route", route}}, Histogram::BucketBoundaries{0.0001, 0.0003, 0.001, 0.003, 0.01,
-                                                                                    0.03, 0.1, 0.3, 1, 10});
-        }
-        latency = slot;
     }
     counter->Increment();
-    latency->Observe(static_cast<double>(answered.duration.count()) * 1e-6);
+    all.latency.observe(route, static_cast<double>(answered.duration.count()) * 1e-6);
 }
 
 void Metrics::count(JobStatus status, const std::string& method, double seconds) {
     Families& all = *families_;
     all.jobs.Add({{"status", std::string(to_string(status))}}).Increment();
-    const std::lock_guard lock(all.mutex);
-    Histogram*& slot = all.time_by_method[method];
-    if (slot == nullptr) slot = &all.job_time_family.Add({{"method", method}}, kLongTimes);
-    slot->Observe(seconds);
+    all.job_time.observe(method, seconds);
 }
 
 void Metrics::count_store(std::string_view operation, double seconds, bool done) {
     Families& all = *families_;
-    const std::string name(operation);
-    if (!done) all.store_faults.Add({{"operation", name}}).Increment();
-    const std::lock_guard lock(all.mutex);
-    Histogram*& slot = all.time_by_operation[name];
-    if (slot == nullptr)
-        slot = &all.store_time.Add({{"operation", name}}, Histogram::BucketBoundaries{0.0001, 0.0003, 0.001, 0.003,
-                                                                                      0.01, 0.03, 0.1, 0.3, 1, 3});
-    slot->Observe(seconds);
+    if (!done) all.store_faults.Add({{"operation", std::string(operation)}}).Increment();
+    all.store_time.observe(operation, seconds);
 }
 
 void Metrics::count_dropped() { families_->dropped.Increment(); }

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,14 +13,21 @@
 namespace tunewright::server {
 namespace {
 
-/// Seconds since 1970 at which the system started.
-double boot_time() {
+double read_boot_time() {
     std::ifstream file("/proc/stat");
     std::string word;
     double seconds = 0;
     while (file >> word)
         if (word == "btime" && file >> seconds) return seconds;
     return 0;
+}
+
+/// Seconds since 1970 at which the system started; 0 where that cannot be read. It is kept: the system works it out
+/// from a clock that may be set, and the start of this process must not move.
+double boot_time() {
+    static std::atomic<double> known = 0;
+    if (known == 0) known = read_boot_time();
+    return known;
 }
 
 std::size_t open_files() {

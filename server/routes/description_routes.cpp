@@ -7,7 +7,6 @@ namespace tunewright::server {
 namespace {
 
 using http::Call;
-using http::Response;
 
 /// A text that does not change while the process lives.
 http::Handler constant(std::string body) {
@@ -21,11 +20,7 @@ http::Handler constant(std::string body) {
 http::Handler one_of(api::Answer (*describe)(std::string_view)) {
     return [describe](const Call& call) {
         if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
-        api::Answer answer = describe(call.path.at("id"));
-        Response response;
-        response.status = answer.status;
-        response.body = std::move(answer.body);
-        return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+        return response_of(describe(call.path.at("id")));
     };
 }
 

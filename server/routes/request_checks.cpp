@@ -1,5 +1,7 @@
 #include "server/routes/request_checks.h"
 
+#include <utility>
+
 #include "api/csv/text.h"
 #include "api/json/json.h"
 #include "server/http/app/negotiation.h"
@@ -17,6 +19,14 @@ std::optional<http::Response> refuse_call(const http::Request& request) {
     if (!http::sends_json(request))
         return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
     return refuse_form(request);
+}
+
+http::Response response_of(api::Answer answer) {
+    http::Response response;
+    response.status = answer.status;
+    response.body = std::move(answer.body);
+    response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+    return response;
 }
 
 api::Problem bad_parameters(const char* of) {

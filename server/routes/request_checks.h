@@ -6,6 +6,7 @@
 #include <string>
 
 #include "api/problem.h"
+#include "api/service.h"
 #include "server/http/message.h"
 
 namespace tunewright::server {
@@ -16,6 +17,9 @@ std::optional<http::Response> refuse_call(const http::Request& request);
 
 /// 406 where the client takes no JSON.
 std::optional<http::Response> refuse_form(const http::Request& request);
+
+/// What the facade answers, as JSON or as a problem.
+http::Response response_of(api::Answer answer);
 
 /// Most jobs or batches on a page.
 inline constexpr int kLargestPage = 200;

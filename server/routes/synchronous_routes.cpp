@@ -85,15 +85,13 @@ Response compute(const SyncCall& work, const Call& call, std::chrono::seconds li
     control.stop = overseer->token();
     control.now_ms = monotonic_ms;
     const double start = monotonic_ms();
-    const api::Answer answer = work(call, control);
+    api::Answer answer = work(call, control);
     if (answer.status >= 400 && closing.stop_requested()) return closing_down();
     if (answer.status >= 400 && control.stop.stop_requested()) return too_slow(limit);
 
-    Response response;
-    response.status = answer.status;
-    response.body = answer.body;
-    response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
-    return response.set("Server-Timing", fmt::format("compute;dur={:.2f}", monotonic_ms() - start));
+    Response response = response_of(std::move(answer));
+    response.set("Server-Timing", fmt::format("compute;dur={:.2f}", monotonic_ms() - start));
+    return response;
 }
 
 /// A file of a recorded test, or JSON that holds it.
@@ -144,11 +142,7 @@ SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
 /// What is answered at once: as long as somebody types, it is asked for at each key, and waits for no computation.
 Response parse_plant(const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
-    const api::Answer answer = api::parse_plant_call(call.request.body);
-    Response response;
-    response.status = answer.status;
-    response.body = answer.body;
-    return response.set("Content-Type", answer.status >= 400 ? "application/problem+json" : "application/json");
+    return response_of(api::parse_plant_call(call.request.body));
 }
 
 }  // namespace

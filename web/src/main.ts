@@ -1,4 +1,5 @@
 // Starts the page: its state, its head, the screen of the address, and what happens when something unforeseen goes wrong.
+import { sentenceOf } from "./api/client.ts";
 import { getExamples, getMethods } from "./api/jobs.ts";
 import { askForKeyWith } from "./api/key.ts";
 import { getProducts } from "./api/products.ts";
@@ -50,7 +51,7 @@ async function loadLists(): Promise<void> {
 }
 
 function fault(reason: unknown): void {
-  const words = reason instanceof Error ? reason.message : String(reason);
+  const words = sentenceOf(reason);
   stage.prepend(
     h(
       "p",

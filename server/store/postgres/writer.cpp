@@ -1,6 +1,7 @@
 #include "server/store/postgres/writer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "server/log.h"
 #include "server/store/postgres/changes.h"
@@ -172,11 +173,18 @@ Group Writer::next_group() {
     else
         changed_.wait_until(lock, next_try_, ready);
     Group group;
+    // Claims and signs of life need not wait for the disk: they go by themselves, between two groups that do.
+    const bool quick = !waiting_.claims.empty() || !waiting_.beats.empty();
+    const bool others = waiting_.size() > waiting_.claims.size() + waiting_.beats.size();
+    if (quick && (!others || !std::exchange(quick_went_, true))) {
+        move_some(waiting_.beats, group.beats, kLargestGroup);
+        move_some(waiting_.claims, group.claims, kLargestGroup);
+        return group;
+    }
+    quick_went_ = false;
     move_some(waiting_.ends, group.ends, kLargestGroup);
     move_some(waiting_.accepts, group.accepts, kLargestGroup);
-    move_some(waiting_.beats, group.beats, kLargestGroup);
     move_some(waiting_.others, group.others, kOtherChanges);
-    move_some(waiting_.claims, group.claims, kLargestGroup);
     return group;
 }
 

@@ -92,6 +92,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     Group waiting_;
+    bool quick_went_ = false;  ///< the last group was of claims and signs of life
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::jthread thread_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "server/log.h"
 #include "server/store/sqlite/connection.h"
@@ -45,24 +46,29 @@ void SqliteWriter::stop() {
 void SqliteWriter::submit(Change change) {
     {
         const std::lock_guard lock(mutex_);
-        (change.bulky ? bulky_ : waiting_).push_back(std::move(change));
+        (change.bulky ? bulky_ : change.durable ? waiting_ : quick_).push_back(std::move(change));
     }
     changed_.notify_one();
 }
 
 std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
     std::unique_lock lock(mutex_);
-    const auto ready = [this] { return stopping_ || !waiting_.empty() || !bulky_.empty(); };
+    const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
     if (healthy_)
         changed_.wait(lock, ready);
     else
         changed_.wait_for(lock, kProbePause, ready);
     std::vector<Change> group;
-    while (!waiting_.empty() && group.size() < kLargestGroup) {
-        group.push_back(std::move(waiting_.front()));
-        waiting_.pop_front();
+    // What need not wait for the disk goes ahead, by itself: a claim that was put into a group with others would keep a
+    // worker waiting for their results. Every other group is theirs, whatever comes.
+    std::deque<Change>& first = !quick_.empty() && !std::exchange(quick_went_, true) ? quick_ : waiting_;
+    if (&first == &waiting_) quick_went_ = false;
+    std::deque<Change>& chosen = first.empty() && bulky_.empty() ? quick_ : first;
+    while (!chosen.empty() && group.size() < kLargestGroup) {
+        group.push_back(std::move(chosen.front()));
+        chosen.pop_front();
     }
-    if (!bulky_.empty()) {
+    if (&chosen == &waiting_ && !bulky_.empty()) {
         group.push_back(std::move(bulky_.front()));
         bulky_.pop_front();
     }

@@ -1,6 +1,7 @@
 // The one thread that writes to the database. What is asked for while a transaction is being made durable goes into
 // the next one together: one wait for the disk for many changes. Bulky changes (a batch's) have a lane of their own:
-// each transaction takes one of them, so that they never hold the others up for long.
+// each transaction takes one of them, so that they never hold the others up for long. What need not wait for the disk
+// has another: it goes between two waits.
 #pragma once
 
 #include <atomic>
@@ -29,7 +30,7 @@ public:
         std::function<void(std::optional<StoreFault>)> done;
         /// The commit waits for the disk. Without it the change survives a kill of the process, not of the machine.
         bool durable = true;
-        /// Touches many rows. Bulky changes keep their order among themselves, the others among themselves.
+        /// Touches many rows. Bulky changes keep their order among themselves, as do durable ones, and the others.
         bool bulky = false;
     };
 
@@ -59,8 +60,10 @@ private:
     std::optional<bool> waits_for_disk_;  ///< how the connection is set, once it is
     std::mutex mutex_;
     std::condition_variable changed_;
+    std::deque<Change> quick_;  ///< not durable, not bulky
     std::deque<Change> waiting_;
     std::deque<Change> bulky_;
+    bool quick_went_ = false;  ///< the last group was of quick ones
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::jthread thread_;

@@ -99,6 +99,7 @@ struct JobEnd {
     std::string version;  ///< of the program that computed it
     UnixMs finished_at = 0;
     std::string outline = {};  ///< as in JobSummary
+    bool first = false;        ///< somebody may wait for it: before ends of batches' entries
 };
 
 enum class CancelEffect { none, cancelled, requested, ended };  ///< none: no such job; requested: it is running

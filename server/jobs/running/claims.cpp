@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
 constexpr std::size_t kMaxAhead = 16;
-// One claim in so many takes jobs of low priority first, so that batches go on however many single jobs come.
+// One claim in so many takes a job of low priority first, so that batches go on however many single jobs come.
 constexpr std::uint64_t kLowShare = 8;
 constexpr double kForgetting = 0.2;
 // Where no worker has come for that long, each is at a long job, whatever the latest took.
@@ -107,13 +107,15 @@ void Claims::ask(std::unique_lock<std::mutex>& lock) {
     const bool suspects = suspects_turn(held);
     if (closed_ || asking_ || failed_ || !(more_ || arrivals_ != seen_ || suspects) || keeps_clear(held)) return;
     if (held >= settings_.most_held || unsaved_ >= settings_.most_unsaved) return;
-    const std::size_t most = suspects ? 1 : std::min(wanted(), settings_.most_held - held);
+    std::size_t most = suspects ? 1 : std::min(wanted(), settings_.most_held - held);
     if (most == 0) return;
+    // One job then, and whatever has arrived is still to be asked for.
+    const bool low_first = !suspects && ++claims_ % kLowShare == 0;
+    if (low_first) most = 1;
     asking_ = true;
     asking_for_suspects_ = suspects;
-    asking_for_arrivals_ = !suspects && arrivals_ != seen_;
-    if (!suspects) seen_ = arrivals_;
-    const bool low_first = !suspects && ++claims_ % kLowShare == 0;
+    asking_for_arrivals_ = !suspects && !low_first && arrivals_ != seen_;
+    if (!suspects && !low_first) seen_ = arrivals_;
     lock.unlock();
     queue_.claim({settings_.worker, settings_.now(), settings_.lease, most, suspects, low_first},
                  [this, most, low_first](Outcome<std::vector<JobRecord>> outcome) {
@@ -145,8 +147,7 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked, bo
     }
     if (failed_) arrivals_++;  // so that retry() asks again
     if (jobs != nullptr) {
-        // Of low priority alone there may have been fewer.
-        more_ = jobs->size() >= asked || (low_first && !jobs->empty());
+        more_ = jobs->size() >= asked;
         // Jobs of another kind may come when these are done.
         if (!more_) streak_ /= 2;
         for (JobRecord& job : *jobs) {

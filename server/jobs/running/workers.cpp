@@ -84,6 +84,7 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
         end.error = fault_problem("The computation failed without saying why.");
     end.outline = outcome.outline_json.empty() && !end.error.empty() ? api::error_outline(end.error)
                                                                      : std::move(outcome.outline_json);
+    end.first = held->job.batch.empty();
     end.version = settings_.version;
     end.finished_at = settings_.now();
     outbox_.finish({held, std::move(end), seconds, std::move(outcome.method)});

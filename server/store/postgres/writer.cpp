@@ -10,6 +10,7 @@ namespace tunewright::server::postgres {
 namespace {
 
 constexpr std::size_t kLargestGroup = 200;             // changes of a kind
+constexpr std::size_t kResults = 12;                   // long ones: somebody may wait for the next group
 constexpr std::size_t kOtherChanges = 16;              // a statement each, or more
 constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
 constexpr std::chrono::milliseconds kFirstPause{100};
@@ -131,7 +132,7 @@ void Writer::accept(Ask<NewJob, Accepted> ask) {
 void Writer::finish(Ask<JobEnd, bool> ask) {
     {
         const std::lock_guard lock(mutex_);
-        waiting_.ends.push_back(std::move(ask));
+        waiting_.ends.insert(ask.in.first ? waiting_.ends.begin() : waiting_.ends.end(), std::move(ask));
     }
     changed_.notify_one();
 }
@@ -182,7 +183,7 @@ Group Writer::next_group() {
         return group;
     }
     quick_went_ = false;
-    move_some(waiting_.ends, group.ends, kLargestGroup);
+    move_some(waiting_.ends, group.ends, kResults);
     move_some(waiting_.accepts, group.accepts, kLargestGroup);
     move_some(waiting_.others, group.others, kOtherChanges);
     return group;

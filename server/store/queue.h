@@ -121,8 +121,8 @@ struct Reclaim {
     UnixMs now = 0;
     int most_attempts = 10;  ///< crashes
     std::string error;       ///< of a job that was interrupted so often
-    bool leases = true;  ///< false: batches alone. Who has the store for himself has all running jobs, however late he
-                         ///< renews their leases
+    bool leases = true;      ///< false: batches alone. Who has the store for himself has all running jobs, however late
+                             ///< his signs of life are
     /// In a shared store one process does it: nothing where another did within that time.
     std::chrono::milliseconds period{0};
 };

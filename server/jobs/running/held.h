@@ -1,4 +1,4 @@
-// The jobs that this process has, from their claim to their end in the store: what is renewed, asked to stop and shown
+// The jobs that this process has, from their claim to their end in the store: what is asked to stop and shown
 // as running.
 #pragma once
 

@@ -7,6 +7,7 @@
 #include "server/log.h"
 #include "server/notify/schedule.h"
 #include "server/notify/signature.h"
+#include "server/random.h"
 
 namespace tunewright::server {
 namespace {
@@ -30,6 +31,12 @@ std::string shown(const std::string& url) {
 double chance() {
     thread_local std::minstd_rand source{std::random_device{}()};
     return std::uniform_real_distribution<double>()(source);
+}
+
+/// The same trace, in which this note is a span of its own (W3C Trace Context).
+std::string continued(const std::string& traceparent) {
+    constexpr std::size_t kSpan = 36, kLength = 16;
+    return std::string(traceparent).replace(kSpan, kLength, random_hex(kLength / 2));
 }
 
 }  // namespace
@@ -107,17 +114,17 @@ void Notifier::tell(const Delivery& delivery) {
     const auto address = policy_.address_of(delivery.target.url);
     if (const auto* why = std::get_if<std::string>(&address)) return give_up(delivery, *why);
     const auto& where = std::get<WebAddress>(address);
-    std::optional<std::string> body;
+    std::optional<News> news;
     try {
-        body = body_of(delivery);
+        news = news_of(delivery);
     } catch (const StoreError& error) {
         log_error(what_ended(delivery) + " cannot be read, to tell of its end: " + error.what());
         return;
     }
     // Deleted, or begun anew, meanwhile: there is no end to tell of.
-    if (!body) return settle(delivery, std::nullopt);
+    if (!news) return settle(delivery, std::nullopt);
     const auto begun = Lanes::Clock::now();
-    const Reply reply = send(delivery, where, *body);
+    const Reply reply = send(delivery, where, *news);
     if (reply.status >= 200 && reply.status < 300) {
         const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Lanes::Clock::now() - begun);
         log_info(what_ended(delivery) + " was told to " + where.origin() + " in " + std::to_string(took.count()) +
@@ -132,25 +139,25 @@ void Notifier::tell(const Delivery& delivery) {
 }
 
 /// Nothing where there is nothing to tell.
-std::optional<std::string> Notifier::body_of(const Delivery& delivery) {
+std::optional<Notifier::News> Notifier::news_of(const Delivery& delivery) {
     JsonObject body;
     if (delivery.batch.empty()) {
         const std::optional<JobRecord> job = store_.find(delivery.job);
         if (!job || !has_ended(job->status)) return std::nullopt;
         body.text("type", "job.ended").text("timestamp", iso_time(delivery.created_at));
-        return std::move(body.raw("data", settings_.job_text(*job))).str();
+        return News{std::move(body.raw("data", settings_.job_text(*job))).str(), job->traceparent};
     }
     const std::optional<BatchSummary> batch = store_.find_batch(delivery.batch);
     if (!batch || !batch->ended()) return std::nullopt;
     body.text("type", "batch.ended").text("timestamp", iso_time(delivery.created_at));
-    return std::move(body.raw("data", settings_.batch_text(*batch))).str();
+    return News{std::move(body.raw("data", settings_.batch_text(*batch))).str(), batch->traceparent};
 }
 
-Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const std::string& body) {
+Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const News& news) {
     const std::vector<std::string> secrets = policy_.secrets(delivery.target.secret_id);
     if (secrets.empty()) return {0, "no secret of its name is there to sign with", {}};
     const std::string ended = delivery.batch.empty() ? delivery.job : delivery.batch;
-    const SignedNote note{"evt_" + ended + "_" + std::to_string(delivery.seq), settings_.now() / 1000, body};
+    const SignedNote note{"evt_" + ended + "_" + std::to_string(delivery.seq), settings_.now() / 1000, news.body};
     const auto under_way = std::make_shared<UnderWay>();
     under_way->since = Lanes::Clock::now();
     {
@@ -158,13 +165,15 @@ Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const 
         if (closed_) return {0, "the service is being stopped", {}};
         under_way_.emplace(delivery.seq, under_way);
     }
-    Reply reply = under_way->sender.send({address,
-                                          {{"Content-Type", "application/json"},
-                                           {"User-Agent", "Tunewright/" + settings_.version},
-                                           {"webhook-id", note.id},
-                                           {"webhook-timestamp", std::to_string(note.timestamp)},
-                                           {"webhook-signature", signature_of(note, secrets)}},
-                                          body});
+    OutgoingNote out{address,
+                     {{"Content-Type", "application/json"},
+                      {"User-Agent", "Tunewright/" + settings_.version},
+                      {"webhook-id", note.id},
+                      {"webhook-timestamp", std::to_string(note.timestamp)},
+                      {"webhook-signature", signature_of(note, secrets)}},
+                     news.body};
+    if (!news.traceparent.empty()) out.headers.emplace_back("traceparent", continued(news.traceparent));
+    Reply reply = under_way->sender.send(std::move(out));
     const std::lock_guard lock(mutex_);
     under_way_.erase(delivery.seq);
     return reply;

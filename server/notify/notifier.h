@@ -68,8 +68,12 @@ private:
     void take();
     void taken(const std::vector<Delivery>& due, Lanes::Clock::time_point when);
     void tell(const Delivery& delivery);
-    std::optional<std::string> body_of(const Delivery& delivery);
-    Reply send(const Delivery& delivery, const WebAddress& address, const std::string& body);
+    struct News {
+        std::string body;
+        std::string traceparent;  ///< of the call that posted what has ended; "" if it had none
+    };
+    std::optional<News> news_of(const Delivery& delivery);
+    Reply send(const Delivery& delivery, const WebAddress& address, const News& news);
     void settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause);
     void give_up(const Delivery& delivery, const std::string& why);
     void failed(const Delivery& delivery, const std::string& where, const std::string& why,

@@ -46,6 +46,7 @@ struct BatchSummary {
     std::size_t total = 0;
     std::size_t queued = 0, running = 0, succeeded = 0, failed = 0, cancelled = 0;
     std::optional<UnixMs> finished_at;  ///< of its last job, once all have ended and it is sealed
+    std::string traceparent;            ///< of the call that posted it; "" if it had none
 
     bool ended() const { return sealed && queued == 0 && running == 0; }
 };

@@ -7,6 +7,7 @@ import hmac
 import http.server
 import json
 import os
+import re
 import shutil
 import ssl
 import subprocess
@@ -130,6 +131,18 @@ class WebhookTest(unittest.TestCase):
 
 
 class ToldTest(WebhookTest):
+    def test_the_trace_of_the_call_goes_on_in_the_note(self):
+        trace, span = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"
+        receiver = self.receiver()
+        service = self.service(receiver.origin)
+        service.post("/v1/jobs", self.told(receiver), {"traceparent": "00-%s-%s-01" % (trace, span)})
+        receiver.note()
+        service.call("POST", "/v1/batches?notify_url=" + receiver.origin + "/in", json.dumps({"plant": FOPDT}),
+                     {"Content-Type": "application/x-ndjson", "traceparent": "00-%s-%s-01" % (trace, span)})
+        receiver.wait_for(2)
+        spans = [re.fullmatch("00-%s-([0-9a-f]{16})-01" % trace, note[2]["traceparent"])[1] for note in receiver.notes]
+        self.assertEqual(len({span, *spans}), 3, "each note is a span of its own")
+
     def test_a_job_that_succeeded_is_told_once_with_a_valid_signature(self):
         receiver = self.receiver()
         service = self.service(receiver.origin)

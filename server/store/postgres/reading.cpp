@@ -106,7 +106,7 @@ JobRecord read_claimed(const pqxx::row& row) {
 const std::string kBatchColumns =
     "b.seq, b.id, b.name, b.owner, b.created_at, b.state = 'sealed', b.cancel_requested, coalesce(sum(c.queued), 0), "
     "coalesce(sum(c.running), 0), coalesce(sum(c.succeeded), 0), coalesce(sum(c.failed), 0), "
-    "coalesce(sum(c.cancelled), 0), coalesce(max(c.last_end), 0)";
+    "coalesce(sum(c.cancelled), 0), coalesce(max(c.last_end), 0), b.traceparent";
 const std::string kBatchTables = " FROM batches b LEFT JOIN batch_counts c ON c.batch = b.seq";
 const std::string kBatchGroups = " GROUP BY b.seq";
 
@@ -127,6 +127,7 @@ BatchSummary read_batch(const pqxx::row& row) {
     batch.cancelled = count(11);
     batch.total = batch.queued + batch.running + batch.succeeded + batch.failed + batch.cancelled;
     if (batch.ended()) batch.finished_at = std::max(row[12].as<UnixMs>(), batch.created_at);
+    batch.traceparent = text_of(row[13]);
     return batch;
 }
 
@@ -288,7 +289,7 @@ BatchPage list_batches(Session& session, const std::optional<std::string>& owner
     for (const pqxx::row& row : inner
                                     .around("SELECT " + kBatchColumns + " FROM ",
                                             " LEFT JOIN batch_counts c ON c.batch = b.seq GROUP BY b.seq, b.id, "
-                                            "b.name, b.owner, b.created_at, b.state, b.cancel_requested "
+                                            "b.name, b.owner, b.created_at, b.state, b.cancel_requested, b.traceparent "
                                             "ORDER BY b.seq DESC")
                                     .run(session))
         page.batches.push_back(read_batch(row));

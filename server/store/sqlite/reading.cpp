@@ -93,7 +93,7 @@ JobRecord read_claimed(Connection& store, std::int64_t seq) {
 
 const std::string kBatchColumns =
     "b.seq, b.id, b.name, b.owner, b.created_at, b.state = 'sealed', b.cancel_requested, b.queued, b.running, "
-    "b.succeeded, b.failed, b.cancelled, b.last_end";
+    "b.succeeded, b.failed, b.cancelled, b.last_end, b.traceparent";
 
 BatchSummary read_batch(const Connection::Use& row) {
     BatchSummary batch;
@@ -112,6 +112,7 @@ BatchSummary read_batch(const Connection::Use& row) {
     batch.cancelled = count(11);
     batch.total = batch.queued + batch.running + batch.succeeded + batch.failed + batch.cancelled;
     if (batch.ended()) batch.finished_at = std::max(row.integer(12), batch.created_at);
+    batch.traceparent = row.text(13);
     return batch;
 }
 

@@ -1,10 +1,5 @@
 """Who asked for it is told of the end of a job or a batch: once, signed, and again when he could not be told."""
 
-import base64
-import contextlib
-import hashlib
-import hmac
-import http.server
 import json
 import os
 import re
@@ -12,10 +7,10 @@ import shutil
 import ssl
 import subprocess
 import tempfile
-import threading
 import time
 import unittest
 
+from receiver import Receiver, signature
 from service import BINARY, FOPDT, LONG, QUICK, Service
 
 RECORD = {"t": list(range(40)), "u": [0] * 5 + [1] * 35, "y": [0] * 8 + [2 - 2 * 0.9 ** i for i in range(32)]}
@@ -24,76 +19,6 @@ RECORD = {"t": list(range(40)), "u": [0] * 5 + [1] * 35, "y": [0] * 8 + [2 - 2 *
 def make_secret(name, path):
     made = subprocess.run([BINARY, "secret", name, "--file", path], capture_output=True, text=True, check=True)
     return made.stdout.strip()
-
-
-class Receiver:
-    """Takes notes on loopback and answers as it is told: `answers` has a status, or status and headers, for each call
-    in turn, then 204. `hold` is waited for before an answer."""
-
-    def __init__(self, answers=(), port=0, tls=None):
-        self.notes, self.answers = [], list(answers)
-        self.arrived = threading.Condition()
-        self.hold = threading.Event()
-        self.hold.set()
-        receiver = self
-
-        class Handler(http.server.BaseHTTPRequestHandler):
-            protocol_version = "HTTP/1.1"
-
-            def do_POST(self):
-                body = self.rfile.read(int(self.headers["Content-Length"]))
-                with receiver.arrived:
-                    receiver.notes.append((time.monotonic(), self.path, dict(self.headers.items()), body))
-                    answer = receiver.answers.pop(0) if receiver.answers else 204
-                    receiver.arrived.notify_all()
-                receiver.hold.wait(60)
-                status, headers = answer if isinstance(answer, tuple) else (answer, {})
-                with contextlib.suppress(OSError):
-                    self.send_response(status)
-                    for name, value in headers.items():
-                        self.send_header(name, value)
-                    if status != 204:
-                        self.send_header("Content-Length", "0")
-                    self.end_headers()
-
-            def log_message(self, *_):
-                pass
-
-        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", port), Handler)
-        self.server.handle_error = lambda *_: None
-        self.server.daemon_threads = True
-        if tls:
-            self.server.socket = tls.wrap_socket(self.server.socket, server_side=True)
-        self.origin = "%s://127.0.0.1:%d" % ("https" if tls else "http", self.server.server_address[1])
-        threading.Thread(target=self.server.serve_forever, daemon=True).start()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.hold.set()
-        self.server.shutdown()
-        self.server.server_close()
-
-    def wait_for(self, count, patience=30):
-        with self.arrived:
-            if not self.arrived.wait_for(lambda: len(self.notes) >= count, patience):
-                raise AssertionError("%d notes of %d" % (len(self.notes), count))
-        return self.notes
-
-    def note(self, patience=30):
-        """The only note, as JSON, when it has had time to come twice."""
-        self.wait_for(1, patience)
-        time.sleep(1.5)
-        if len(self.notes) != 1:
-            raise AssertionError("%d notes" % len(self.notes))
-        return json.loads(self.notes[0][3])
-
-
-def signature(secret, headers, body):
-    key = base64.b64decode(secret.removeprefix("whsec_"))
-    text = b".".join([headers["webhook-id"].encode(), headers["webhook-timestamp"].encode(), body])
-    return "v1," + base64.b64encode(hmac.new(key, text, hashlib.sha256).digest()).decode()
 
 
 class WebhookTest(unittest.TestCase):

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 namespace tunewright::server {
 
@@ -20,5 +22,23 @@ inline double monotonic_ms() {
     using std::chrono::steady_clock;
     return std::chrono::duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
 }
+
+/// How far the wall clock has run away from one that nobody sets: the machine slept, or its clock was set.
+class WallDrift {
+public:
+    /// Since the last call; nothing at the first.
+    std::optional<std::chrono::milliseconds> since_last(UnixMs wall) {
+        const auto steady = std::chrono::steady_clock::now();
+        const std::chrono::milliseconds by_wall(wall - std::exchange(wall_, wall));
+        const auto by_steady = steady - std::exchange(steady_, steady);
+        if (!std::exchange(begun_, true)) return std::nullopt;
+        return by_wall - std::chrono::duration_cast<std::chrono::milliseconds>(by_steady);
+    }
+
+private:
+    bool begun_ = false;
+    UnixMs wall_ = 0;
+    std::chrono::steady_clock::time_point steady_{};
+};
 
 }  // namespace tunewright::server

@@ -7,8 +7,8 @@
 #include "server/http/app/problems.h"
 #include "server/http/app/router.h"
 #include "server/http/guard/server.h"
-#include "server/json_text.h"
 #include "server/log.h"
+#include "server/routes/routes.h"
 #include "server/store/open_store.h"
 
 namespace tunewright::server {
@@ -23,9 +23,7 @@ constexpr const char* kNotYet = "The tables of the store are being brought up to
 class Desk {
 public:
     explicit Desk(const std::string& listen) : server_(http::Limits(), application()) {
-        const std::string alive =
-            std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
-        router_.quick("GET", "/healthz", [alive](const http::Call&) { return http::json_response(alive); });
+        add_liveness_route(router_);
         const HostPort address = parse_listen(listen);
         server_.listen(address.host, address.port);
         serving_ = std::jthread([this] { server_.run(); });

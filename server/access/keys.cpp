@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "api/json/digest.h"
+#include "server/http/message.h"
 #include "server/log.h"
 #include "server/random.h"
 
@@ -20,8 +21,7 @@ bool is_hex(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
 
 KeyLine parse_line(const NamedLine& line) {
     const std::size_t blank = std::min(line.value.find_first_of(" \t"), line.value.size());
-    const std::string_view value = line.value.substr(0, blank), rest = line.value.substr(blank);
-    const std::string_view role = rest.substr(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    const std::string_view value = line.value.substr(0, blank), role = http::trim(line.value.substr(blank));
     const std::string_view digest = value.starts_with(kPrefix) ? value.substr(kPrefix.size()) : "";
     const bool known = role.empty() || role == kAdmin;
     if (!is_key_name(line.name) || digest.size() != 64 || !std::ranges::all_of(digest, is_hex) || !known)

@@ -12,12 +12,11 @@
 //   queued     A worker of any process claims it (claims.h): attempts count one more. Whoever asks for its cancellation
 //              ends it at once. A crash changes nothing.
 //   running    The worker that has it, named by its attempts, ends it (result_outbox.h), or releases it when its
-//   process
-//              stops (service.cpp, drain). A cancellation is only noted; the worker learns of it and ends the job. When
-//              its process has died, nobody gives its signs of life (heartbeats.h): once its lease is over another
-//              process releases the job (rescuer.h; on a store of one process the next start does, recover), ends it as
-//              cancelled where that was asked for, and as failed from `most_attempts` crashes on. A worker that then
-//              comes with the old attempts learns that it no longer has the job, and drops what it has.
+//              process stops (service.cpp, drain). A cancellation is only noted; the worker learns of it and ends the
+//              job. When its process has died, nobody gives its signs of life (heartbeats.h): once its lease is over
+//              another process releases the job (rescuer.h; on a store of one process the next start does, recover),
+//              ends it as cancelled where that was asked for, and as failed from `most_attempts` crashes on. A worker
+//              that then comes with the old attempts learns that it no longer has the job, and drops what it has.
 //   succeeded, failed, cancelled
 //              Its owner may have one that failed or was cancelled queued again; nothing else moves it. He deletes it,
 //              or the sweeper does once its retention is over.

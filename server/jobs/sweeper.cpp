@@ -19,7 +19,7 @@ constexpr std::chrono::hours kPause{1};
 /// Nothing where all are kept for ever.
 std::optional<std::chrono::milliseconds> shortest(const Retention& retention) {
     std::optional<std::chrono::milliseconds> found;
-    for (const auto& age : {retention.succeeded, retention.failed, retention.cancelled})
+    for (const auto& [status, age] : retention.by_state())
         if (age && (!found || *age < *found)) found = age;
     return found;
 }
@@ -53,13 +53,10 @@ std::chrono::milliseconds Sweeper::sweep() {
 
 /// A clock that was set says nothing about how long a job has been there. A shared store has a clock of its own.
 bool Sweeper::clock_jumped(UnixMs now) {
-    const auto steady = Clock::now();
-    const std::chrono::milliseconds by_wall(now - std::exchange(last_wall_, now));
-    const auto by_steady = steady - std::exchange(last_steady_, steady);
-    const bool first = by_steady == steady.time_since_epoch();
-    const auto jump = std::chrono::duration_cast<std::chrono::seconds>(by_wall - by_steady);
-    if (first || std::chrono::abs(jump) <= kJump) return false;
-    next_ = steady + kPause;
+    const auto jump =
+        std::chrono::duration_cast<std::chrono::seconds>(drift_.since_last(now).value_or(std::chrono::milliseconds(0)));
+    if (std::chrono::abs(jump) <= kJump) return false;
+    next_ = Clock::now() + kPause;
     log_error("the clock of this machine was set by " + std::to_string(jump.count()) +
               " s; for an hour no ended job is deleted. Stop the service within that time if the clock is wrong");
     return true;

@@ -27,8 +27,7 @@ private:
     Retention retention_;
     std::function<UnixMs()> now_;
     Clock::time_point next_{};  ///< this and the next of the caller's thread alone
-    UnixMs last_wall_ = 0;
-    Clock::time_point last_steady_{};
+    WallDrift drift_;
     std::atomic<bool> sweeping_ = false;
     std::atomic<bool> more_ = false;
     std::atomic<std::chrono::milliseconds> pause_{};  ///< before the next slice, where there is more

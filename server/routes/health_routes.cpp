@@ -19,10 +19,14 @@ Response ready(const JobService& jobs, const JobStore& store, Gate& gate) {
 
 }  // namespace
 
-void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       std::function<std::string()> metrics) {
+void add_liveness_route(http::Router& router) {
     const std::string alive = std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
     router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
+}
+
+void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
+                       std::function<std::string()> metrics) {
+    add_liveness_route(router);
     router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate); });
     router.add("GET", "/metrics", [metrics = std::move(metrics)](const Call&) {
         Response response;

@@ -54,6 +54,9 @@ void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, co
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.
 void add_description_routes(http::Router& router);
 
+/// /healthz
+void add_liveness_route(http::Router& router);
+
 /// /healthz, /readyz, /metrics. None of them asks the store: they answer while it hangs.
 void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
                        std::function<std::string()> metrics);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/clock.h"
@@ -66,10 +68,14 @@ enum class RemoveEffect { none, removed, not_ended, in_batch };
 
 /// How long ended jobs are kept, by their state; nothing: for ever.
 struct Retention {
-    std::optional<std::chrono::milliseconds> succeeded, failed, cancelled;
+    using Age = std::optional<std::chrono::milliseconds>;
+    Age succeeded, failed, cancelled;
 
+    std::array<std::pair<JobStatus, Age>, 3> by_state() const {
+        return {{{JobStatus::succeeded, succeeded}, {JobStatus::failed, failed}, {JobStatus::cancelled, cancelled}}};
+    }
     /// What batches are kept for, whose jobs ended in any state: the longest.
-    std::optional<std::chrono::milliseconds> longest() const {
+    Age longest() const {
         if (!succeeded || !failed || !cancelled) return std::nullopt;
         return std::max({*succeeded, *failed, *cancelled});
     }

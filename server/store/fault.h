@@ -26,11 +26,35 @@ public:
     StoreFault::Kind kind;
 };
 
+/// How many of its steps a schema has taken, and how many this program knows.
+struct SchemaState {
+    int have = 0;
+    int known = 0;
+};
+
 /// Thrown when a store is opened that is to be brought up to date by somebody else, and has not been yet.
 class SchemaBehind : public StoreError {
 public:
     explicit SchemaBehind(const std::string& sentence) : StoreError({StoreFault::Kind::unavailable, sentence}) {}
+    explicit SchemaBehind(const SchemaState& state)
+        : SchemaBehind("its schema is at step " + std::to_string(state.have) + " of " + std::to_string(state.known) +
+                       "; `tunewright migrate` brings it up to date") {}
 };
+
+/// Runs `work`, which opens the store that people know as `shown`; what it throws becomes a sentence about that.
+template <class Work>
+auto opening(const std::string& shown, Work work) {
+    const auto sentence = [&](const std::exception& error) {
+        return "Cannot open the store " + shown + ": " + error.what() + ".";
+    };
+    try {
+        return work();
+    } catch (const SchemaBehind& error) {
+        throw SchemaBehind(sentence(error));
+    } catch (const std::exception& error) {
+        throw StoreError({StoreFault::Kind::unavailable, sentence(error)});
+    }
+}
 
 template <class T>
 using Outcome = std::variant<T, StoreFault>;

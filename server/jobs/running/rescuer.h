@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
+#include "server/clock.h"
 #include "server/jobs/outage.h"
-#include "server/jobs/running/held.h"
 #include "server/store/queue.h"
 
 namespace tunewright::server {
@@ -29,18 +29,16 @@ public:
     Rescuer(JobQueue& queue, Outage& outage, RescuerSettings settings)
         : queue_(queue), outage_(outage), settings_(std::move(settings)) {}
 
-    /// Not where the wall clock has jumped since the last call: this machine slept, or its clock was set.
+    /// Not at the first call, nor where the wall clock has jumped since the last one: this machine slept, or its clock
+    /// was set.
     void look();
 
 private:
-    bool clock_jumped();
-
     JobQueue& queue_;
     Outage& outage_;
     RescuerSettings settings_;
     std::atomic<bool> looking_ = false;
-    UnixMs last_wall_ = 0;  ///< this and the next of the caller's thread alone
-    HeldJob::Clock::time_point last_steady_{};
+    WallDrift drift_;  ///< of the caller's thread alone
 };
 
 }  // namespace tunewright::server

@@ -20,8 +20,8 @@ void leave(Session& session, std::int64_t batch) {
 
 /// Waiting entries take the turns that follow the last of their flow, as single jobs do among themselves.
 const std::string kAdd =
-    "WITH served AS MATERIALIZED (SELECT greatest(0, " + served_turn("1") +
-    ", (SELECT max(turn) FROM waiting WHERE class = 1 AND flow = $3)) AS turn), "
+    "WITH served AS MATERIALIZED (SELECT " + last_turn("1", "$3") +
+    " AS turn), "
     "given AS MATERIALIZED (SELECT * FROM unnest($5::text[], $6::text[], $7::float8[], $8::text[], $9::text[], "
     "$10::text[], $11::bigint[], $12::text[]) "
     "AS g (id, name, timeout_s, request, request_hash, error, index, outline)), "
@@ -263,9 +263,7 @@ std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std:
         Values().number(now))[0];
     if (!row[1].as<bool>()) return 0;
     const auto earlier = row[0].as<UnixMs>();
-    for (const auto& [status, age] :
-         {std::pair{JobStatus::succeeded, retention.succeeded}, std::pair{JobStatus::failed, retention.failed},
-          std::pair{JobStatus::cancelled, retention.cancelled}})
+    for (const auto& [status, age] : retention.by_state())
         if (age)
             if (const std::size_t gone = sweep_state(work.session, status, earlier - age->count(), slice); gone > 0)
                 return gone;

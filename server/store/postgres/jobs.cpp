@@ -16,9 +16,9 @@ const std::string kAccept =
     "$6::text[], $7::text[], $8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], $13::text[]) "
     "WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, flow, created_at, class, notify, "
     "request_id, traceparent, place)), "
-    "flows AS MATERIALIZED (SELECT f.flow, f.class, greatest(0, " +
-    served_turn("f.class") +
-    ", (SELECT max(turn) FROM waiting w WHERE w.class = f.class AND w.flow = f.flow)) AS turn "
+    "flows AS MATERIALIZED (SELECT f.flow, f.class, " +
+    last_turn("f.class", "f.flow") +
+    " AS turn "
     "FROM (SELECT DISTINCT flow, class FROM given) f), "
     "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, "
     "idempotency_key, request, notify, request_id, traceparent) SELECT g.id, g.name, g.class, "
@@ -223,9 +223,9 @@ RequeueEffect requeue_job(Session& session, const std::string& id) {
     static const std::string sql =
         "WITH gone AS (DELETE FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled') "
         "RETURNING seq, status, attempts), "
-        "placed AS (UPDATE jobs j SET turn = 1 + greatest(0, " +
-        served_turn("j.class") +
-        ", (SELECT max(w.turn) FROM waiting w WHERE w.class = j.class AND w.flow = j.flow)) FROM gone "
+        "placed AS (UPDATE jobs j SET turn = 1 + " +
+        last_turn("j.class", "j.flow") +
+        " FROM gone "
         "WHERE j.seq = gone.seq RETURNING j.class, j.turn, j.seq, j.flow, j.batch), "
         "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts) SELECT p.class, p.turn, p.seq, "
         "p.flow, p.batch, gone.attempts FROM placed p JOIN gone ON gone.seq = p.seq) SELECT status FROM gone";

@@ -97,9 +97,10 @@ void BatchCounts::write(Session& session) const {
     session.run(sql, values.plain(last_end.literal()));
 }
 
-std::string served_turn(const std::string& priority) {
-    return "(SELECT turn - 1 FROM waiting WHERE class = " + priority +
-           " AND crashes < 2 ORDER BY class, turn, seq LIMIT 1)";
+std::string last_turn(const std::string& priority, const std::string& flow) {
+    const std::string waiting = " FROM waiting w WHERE w.class = " + priority + " AND w.";
+    return "greatest(0, (SELECT w.turn - 1" + waiting + "crashes < 2 ORDER BY w.class, w.turn, w.seq LIMIT 1), " +
+           "(SELECT max(w.turn)" + waiting + "flow = " + flow + "))";
 }
 
 }  // namespace tunewright::server::postgres

@@ -53,7 +53,8 @@ private:
     std::map<std::int64_t, Change> changes_;
 };
 
-/// The turn that is being served in a class: the one before the first that waits. A part of a statement.
-std::string served_turn(const std::string& priority);
+/// The turn after which the next job of a flow comes: the last of its own that waits, and not below the one that is
+/// being served in its class, which is that before the first that waits. A part of a statement.
+std::string last_turn(const std::string& priority, const std::string& flow);
 
 }  // namespace tunewright::server::postgres

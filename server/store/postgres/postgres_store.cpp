@@ -227,33 +227,12 @@ void PostgresStore::reclaim(Reclaim what, Done<Recovery> done) {
 }  // namespace
 }  // namespace postgres
 
-namespace {
-
-/// Runs `work`; what it throws becomes a sentence about the store.
-template <class Work>
-auto opening(const postgres::Address& address, Work work) {
-    const auto sentence = [&](const std::exception& error) {
-        return "Cannot open the store " + address.shown() + ": " + error.what() + ".";
-    };
-    try {
-        return work();
-    } catch (const SchemaBehind& error) {
-        throw SchemaBehind(sentence(error));
-    } catch (const std::exception& error) {
-        throw StoreError({StoreFault::Kind::unavailable, sentence(error)});
-    }
-}
-
-}  // namespace
-
 std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps, bool pooled) {
     const postgres::Address address(uri, pooled);
-    return opening(address, [&] {
+    return opening(address.shown(), [&] {
         auto session = std::make_unique<postgres::Session>(address);
-        const postgres::SchemaState state = postgres::schema_state(*session);
-        if (state.have < state.known && steps == SchemaSteps::leave)
-            throw SchemaBehind("its schema is at step " + std::to_string(state.have) + " of " +
-                               std::to_string(state.known) + "; `tunewright migrate` brings it up to date");
+        const SchemaState state = postgres::schema_state(*session);
+        if (state.have < state.known && steps == SchemaSteps::leave) throw SchemaBehind(state);
         if (state.have < state.known) postgres::migrate(*session);
         return std::make_unique<postgres::PostgresStore>(address, random_hex(6), std::move(session));
     });
@@ -261,9 +240,9 @@ std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaStep
 
 void migrate_postgres(const std::string& uri, const std::string& grant, std::ostream& out) {
     const postgres::Address address(uri);
-    opening(address, [&] {
+    opening(address.shown(), [&] {
         postgres::Session session(address);
-        const postgres::SchemaState state = postgres::schema_state(session);
+        const SchemaState state = postgres::schema_state(session);
         if (state.have < state.known) postgres::migrate(session);
         out << "The schema is at step " << state.known << "; it was at " << state.have << ".\n";
         if (grant.empty()) return;

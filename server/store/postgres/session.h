@@ -114,12 +114,7 @@ private:
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 
-/// How many steps the database has taken, and how many there are. Throws Failure, or StoreError with a sentence where
-/// the database is not fit or was written by a newer program.
-struct SchemaState {
-    int have = 0;
-    int known = 0;
-};
+/// Throws Failure, or StoreError with a sentence where the database is not fit or was written by a newer program.
 SchemaState schema_state(Session& session);
 /// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
 /// a time: replicas may start together. A step is never edited after a release. Throws as schema_state() does.

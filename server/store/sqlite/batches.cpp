@@ -248,9 +248,7 @@ std::size_t sweep_batch(Connection& store, UnixMs ended_before, std::size_t most
 
 std::size_t sweep_slice(Connection& store, UnixMs now, const Retention& retention, std::size_t most) {
     const std::size_t slice = std::min(most, kSlice);
-    for (const auto& [status, age] :
-         {std::pair{JobStatus::succeeded, retention.succeeded}, std::pair{JobStatus::failed, retention.failed},
-          std::pair{JobStatus::cancelled, retention.cancelled}})
+    for (const auto& [status, age] : retention.by_state())
         if (age)
             if (const std::size_t gone = sweep_state(store, status, now - age->count(), slice); gone > 0) return gone;
     const auto longest = retention.longest();

@@ -64,12 +64,7 @@ private:
     std::map<std::string, SQLite::Statement, std::less<>> statements_;
 };
 
-/// How many steps the database has taken, and how many there are. Throws StoreError where it was written by a newer
-/// program.
-struct SchemaState {
-    int have = 0;
-    int known = 0;
-};
+/// Throws StoreError where the database was written by a newer program.
 SchemaState schema_state(SQLite::Database& database);
 /// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
 /// never edited after a release. Throws as schema_state() does.

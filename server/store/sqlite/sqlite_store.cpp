@@ -42,9 +42,7 @@ private:
 
 void bring_up_to_date(SQLite::Database& database, SchemaSteps steps) {
     const SchemaState state = schema_state(database);
-    if (steps == SchemaSteps::leave && state.have != 0 && state.have < state.known)
-        throw SchemaBehind("its schema is at step " + std::to_string(state.have) + " of " +
-                           std::to_string(state.known) + "; `tunewright migrate` brings it up to date");
+    if (steps == SchemaSteps::leave && state.have != 0 && state.have < state.known) throw SchemaBehind(state);
     migrate(database);
 }
 
@@ -276,31 +274,24 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
 
 namespace {
 
-/// Runs `work`; what it throws becomes a sentence about the store at `path`.
-template <class Work>
-auto opening(const std::string& path, Work work) {
-    const auto sentence = [&](const std::exception& error) {
-        return "Cannot open the store " + path + ": " + error.what() + ".";
-    };
-    try {
-        const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-        if (!folder.empty()) std::filesystem::create_directories(folder);
-        return work();
-    } catch (const SchemaBehind& error) {
-        throw SchemaBehind(sentence(error));
-    } catch (const std::exception& error) {
-        throw StoreError({StoreFault::Kind::unavailable, sentence(error)});
-    }
+/// A file that is to be made needs its folder.
+void make_folder(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    if (!folder.empty()) std::filesystem::create_directories(folder);
 }
 
 }  // namespace
 
 std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
-    return opening(path, [&] { return std::make_unique<SqliteStore>(path, steps); });
+    return opening(path, [&] {
+        make_folder(path);
+        return std::make_unique<SqliteStore>(path, steps);
+    });
 }
 
 void migrate_sqlite(const std::string& path, bool compact, std::ostream& out) {
     opening(path, [&] {
+        make_folder(path);
         const FileLock lock(path + ".lock");
         Connection connection(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
         connection.database().exec("PRAGMA journal_mode = WAL");

@@ -2,8 +2,10 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_sampled.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/request/tune.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
@@ -49,6 +51,29 @@ void rightmost_pole_by_discretisation(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(rightmost_pole(*loop));
 }
 BENCHMARK(rightmost_pole_by_discretisation)->Unit(benchmark::kMicrosecond);
+
+void longest_sample_time_of_a_pid(benchmark::State& state) {
+    const auto plant = LinearPlant::make(kPlant);
+    const auto loop = Loop::make(*plant, to_parallel(kPid));
+    const Peak peak = find_peaks(*loop, make_peak_grid(*loop)).S;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(longest_sample_time(*plant, to_parallel(kPid), peak.value, peak.omega, 1.05));
+}
+BENCHMARK(longest_sample_time_of_a_pid)->Unit(benchmark::kMicrosecond);
+
+// The job that a queue of small jobs is made of.
+void rule_with_evaluation(benchmark::State& state) {
+    TuningRequest request;
+    request.subject = std::get<Subject>(Subject::make(Plant(Fopdt{.K = 1, .T = 40, .L = 2})));
+    request.tune = {{.method = "simc", .options = {}}};
+    request.evaluate.points = static_cast<int>(state.range(0));
+    for (auto _ : state) {
+        const auto result = tune(request, {});
+        if (!result) return state.SkipWithError(result.error().message.c_str());
+        benchmark::DoNotOptimize(result);
+    }
+}
+BENCHMARK(rule_with_evaluation)->Arg(100)->Arg(400)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace tunewright

@@ -12,6 +12,7 @@
 #include "engine/loop/integral_sector.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/number_text.h"
+#include "engine/numerics/fast_complex.h"
 #include "engine/simulation/limited/limited_response.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
@@ -22,17 +23,30 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of a count of samples over their number
 
+constexpr double kMayEncircle = 0.5;  // of |L|, with room for what lies between two frequencies
+constexpr int kLeastNodes = 8;
+constexpr double kMostFurtherNodes = 12;
+
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
 constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
 constexpr double kSettledForFigures = 3e-7;
 constexpr int kMaxNonlinearSteps = 20000;  // a stalled integral may need any number
+
+/// Of the discretised dead time: a pole that leaves the left half-plane does so where |L| is 1, and must be followed
+/// there.
+int nodes_for(const Loop& loop, const LoopGrid& grid) {
+    double highest = 0;
+    for (std::size_t i = 0; i < grid.omega.size(); ++i)
+        if (magnitude(grid.point[i].L) > kMayEncircle) highest = grid.omega[i];
+    return kLeastNodes + static_cast<int>(std::min(2 * highest * loop.plant().dead_time(), kMostFurtherNodes));
+}
 
 /// What the loop itself says; `add_performance` adds what its responses do.
 Verification verify(const Loop& loop, const Peaks& peaks) {
     Verification v;
     const LoopGrid other = make_loop_grid(loop, 0.2, 17);
     v.ms_grid_difference = std::abs(find_sensitivity_peak(loop, other).value / peaks.S.value - 1);
-    if (const auto pole = rightmost_pole(loop)) v.stability_methods_agree = pole->real() < 0;
+    if (const auto pole = rightmost_pole(loop, nodes_for(loop, other))) v.stability_methods_agree = pole->real() < 0;
     return v;
 }
 

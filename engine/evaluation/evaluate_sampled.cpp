@@ -130,19 +130,14 @@ bool resonates(const LinearPlant& plant) {
     });
 }
 
-double whole_peak(const LinearPlant& plant, const ParallelPid& gains, double Ts) {
-    const SampledLoop loop(plant, {.gains = gains, .Ts = Ts});
-    const LoopGrid grid = loop.grid();
-    if (!loop.count_unstable_poles(grid).stable()) return std::numeric_limits<double>::infinity();
-    return loop.peaks(grid).S.value;
-}
-
 }  // namespace
 
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor) {
     const double f_0 = -std::log(factor), longest = kLongest / omega_Ms;
-    const auto whole = [&](double Ts) { return std::log(whole_peak(plant, gains, Ts) / (factor * Ms)); };
+    const auto whole = [&](double Ts) {
+        return std::log(SampledLoop(plant, {.gains = gains, .Ts = Ts}).Ms() / (factor * Ms));
+    };
     // Where nothing resonates the continuous loop's own peak decides: a guess from it alone, which the whole loop
     // confirms.
     TrackedPeak peak(plant, gains, omega_Ms);

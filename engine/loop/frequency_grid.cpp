@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 20000;
 constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are followed one by one
+constexpr std::size_t kUsualGrowth = 2;      // of a grid by refinement: room for it is taken at once
 constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
@@ -115,6 +116,8 @@ LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vec
                       double step) {
     LoopGrid grid;
     grid.resolved_to = resolved_to;
+    grid.omega.reserve(kUsualGrowth * base.size());
+    grid.point.reserve(kUsualGrowth * base.size());
     grid.omega.push_back(base[0]);
     grid.point.push_back(at(base[0]));
     // Between two base points: a stack of pending right ends, halved (in log omega) until neighbours are close.

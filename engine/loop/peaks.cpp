@@ -121,10 +121,13 @@ Peaks find_interior_peaks(const LoopFunction& at, const LoopGrid& grid) {
             interior_peak(at, grid, magnitude_CS)};
 }
 
-Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
-    // T and CS count as infinite already: nothing raises them, so nothing is searched for them.
+Peaks find_interior_sensitivity_peak(const LoopFunction& at, const LoopGrid& grid) {
     constexpr Peak found{std::numeric_limits<double>::infinity(), 0};
-    Peaks peaks{interior_peak([&](double omega) { return loop.at(omega); }, grid, magnitude_S), found, found};
+    return {interior_peak(at, grid, magnitude_S), found, found};
+}
+
+Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
+    Peaks peaks = find_interior_sensitivity_peak([&](double omega) { return loop.at(omega); }, grid);
     raise_by_fast_turning(loop, grid, peaks);
     raise_by_limits(loop, peaks);
     return peaks.S;

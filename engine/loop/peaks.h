@@ -26,6 +26,9 @@ Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid);
 /// Peaks of any stable loop among and between the grid's points, without what lies beyond them.
 Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
 
+/// That of |S| alone; those of |T| and |C S| are infinite, so that nothing raises them.
+Peaks find_interior_sensitivity_peak(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
+
 /// Where S moves little between neighbours of the grid, the dead time may still turn L between them, and C S with it:
 /// |1 + L| is at least |1 - |L||. Looks there, up to `resolved_to`, where that lets a peak be higher. `time`: rad of
 /// turning for one rad/time.

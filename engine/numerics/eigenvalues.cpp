@@ -8,13 +8,14 @@
 namespace tunewright {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Matrix = Eigen::MatrixXd;  // column by column: the solvers' own order, a quarter quicker
 using Complex = std::complex<double>;
 
 constexpr double kWorthScaling =
     0.95;  // of the norms: balancing stops where it lowers them by less (Parlett and Reinsch)
 
-Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Matrix>(values.data(), n, n); }
+Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Rows>(values.data(), n, n); }
 
 // Diagonal similarity by powers of two that makes row and column norms alike (Osborne 1960; Parlett and Reinsch 1969).
 // A few sweeps do in practice; numbers at the ends of the range may never come to an end.

@@ -74,20 +74,20 @@ ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) c
     ExactStep whole;
     whole.h = first.h + second.h;
     whole.Phi = matrix_product(second.Phi, first.Phi, n_);
-    std::vector<double> carried(Index(n_), 0.0);
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
     for (int j = 0; j < 4; ++j) {
+        std::vector<double>& carried = whole.Gamma[Index(j)];
+        carried.resize(Index(n_));
         multiply(second.Phi, first.Gamma[Index(j)], carried);
         double weight = 1;
         for (int i = j; i >= 0; --i) {
             for (Index r = 0; r < Index(n_); ++r) carried[r] += second.Gamma[Index(i)][r] * weight;
             weight *= first.h / (j - i + 1);
         }
-        whole.Gamma[Index(j)] = carried;
     }
-    multiply(second.Phi, first.constant, carried);
-    for (Index r = 0; r < Index(n_); ++r) carried[r] += second.constant[r];
-    whole.constant = carried;
+    whole.constant.resize(Index(n_));
+    multiply(second.Phi, first.constant, whole.constant);
+    for (Index r = 0; r < Index(n_); ++r) whole.constant[r] += second.constant[r];
     return whole;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/numerics/fast_complex.h"
 #include "engine/numerics/linear_algebra.h"
 
 namespace tunewright {
@@ -12,13 +13,14 @@ using Complex = std::complex<double>;
 
 constexpr double kOneMultiple = 1e-9;  // of a sample: a dead time that near to a multiple is one
 
-// e^(j x) - 1 without cancellation.
-Complex minus_one(double x) {
-    const double s = std::sin(0.5 * x);
-    return {-2 * s * s, std::sin(x)};
-}
-
 }  // namespace
+
+UnitCircle::UnitCircle(double angle) {
+    const double s = std::sin(0.5 * angle), c = std::cos(0.5 * angle), sine = 2 * s * c;
+    back = {1 - 2 * s * s, -sine};
+    one_minus_back = {2 * s * s, sine};
+    minus_one = {-2 * s * s, sine};
+}
 
 SampledDelay in_samples(double delay, double sample_time) {
     const double count = delay / sample_time, nearest = std::round(count);
@@ -67,16 +69,16 @@ HeldPlant::HeldPlant(const LinearPlant& plant, double sample_time, double comput
     for (int i = 0; i < plant.integrators(); ++i) poles_.emplace_back(1.0);
 }
 
-Complex HeldPlant::at(double omega) const {
+Complex HeldPlant::at(double omega, const UnitCircle& z) const {
     const Realisation& r = plant_->realisation();
-    const double x = omega * Ts_;
-    const Complex w = minus_one(x), back = std::polar(1.0, -x);
-    Complex response = back * r.D;
-    if (r.n > 0) {
-        const std::vector<Complex> row = resolvent_row(E_, r.C, r.n, w);
-        for (Index i = 0; i < row.size(); ++i) response += row[i] * (Gamma0_[i] + back * Gamma1_[i]);
+    Complex response = z.back * r.D;
+    if (r.n == 1) {
+        response += quotient(r.C[0] * (Gamma0_[0] + z.back * Gamma1_[0]), z.minus_one - E_[0]);
+    } else if (r.n > 1) {
+        const std::vector<Complex> row = resolvent_row(E_, r.C, r.n, z.minus_one);
+        for (Index i = 0; i < row.size(); ++i) response += row[i] * (Gamma0_[i] + z.back * Gamma1_[i]);
     }
-    return response * std::polar(1.0, -x * d_);
+    return d_ == 0 ? response : response * std::polar(1.0, -omega * Ts_ * d_);
 }
 
 }  // namespace tunewright

@@ -16,6 +16,14 @@
 
 namespace tunewright {
 
+/// z = e^(j angle) and its differences from one, each without cancellation.
+struct UnitCircle {
+    explicit UnitCircle(double angle);
+    std::complex<double> back;            ///< 1/z
+    std::complex<double> one_minus_back;  ///< 1 - 1/z
+    std::complex<double> minus_one;       ///< z - 1
+};
+
 class HeldPlant {
 public:
     /// `plant` is kept and must outlive this. `sample_time` > 0; `computation_delay` >= 0 adds to the dead time.
@@ -27,7 +35,8 @@ public:
     double rest() const { return delta_; }    ///< delta, 0 <= delta < Ts
 
     /// The pulse transfer function at z = e^(j omega Ts), 0 <= omega <= pi/Ts. Not finite at a pole on the circle.
-    std::complex<double> at(double omega) const;
+    std::complex<double> at(double omega) const { return at(omega, UnitCircle(omega * Ts_)); }
+    std::complex<double> at(double omega, const UnitCircle& z) const;  ///< the same where z is known already
     /// e^(p Ts) of every pole, those at 0 included.
     const std::vector<std::complex<double>>& poles() const { return poles_; }
 

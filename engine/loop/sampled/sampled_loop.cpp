@@ -15,6 +15,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kGridDensity = 24;    // points a decade to start with
+constexpr int kSparseDensity = 8;   // where |S| alone is asked for: its own steps refine the grid
 constexpr double kGridStep = 0.15;  // of S between neighbours
 constexpr double kLowRise = 0.3;    // of |S| - 1: below it so flat a maximum needs a finer grid
 constexpr double kFinestStep = 5e-3;
@@ -30,14 +31,8 @@ constexpr double kAtAPole = 1e10;         // of 1 + |L|: there is nothing but ro
 constexpr double kBeyondNumbers = 1e100;  // of a plant's pole: no law that is written in numbers holds it
 constexpr int kMaxHalvings = 60;
 
-// 1 - e^(-j x) without cancellation.
-Complex one_minus_back(double x) {
-    const double s = std::sin(0.5 * x);
-    return {2 * s * s, std::sin(x)};
-}
-
 Complex integral_part(const SampledPid& law, Complex difference, Complex back) {
-    const Complex sum = law.gains.Ki * law.Ts / difference;
+    const Complex sum = quotient(law.gains.Ki * law.Ts, difference);
     switch (law.integral) {
         case IntegralRule::backward: return sum;
         case IntegralRule::forward: return sum * back;
@@ -57,7 +52,8 @@ Complex derivative_part(const SampledPid& law, Complex difference, Complex back,
             return filtered ? Kd * difference / (Tf * difference + Ts * back) : Kd * difference / Ts;
         case DerivativeRule::filtered_trapezoidal:
             return filtered ? 2 * Kd * difference / (2 * Tf * difference + Ts * (1.0 + back)) : Kd * difference / Ts;
-        case DerivativeRule::slope: return Kd * one_minus_back(law.slope_samples * x) / (law.slope_samples * Ts);
+        case DerivativeRule::slope:
+            return Kd * UnitCircle(law.slope_samples * x).one_minus_back / (law.slope_samples * Ts);
         case DerivativeRule::four_points: {
             const Complex cubed = back * back * back;
             return Kd * (3.0 * (1.0 - cubed) + back - back * back) / (10 * Ts);
@@ -94,18 +90,18 @@ double forward_pole(const SampledPid& law) {
 
 }  // namespace
 
-Complex pulse_response(const SampledPid& law, double omega) {
-    const double x = omega * law.Ts;
-    const Complex difference = one_minus_back(x), back = std::polar(1.0, -x);
+Complex pulse_response(const SampledPid& law, double omega, const UnitCircle& z) {
+    const Complex difference = z.one_minus_back, back = z.back;
     if (whole_by_trapezoids(law)) return whole_by_trapezoids_at(law, difference, back);
     Complex sum = law.gains.Kp;
     if (law.gains.Ki != 0) sum += integral_part(law, difference, back);
-    if (law.gains.Kd != 0) sum += derivative_part(law, difference, back, x);
+    if (law.gains.Kd != 0) sum += derivative_part(law, difference, back, omega * law.Ts);
     return sum * filter_part(law, difference);
 }
 
 LoopPoint SampledLoop::at(double omega) const {
-    const Complex C = pulse_response(law_, omega), L = plant_.at(omega) * C, S = quotient(1.0, 1.0 + L);
+    const UnitCircle z(omega * law_.Ts);
+    const Complex C = pulse_response(law_, omega, z), L = plant_.at(omega, z) * C, S = quotient(1.0, 1.0 + L);
     if (!std::isfinite(magnitude(L))) return {L, 0, 1, 0};  // at a pole of the plant on the circle
     return {L, S, L * S, C * S};
 }
@@ -114,10 +110,15 @@ double SampledLoop::highest_frequency() const { return std::numbers::pi / law_.T
 
 bool SampledLoop::finite_at_zero() const { return law_.gains.Ki == 0 && plant_.plant().integrators() <= 0; }
 
-LoopGrid SampledLoop::grid_from(double step) const {
+Complex SampledLoop::open_loop(double omega) const {
+    const UnitCircle z(omega * law_.Ts);
+    return plant_.at(omega, z) * pulse_response(law_, omega, z);
+}
+
+LoopGrid SampledLoop::grid_from(double step, int density) const {
     const double highest = highest_frequency();
     std::vector<double> base = base_frequencies(
-        plant_.plant(), law_.gains, [&](double omega) { return open_loop(std::min(omega, highest)); }, kGridDensity,
+        plant_.plant(), law_.gains, [&](double omega) { return open_loop(std::min(omega, highest)); }, density,
         highest);
     for (const Complex pole : plant_.plant().poles()) {
         if (pole.imag() <= highest || std::abs(pole.real()) > kLightDamping * std::abs(pole)) continue;
@@ -133,12 +134,14 @@ LoopGrid SampledLoop::grid_from(double step) const {
     return refined_grid([&](double omega) { return at(omega); }, base, highest, step);
 }
 
-LoopGrid SampledLoop::grid() const {
-    LoopGrid grid = grid_from(kGridStep);
+LoopGrid SampledLoop::grid() const { return grid_of(kGridDensity); }
+
+LoopGrid SampledLoop::grid_of(int density) const {
+    LoopGrid grid = grid_from(kGridStep, density);
     double largest = 0;
     for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
     const double rise = largest - 1;
-    return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep)) : grid;
+    return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep), density) : grid;
 }
 
 LoopPoint SampledLoop::at_zero() const {
@@ -148,7 +151,16 @@ LoopPoint SampledLoop::at_zero() const {
 }
 
 Peaks SampledLoop::peaks(const LoopGrid& grid) const {
-    Peaks peaks = find_interior_peaks([&](double omega) { return at(omega); }, grid);
+    return raised(find_interior_peaks([&](double omega) { return at(omega); }, grid), grid);
+}
+
+double SampledLoop::Ms() const {
+    const LoopGrid grid = grid_of(kSparseDensity);
+    if (!count_unstable_poles(grid).stable()) return std::numeric_limits<double>::infinity();
+    return raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid).S.value;
+}
+
+Peaks SampledLoop::raised(Peaks peaks, const LoopGrid& grid) const {
     raise_by_turns([&](double omega) { return at(omega); }, turn(1), grid, peaks);
     const LoopPoint zero = at_zero();
     const auto raise = [](Peak& peak, double value) {
@@ -187,10 +199,9 @@ public:
     };
     Value at(double omega) const { return at(omega, loop_.open_loop(omega)); }
     Value at(double omega, Complex L) const {
-        const double x = omega * loop_.law().Ts;
-        const Complex back = std::polar(1.0, -x), difference = one_minus_back(x);
+        const UnitCircle z(omega * loop_.law().Ts);
         Complex open = 1;
-        for (const Complex pole : poles_) open *= pole == 1.0 ? difference : 1.0 - pole * back;
+        for (const Complex pole : poles_) open *= pole == 1.0 ? z.one_minus_back : 1.0 - pole * z.back;
         return {omega, open, 1.0 + L, 1 + magnitude(L)};
     }
 
@@ -229,7 +240,9 @@ Turn turn_between(const Characteristic& q, const Characteristic::Value& left, co
 
 }  // namespace
 
-StabilityCount SampledLoop::count_unstable_poles() const { return count_unstable_poles(grid_from(kGridStep)); }
+StabilityCount SampledLoop::count_unstable_poles() const {
+    return count_unstable_poles(grid_from(kGridStep, kGridDensity));
+}
 
 StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
     const Characteristic q(*this);

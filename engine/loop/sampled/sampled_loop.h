@@ -19,7 +19,10 @@
 namespace tunewright {
 
 /// C(z) of the program, z = e^(j omega Ts); infinite at omega = 0 with integral action.
-std::complex<double> pulse_response(const SampledPid& law, double omega);
+std::complex<double> pulse_response(const SampledPid& law, double omega, const UnitCircle& z);
+inline std::complex<double> pulse_response(const SampledPid& law, double omega) {
+    return pulse_response(law, omega, UnitCircle(omega * law.Ts));
+}
 
 class SampledLoop {
 public:
@@ -28,7 +31,7 @@ public:
         : plant_(plant, law.Ts, law.computation_delay), law_(law) {}
 
     LoopPoint at(double omega) const;  ///< 0 < omega <= pi/Ts; at 0 without integrators in plant and controller
-    std::complex<double> open_loop(double omega) const { return plant_.at(omega) * pulse_response(law_, omega); }
+    std::complex<double> open_loop(double omega) const;
 
     /// Closed-loop poles on and outside the unit circle, by the argument principle along it.
     StabilityCount count_unstable_poles() const;
@@ -36,6 +39,7 @@ public:
 
     LoopGrid grid() const;
     Peaks peaks(const LoopGrid& grid) const;      ///< of a stable loop
+    double Ms() const;                            ///< to 1e-9; infinite where the loop is unstable. A third of the cost
     Margins margins(const LoopGrid& grid) const;  ///< of a stable loop; the delay margin is that of L's phase
 
     const HeldPlant& plant() const { return plant_; }
@@ -46,8 +50,10 @@ public:
 
 private:
     bool finite_at_zero() const;
-    LoopGrid grid_from(double step) const;
-    LoopPoint at_zero() const;  // the limit, S = 0 with an integrator
+    LoopGrid grid_from(double step, int density) const;
+    LoopGrid grid_of(int density) const;
+    Peaks raised(Peaks interior, const LoopGrid& grid) const;  // by turns of the dead time and the limit at 0
+    LoopPoint at_zero() const;                                 // the limit, S = 0 with an integrator
 
     HeldPlant plant_;
     SampledPid law_;

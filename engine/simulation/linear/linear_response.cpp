@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include "engine/controller/pid.h"
@@ -332,9 +333,11 @@ private:
 
     const LongStep& long_step() {
         const int beyond = levels_.level() - level_of_L_;
-        while (static_cast<int>(long_steps_.size()) < beyond)
-            long_steps_.emplace_back(system_, propagator_, level_of_L_ + 1 + static_cast<int>(long_steps_.size()),
-                                     level_of_L_);
+        if (long_steps_.empty()) {
+            const ExactStep& over_L = propagator_.level(level_of_L_);
+            long_steps_.emplace_back(system_, over_L, over_L);
+        }
+        while (static_cast<int>(long_steps_.size()) < beyond) long_steps_.emplace_back(propagator_, long_steps_.back());
         return long_steps_[Index(beyond - 1)];
     }
 
@@ -350,7 +353,7 @@ private:
     InputHistory history_;
     StepLevels levels_;
     StoppingRule stopping_;
-    std::vector<LongStep> long_steps_;
+    std::deque<LongStep> long_steps_;  // of level_of_L_ + 1, ...
     LongStep::Start start_;
     std::vector<double> x_, end_x_, scratch_;
     Signal excess_;                 // phi(e) - e at the last node

@@ -9,20 +9,10 @@ namespace tunewright {
 
 using Index = std::size_t;
 
-namespace {
-
-/// Of length (2^(level - level_of_L) - 1) L.
-ExactStep beyond_L(Propagator& propagator, int level, int level_of_L) {
-    const ExactStep over_L = propagator.level(level_of_L);
-    ExactStep rest = over_L;  // (2^k - 1) L = 2 (2^(k-1) - 1) L + L
-    for (int k = level_of_L + 2; k <= level; ++k) rest = propagator.compose(propagator.compose(rest, rest), over_L);
-    return rest;
-}
-
-}  // namespace
-
-LongStep::LongStep(const ResponseSystem& system, Propagator& propagator, int level, int level_of_L)
-    : LongStep(system, propagator.level(level_of_L), beyond_L(propagator, level, level_of_L)) {}
+// 2 (L + rest) = L + (2 rest + L).
+LongStep::LongStep(const Propagator& propagator, const LongStep& half)
+    : LongStep(*half.system_, half.over_L_,
+               propagator.compose(propagator.compose(half.rest_, half.rest_), half.over_L_)) {}
 
 LongStep::LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep rest)
     : system_(&system), over_L_(std::move(over_L)), rest_(std::move(rest)), h_(over_L_.h + rest_.h) {

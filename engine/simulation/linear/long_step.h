@@ -22,8 +22,8 @@ class LongStep {
 public:
     /// First the dead time, then the rest: exact steps of the system's states. `system` must live as long as this.
     LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep rest);
-    /// Of length h0 2^level; the dead time is h0 2^level_of_L.
-    LongStep(const ResponseSystem& system, Propagator& propagator, int level, int level_of_L);
+    /// Twice as long as another one.
+    LongStep(const Propagator& propagator, const LongStep& half);
 
     double h() const { return h_; }
 

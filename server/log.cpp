@@ -1,8 +1,7 @@
 #include "server/log.h"
 
-#include <spdlog/async.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
@@ -11,12 +10,14 @@
 #include "server/http/app/router.h"
 #include "server/jobs/running/result_outbox.h"
 #include "server/json_text.h"
+#include "server/log_sink.h"
 
 namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kWaitingLines = 8192;
 bool as_json = false;
+std::shared_ptr<GatheringSink> sink;
 
 /// Probes come every few seconds; only the level debug shows them.
 spdlog::level::level_enum level_of(const http::Answered& answered) {
@@ -51,22 +52,20 @@ void start_log(const std::string& format, const std::string& level) {
         throw std::invalid_argument("The log's level is \"" + level +
                                     "\"; it must be debug, info, warn, error or off.");
     as_json = format == "json";
-    spdlog::init_thread_pool(kWaitingLines, 1);
-    auto logger =
-        std::make_shared<spdlog::async_logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>(),
-                                               spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest);
+    sink = std::make_shared<GatheringSink>(STDERR_FILENO, kWaitingLines);
+    auto logger = std::make_shared<spdlog::logger>("", sink);
     logger->set_level(chosen);
     logger->set_pattern(as_json ? R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})" : "%Y-%m-%dT%H:%M:%S.%eZ %l %v",
                         spdlog::pattern_time_type::utc);
     spdlog::set_default_logger(std::move(logger));
 }
 
-void stop_log() { spdlog::shutdown(); }
-
-std::size_t dropped_log_lines() {
-    const auto lines = spdlog::thread_pool();
-    return lines ? lines->overrun_counter() : 0;
+void stop_log() {
+    spdlog::shutdown();
+    sink.reset();
 }
+
+std::size_t dropped_log_lines() { return sink ? sink->dropped() : 0; }
 
 void log_info(std::string_view message) { log_message(spdlog::level::info, message); }
 

@@ -1,6 +1,6 @@
-// One line for each request and each job, on standard error, as text or as JSON; written by a thread of its own, so
-// that a slow reader of the log never holds up an answer (the oldest of 8192 waiting lines are dropped instead). Every
-// function may be called from any thread.
+// One line for each request and each job, on standard error, as text or as JSON; gathered and written by a thread of
+// its own, so that a slow reader of the log never holds up an answer (the oldest of 8192 waiting lines are dropped
+// instead). Every function may be called from any thread.
 #pragma once
 
 #include <string>

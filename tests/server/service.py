@@ -71,6 +71,8 @@ class Service:
         self.port = int(self.ready_line.rsplit(":", 1)[1].strip().rstrip("/"))
 
     def read_log(self):
+        """What the service has logged; it gathers lines for some milliseconds before it writes them."""
+        time.sleep(0.05)
         with open(os.path.join(self.folder.name, "log"), errors="replace") as log:
             return log.read()
 

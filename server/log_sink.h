@@ -1,0 +1,40 @@
+// Where the log's lines go: a thread writes what has gathered, so that neither a slow reader nor a wake-up for each
+// line holds up who logs. Of more lines than wait for the reader, the oldest are dropped.
+#pragma once
+
+#include <spdlog/sinks/base_sink.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace tunewright::server {
+
+class GatheringSink : public spdlog::sinks::base_sink<std::mutex> {
+public:
+    /// Lines go to the open file `descriptor`; at most `most_waiting` wait for it.
+    GatheringSink(int descriptor, std::size_t most_waiting);
+    /// Writes what waits.
+    ~GatheringSink() override;
+
+    std::size_t dropped() const { return dropped_; }
+
+private:
+    void sink_it_(const spdlog::details::log_msg& message) override;
+    void flush_() override {}
+    void work();
+
+    const int descriptor_;
+    const std::size_t most_waiting_;
+    std::deque<std::string> waiting_;  // under base_sink's mutex_, as the rest
+    bool stopping_ = false;
+    std::condition_variable changed_;
+    std::atomic<std::size_t> dropped_ = 0;
+    std::thread thread_;
+};
+
+}  // namespace tunewright::server

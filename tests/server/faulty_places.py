@@ -44,11 +44,12 @@ def assert_intact(path):
 class OwnPostgres:
     """A cluster of its own, which a test may stop and start."""
 
-    def __init__(self, where=None):
+    def __init__(self, where=None, **settings):
         self.where = where
+        self.settings = settings
 
     def __enter__(self):
-        self.cluster = Cluster(where=self.where)
+        self.cluster = Cluster(where=self.where, **self.settings)
         self.cluster.start()
         self.store = self.cluster.url("tunewright")
         return self

@@ -18,12 +18,12 @@ namespace {
 
 class PostgresStore : public JobStore {
 public:
-    PostgresStore(const Address& address, const std::string& tag, std::unique_ptr<Session> session)
+    PostgresStore(const Address& address, const std::string& tag)
         : readers_(address),
           listener_(address.pooled() ? nullptr : std::make_unique<Listener>(address, tag)),
-          writer_(address, address.pooled() ? "" : tag, std::move(session)),
-          results_(address, address.pooled() ? "" : tag, nullptr),
-          bulk_(address, address.pooled() ? "" : tag, nullptr) {
+          writer_(address, address.pooled() ? "" : tag),
+          results_(address, address.pooled() ? "" : tag),
+          bulk_(address, address.pooled() ? "" : tag) {
         PostgresStore::depth();  // its clock is known from the start
     }
 
@@ -230,11 +230,11 @@ void PostgresStore::reclaim(Reclaim what, Done<Recovery> done) {
 std::unique_ptr<JobStore> open_postgres_store(const std::string& uri, SchemaSteps steps, bool pooled) {
     const postgres::Address address(uri, pooled);
     return opening(address.shown(), [&] {
-        auto session = std::make_unique<postgres::Session>(address);
-        const SchemaState state = postgres::schema_state(*session);
+        postgres::Session session(address);
+        const SchemaState state = postgres::schema_state(session);
         if (state.have < state.known && steps == SchemaSteps::leave) throw SchemaBehind(state);
-        if (state.have < state.known) postgres::migrate(*session);
-        return std::make_unique<postgres::PostgresStore>(address, random_hex(6), std::move(session));
+        if (state.have < state.known) postgres::migrate(session);
+        return std::make_unique<postgres::PostgresStore>(address, random_hex(6));
     });
 }
 

@@ -258,7 +258,12 @@ CREATE TABLE deliveries (
 CREATE INDEX deliveries_due ON deliveries (due_at);
 )sql";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4};
+// Empty after a crash: what is found in it tells one life of the server from the next.
+constexpr const char* kStep5 = R"sql(
+CREATE UNLOGGED TABLE server_life (id uuid NOT NULL, one boolean PRIMARY KEY DEFAULT true CHECK (one));
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 
@@ -310,6 +315,11 @@ void migrate(Session& session) {
         session.run_plain("INSERT INTO schema_steps (step) VALUES (" + std::to_string(step + 1) + ")");
     }
     session.commit();
+}
+
+std::string server_life(Session& session) {
+    session.run("INSERT INTO server_life (id) VALUES (gen_random_uuid()) ON CONFLICT DO NOTHING");
+    return session.run("SELECT id FROM server_life")[0][0].c_str();
 }
 
 void grant_use(Session& session, const std::string& role) {

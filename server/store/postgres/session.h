@@ -93,8 +93,8 @@ public:
     /// Statements without values, sent in one piece; the result of the last.
     pqxx::result run_plain(const std::string& sql);
 
-    /// A transaction's number, which txid_status() knows even after the connection is lost. One that is not durable may
-    /// be undone by a crash of the server, after its commit was answered.
+    /// A transaction's number, which txid_status() knows even after the connection is lost, within one server_life().
+    /// One that is not durable may be undone by a crash of the server, after its commit was answered.
     std::int64_t begin(bool durable = true);
     /// `last` goes ahead of the COMMIT in the same message.
     void commit(const std::string& last = "");
@@ -119,6 +119,9 @@ SchemaState schema_state(Session& session);
 /// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
 /// a time: replicas may start together. A step is never edited after a release. Throws as schema_state() does.
 void migrate(Session& session);
+/// A word that changes when the server crashes: after that it may give a transaction's number a second time. Throws
+/// Failure.
+std::string server_life(Session& session);
 /// What a service needs, for a role that may not change the schema.
 void grant_use(Session& session, const std::string& role);
 

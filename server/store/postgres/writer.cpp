@@ -110,8 +110,8 @@ void one_by_one(std::vector<T>& from, std::vector<T> Group::*place, Each each) {
 
 }  // namespace
 
-Writer::Writer(Address address, std::string tag, std::unique_ptr<Session> session)
-    : address_(std::move(address)), tag_(std::move(tag)), session_(std::move(session)), thread_([this] { work(); }) {}
+Writer::Writer(Address address, std::string tag)
+    : address_(std::move(address)), tag_(std::move(tag)), thread_([this] { work(); }) {}
 
 Writer::~Writer() {
     {
@@ -239,6 +239,7 @@ std::optional<Failure> Writer::try_write(Group& group) {
 
 std::optional<Failure> Writer::try_once(Group& group) {
     if (!session_ && !connect()) return Failure(Failure::Kind::broken, "there is no connection to " + address_.shown());
+    const std::string life = life_;
     std::optional<std::int64_t> in_doubt;
     try {
         Notices notices;
@@ -263,7 +264,7 @@ std::optional<Failure> Writer::try_once(Group& group) {
         }
         session_.reset();
         if (!in_doubt) return failure;
-        const std::optional<bool> committed = was_committed(*in_doubt);
+        const std::optional<bool> committed = was_committed(*in_doubt, life);
         if (committed == true) return std::nullopt;
         if (committed == false) return failure;
         return Failure(Failure::Kind::unknown,
@@ -274,7 +275,9 @@ std::optional<Failure> Writer::try_once(Group& group) {
 bool Writer::connect() {
     if (Clock::now() < next_try_) return false;
     try {
-        session_ = std::make_unique<Session>(address_);
+        auto session = std::make_unique<Session>(address_);
+        life_ = server_life(*session);
+        session_ = std::move(session);
         if (pause_.count() > 0) log_info("the store is connected to " + address_.shown() + " again");
         pause_ = std::chrono::milliseconds(0);
         return true;
@@ -286,7 +289,7 @@ bool Writer::connect() {
     }
 }
 
-std::optional<bool> Writer::was_committed(std::int64_t transaction) {
+std::optional<bool> Writer::was_committed(std::int64_t transaction, const std::string& life) {
     const Clock::time_point end = Clock::now() + kDoubt;
     while (Clock::now() < end) {
         try {
@@ -294,7 +297,9 @@ std::optional<bool> Writer::was_committed(std::int64_t transaction) {
                 const pqxx::result rows = session_->run("SELECT txid_status($1)", Values().number(transaction));
                 if (rows[0][0].is_null()) return std::nullopt;
                 const std::string status = rows[0][0].c_str();
-                if (status != "in progress") return status == "committed";
+                const bool crashed = life_ != life;  // what was under way then is not any more
+                if (status == "committed") return crashed ? std::nullopt : std::optional(true);
+                if (status == "aborted" || crashed) return false;
             }
         } catch (const Failure& failure) {
             if (failure.kind != Failure::Kind::broken) return std::nullopt;

@@ -2,8 +2,9 @@
 // the next one together: single jobs' changes of one kind into one statement, and one commit for all.
 //
 // When the connection is lost: changes that cannot have been committed are tried once more on a new connection; a
-// commit whose answer was lost is looked up by its transaction's number. Whatever remains unknown or impossible is
-// answered with StoreFault::unavailable, and a new connection is tried for with growing pauses.
+// commit whose answer was lost is looked up by its transaction's number, which says nothing after a crash of the
+// server: there the number may have become another's. Whatever remains unknown or impossible is answered with
+// StoreFault::unavailable, and a new connection is tried for with growing pauses.
 #pragma once
 
 #include <atomic>
@@ -52,8 +53,8 @@ struct Group {
 
 class Writer {
 public:
-    /// Connects by itself where it is given no session. `tag` "": other processes are told nothing.
-    Writer(Address address, std::string tag, std::unique_ptr<Session> session);
+    /// Connects by itself. `tag` "": other processes are told nothing.
+    Writer(Address address, std::string tag);
     /// Does what was asked for, as far as the database is there, then joins.
     ~Writer();
     Writer(const Writer&) = delete;
@@ -79,13 +80,15 @@ private:
     std::optional<Failure> try_write(Group& group);
     std::optional<Failure> try_once(Group& group);
     bool connect();
-    /// Of a transaction whose commit was not answered; nothing where that cannot be found out.
-    std::optional<bool> was_committed(std::int64_t transaction);
+    /// Of a transaction whose commit was not answered, in that life of the server; nothing where that cannot be found
+    /// out.
+    std::optional<bool> was_committed(std::int64_t transaction, const std::string& life);
     bool stopping() const;
 
     Address address_;
     std::string tag_;
     std::unique_ptr<Session> session_;
+    std::string life_;  ///< server_life() that the session saw
     Clock::time_point next_try_{};
     std::chrono::milliseconds pause_{0};
 

@@ -108,6 +108,20 @@ class DatabaseTest(unittest.TestCase):
             self.assertLessEqual(set(poster.refusals), {503}, poster.refusals)
             self.assertEqual(service.get("/readyz").status, 200)
 
+    def test_numbers_that_a_crashed_server_gives_a_second_time_prove_nothing(self):
+        # A commit waits for the disk as long as it may: a crash meets it there, its transaction never was, and the next
+        # transaction has its number and is committed.
+        slow = {"commit_delay": "100000", "commit_siblings": "0", "wal_writer_delay": "10s"}
+        with OwnPostgres(**slow) as place, Service(*OPTIONS, store=place.store) as service:
+            poster = Poster(service, SOME_WORK, 400, threads=6)
+            for crash in range(6):
+                poster.wait_for(len(poster.ids) + 20)
+                place.cluster.stop("immediate")
+                place.cluster.start()
+            poster.join()
+            jobs = all_end(service, poster.ids)
+            self.assertEqual(sorted(jobs), sorted(poster.ids))
+
 
 class DrainTest(unittest.TestCase):
     """SIGTERM under load: whatever was sent whole is answered whole, and what was accepted is kept."""

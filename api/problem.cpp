@@ -55,7 +55,7 @@ Problem to_problem(const Error& error) {
     }
     if (error.kind == ErrorKind::invalid_argument) problem.type = "invalid-request";
     if (const auto limit = robust::named_limit(error))
-        problem.cure = Cure{"Use Ms = Mt = " + text(*limit), {{"Ms", *limit}, {"Mt", *limit}}};
+        problem.cure = Cure{"Use Ms = Mt = " + tunewright::text(*limit), {{"Ms", *limit}, {"Mt", *limit}}};
     if (!error.where.empty()) problem.errors.push_back({to_pointer(error.where), error.message});
     return problem;
 }

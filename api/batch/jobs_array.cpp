@@ -2,23 +2,15 @@
 
 #include <algorithm>
 
+#include "api/contract/terms.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kDeepest = 1000;       // nested brackets that are distinguished; a request may have 32
-constexpr std::size_t kMaxNameLength = 200;  // of the batch, in bytes
+constexpr std::size_t kDeepest = 1000;  // nested brackets that are distinguished; a request may have 32
 constexpr std::size_t kMaxQuoteLength = 6 * kMaxNameLength;  // as escapes
 constexpr std::string_view kCure = "Send {\"jobs\": [request, request, ...]}.";
-
-Problem not_json(std::string detail) { return {400, "not-json", "The body is not JSON", std::move(detail), {}, {}}; }
-
-Problem not_valid(std::string pointer, std::string detail) {
-    Problem problem{422, "invalid-request", "The batch is not valid", detail, {}, {}};
-    problem.errors.push_back({std::move(pointer), std::move(detail)});
-    return problem;
-}
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 

@@ -18,6 +18,12 @@ Problem too_long(std::size_t bytes, std::size_t most) {
     return problem;
 }
 
+Problem not_valid(std::string pointer, std::string detail) {
+    Problem problem{422, "invalid-request", "The batch is not valid", detail, {}, {}};
+    problem.errors.push_back({std::move(pointer), std::move(detail)});
+    return problem;
+}
+
 bool Lines::feed(std::string_view bytes, const Take& take) {
     if (code_ != Code::unknown) return feed_known(bytes, take);
     const std::size_t wanted = kUtf8.size() - std::min(kUtf8.size(), head_.size());

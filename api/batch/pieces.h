@@ -22,6 +22,9 @@ struct RawEntry {
 /// The fault of a request that has `bytes` bytes where `most` are accepted.
 Problem too_long(std::size_t bytes, std::size_t most);
 
+/// 422: the batch says something that it cannot mean.
+Problem not_valid(std::string pointer, std::string detail);
+
 /// Lines of a text that arrives piece by piece.
 class Lines {
 public:

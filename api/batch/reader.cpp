@@ -4,19 +4,13 @@
 
 #include "api/batch/jobs_array.h"
 #include "api/batch/pieces.h"
+#include "api/contract/terms.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxNameLength = 200;
 constexpr std::size_t kMaxLoop = 64 * 1024;
-
-Problem not_valid(std::string pointer, std::string detail) {
-    Problem problem{422, "invalid-request", "The batch is not valid", detail, {}, {}};
-    problem.errors.push_back({std::move(pointer), std::move(detail)});
-    return problem;
-}
 
 bool is_white(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 

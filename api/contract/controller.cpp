@@ -163,7 +163,7 @@ Description<Form>& with_weights(Description<Form>& description) {
 NumberRule proportional_rule() {
     return {.not_zero = true, .cure = "Pure integral action is the form parallel with Kp 0 and a Ki."};
 }
-NumberRule integral_rule() { return {.exclusive_minimum = 0, .cure = "No integral action is \"Ti\": null."}; }
+NumberRule Ti_rule() { return {.exclusive_minimum = 0, .cure = "No integral action is \"Ti\": null."}; }
 const char* kNoIntegral = "No integral action.";
 
 const Description<IdealPid>& ideal() {
@@ -173,7 +173,7 @@ const Description<IdealPid>& ideal() {
         d.tag("form", "ideal", false)
             .field("Kp", &IdealPid::Kp, number(proportional_rule()),
                    "Proportional gain, of the sign that the plant needs.", {.required = true, .unit = "u/y"})
-            .field("Ti", &IdealPid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
+            .field("Ti", &IdealPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.unit = "time"})
             .field("Td", &IdealPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
         return with_weights(d).example({{"form", "ideal"}, {"Kp", 1.2}, {"Ti", 10}, {"Td", 0}});
@@ -204,7 +204,7 @@ const Description<SeriesPid>& series() {
         d.tag("form", "series")
             .field("Kp", &SeriesPid::Kp, number(proportional_rule()), "Gain of the series form.",
                    {.required = true, .unit = "u/y"})
-            .field("Ti", &SeriesPid::Ti, number_or_infinite(integral_rule(), kNoIntegral),
+            .field("Ti", &SeriesPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.required = true, .unit = "time"})
             .field("Td", &SeriesPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
         return with_weights(d).field(

@@ -2,6 +2,7 @@
 
 #include "api/contract/plant/typed.h"
 #include "api/contract/result/evaluation.h"
+#include "api/contract/terms.h"
 #include "api/describe/codec.h"
 #include "engine/plant/linear/linear_plant.h"
 
@@ -69,8 +70,6 @@ const Description<FrequencyPoint>& frequency_point_contract() {
 }
 
 namespace {
-
-constexpr std::size_t kMaxNameLength = 200;
 
 const Description<RelaySettings>& relay_settings_contract() {
     static const auto description = [] {

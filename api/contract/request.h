@@ -69,7 +69,6 @@ std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader);
 /// The members that every request may carry.
 template <class Request>
 void add_labels(Description<Request>& d) {
-    constexpr std::size_t kMaxNameLength = 200;
     d.field("name", &Request::name, maybe(text(kMaxNameLength)), "A label, such as the loop's tag.")
         .field("units", &Request::units, maybe(object(units_contract())), "Labels of the units, echoed.");
 }

@@ -15,6 +15,8 @@ namespace tunewright::api {
 template <class T>
 class Description;
 
+constexpr std::size_t kMaxNameLength = 200;  ///< bytes of the name of a job or a batch
+
 /// Whom to tell when a job or a batch has ended. What a url may be is the operator's business.
 struct Notify {
     std::string url;

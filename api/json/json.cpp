@@ -8,8 +8,6 @@
 namespace tunewright::api {
 namespace {
 
-Problem not_json(std::string detail) { return {400, "not-json", "The body is not JSON", std::move(detail), {}, {}}; }
-
 Problem refused(std::string pointer, std::string detail) {
     Problem problem{422, "invalid-request", "The request is not valid", detail, {}, {}};
     problem.errors.push_back({std::move(pointer), std::move(detail)});
@@ -181,6 +179,8 @@ void write_canonical(const Json& value, Writer& out) {
 }
 
 }  // namespace
+
+Problem not_json(std::string detail) { return {400, "not-json", "The body is not JSON", std::move(detail), {}, {}}; }
 
 std::variant<Json, Problem> parse(std::string_view text) {
     TreeBuilder builder(text);

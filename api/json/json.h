@@ -21,6 +21,9 @@ constexpr std::size_t kMaxMembers = 1000;  ///< of one object; the contract need
 /// one object.
 std::variant<Json, Problem> parse(std::string_view text);
 
+/// 400: what was sent cannot be read as JSON.
+Problem not_json(std::string detail);
+
 /// `text` without the white space between its tokens. `text` must be JSON.
 std::string compact(std::string_view text);
 

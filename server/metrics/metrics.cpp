@@ -39,6 +39,8 @@ double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
     return then ? std::max(0.0, static_cast<double>(now - *then) * 1e-3) : 0;
 }
 
+}  // namespace
+
 /// Histograms of times, one for each value of a label. The family looks one up by building a map of labels; for each
 /// request that is too slow.
 class TimesByLabel {
@@ -65,6 +67,8 @@ private:
     std::mutex mutex_;
     std::map<std::string, Histogram*, std::less<>> by_value_;
 };
+
+namespace {
 
 /// A counter that somebody else counts.
 void set(Counter& counter, double value) {

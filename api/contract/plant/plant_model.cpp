@@ -7,14 +7,14 @@ namespace tunewright::api {
 namespace {
 
 constexpr std::size_t kMaxStates = 20, kMaxParameters = 200;
-constexpr std::size_t kMaxNameLength = 60, kMaxExpressionLength = 10'000;
+constexpr std::size_t kMaxSymbolLength = 60, kMaxExpressionLength = 10'000;
 
 Json expression_schema() { return {{"type", "string"}, {"maxLength", kMaxExpressionLength}}; }
 
 Json by_name_schema(Json value, std::size_t least, std::size_t most) {
     return {{"type", "object"},
             {"additionalProperties", std::move(value)},
-            {"propertyNames", {{"maxLength", kMaxNameLength}}},
+            {"propertyNames", {{"maxLength", kMaxSymbolLength}}},
             {"minProperties", least},
             {"maxProperties", most}};
 }
@@ -33,9 +33,9 @@ auto members_by_name(std::size_t least, std::size_t most, const char* sample, Re
         if (value.size() < least || value.size() > most) return reader.fault(count_fault(value, least, most, reader));
         for (const auto& [name, content] : value.items()) {
             const Reader::At at(reader, name);
-            if (name.size() > kMaxNameLength) {
+            if (name.size() > kMaxSymbolLength) {
                 reader.fault("A name has " + std::to_string(name.size()) + " characters; it may have " +
-                             std::to_string(kMaxNameLength) + ".");
+                             std::to_string(kMaxSymbolLength) + ".");
             } else if (const auto member = read_member(content, reader)) {
                 target.push_back({name, *member});
             }
@@ -101,7 +101,7 @@ const Description<ManipulatedInput>& input_contract() {
     static const auto description = [] {
         Description<ManipulatedInput> d("ManipulatedInput",
                                         "The input that the controller moves; all values are absolute.");
-        d.field("name", &ManipulatedInput::name, text(kMaxNameLength), "Its name in the equations.")
+        d.field("name", &ManipulatedInput::name, text(kMaxSymbolLength), "Its name in the equations.")
             .field("nominal", &ManipulatedInput::nominal, number(), "Its value at the operating point.",
                    {.required = true, .unit = "u"})
             .field("min", &ManipulatedInput::min, maybe(number()), "Its lower limit, <= nominal.", {.unit = "u"})

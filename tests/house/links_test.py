@@ -38,6 +38,8 @@ def prose(text: str) -> list[tuple[int, str]]:
 
 
 def without_code(line: str) -> str:
+    """The line without what is shown as it stands, and without remarks, which are not shown at all."""
+    line = re.sub(r"<!--.*?-->", "", line)
     return re.sub(r"(`+)(?!`).*?(?<!`)\1(?!`)", "``", line)
 
 
@@ -104,7 +106,7 @@ def check_of_the_check() -> list[str]:
     long = "x" * (MOST_COLUMNS + 1)
     made = {"README.md": f"# A `b_c` (d), e: f\n# Twice\n# Twice\n[a](docs/a.md#twice) [b](#a-b_c-d-e-f)\n"
                          f"[c](#twice-1)\n| {long} |\n\n    [code](nowhere) {long}\n\n`[code](nowhere)` "
-                         "[d](https://example.com/x)\n[e\nf](docs/)\n",
+                         "[d](https://example.com/x) <!-- [r](nowhere) -->\n[e\nf](docs/)\n",
             "docs/a.md": f"## Twice\n```\n[code](nowhere)\n```\n[f](../README.md#twice-1) ![g](p.webp)\n[h](b.md)\n"
                          f"[i](../README.md#none) [j](../../out.md)\n[k]: c.md\n{long}\n"}
     faults = wrong_links(made, set(made) | {"docs/p.webp"}) + long_lines(made)

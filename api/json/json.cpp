@@ -206,6 +206,63 @@ std::string compact(std::string_view text) {
     return out;
 }
 
+namespace {
+
+/// The end of the string that begins at `at`.
+std::size_t after_string(std::string_view json, std::size_t at) {
+    for (++at; json[at] != '"'; ++at)
+        if (json[at] == '\\') ++at;
+    return at + 1;
+}
+
+/// Whether the bracket at `at` encloses another one. The next of any kind tells.
+bool encloses(std::string_view json, std::size_t at) {
+    for (++at; at < json.size();) {
+        const char c = json[at];
+        if (c == '"') {
+            at = after_string(json, at);
+            continue;
+        }
+        if (c == '{' || c == '[') return true;
+        if (c == '}' || c == ']') return false;
+        ++at;
+    }
+    return false;
+}
+
+}  // namespace
+
+std::string indented(std::string_view text) {
+    const std::string json = compact(text);
+    std::string out;
+    std::vector<bool> parted;  // of each open bracket: one line for each member
+    const auto new_line = [&] { out.append("\n").append(2 * parted.size(), ' '); };
+    for (std::size_t at = 0; at < json.size();) {
+        const char c = json[at];
+        if (c == '"') {
+            const std::size_t end = after_string(json, at);
+            out.append(json, at, end - at);
+            at = end;
+            continue;
+        }
+        const bool closes = c == '}' || c == ']';
+        if (closes && !parted.empty()) {
+            const bool lines = parted.back();
+            parted.pop_back();
+            if (lines) new_line();
+        }
+        out += c;
+        if (c == '{' || c == '[') {
+            parted.push_back(encloses(json, at));
+            if (parted.back()) new_line();
+        }
+        if (c == ':') out += ' ';
+        if (c == ',') parted.empty() || !parted.back() ? void(out += ' ') : new_line();
+        ++at;
+    }
+    return out + "\n";
+}
+
 std::string canonical(const Json& value) {
     Writer out;
     write_canonical(value, out);

@@ -27,6 +27,10 @@ Problem not_json(std::string detail);
 /// `text` without the white space between its tokens. `text` must be JSON.
 std::string compact(std::string_view text);
 
+/// `text` over several lines, two blanks for each depth; what holds neither objects nor arrays stays on one line. `text`
+/// must be JSON; everything is passed on as it is spelled. Ends in a newline.
+std::string indented(std::string_view text);
+
 /// `json`, an object or an array as compact() or a Writer spells it, without the members of these names, wherever they
 /// stand. Everything else is passed on as it is spelled.
 std::string without_members(std::string_view json, std::initializer_list<std::string_view> names);

@@ -93,5 +93,24 @@ TEST(Digest, IsSha256) {
               "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
+TEST(Indented, ReadsTheSameAndKeepsWhatIsSmallOnALine) {
+    const std::string text = R"({"a":{"b":[1,2,{"c":"x, \"y\": [z]"}],"d":{}},"e":[1.50,-2e-9],"f":[]})";
+    const std::string lines = indented(text);
+    EXPECT_EQ(compact(lines), text);
+    EXPECT_EQ(lines,
+              "{\n"
+              "  \"a\": {\n"
+              "    \"b\": [\n"
+              "      1,\n"
+              "      2,\n"
+              "      {\"c\": \"x, \\\"y\\\": [z]\"}\n"
+              "    ],\n"
+              "    \"d\": {}\n"
+              "  },\n"
+              "  \"e\": [1.50, -2e-9],\n"
+              "  \"f\": []\n"
+              "}\n");
+}
+
 }  // namespace
 }  // namespace tunewright::api

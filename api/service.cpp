@@ -127,29 +127,6 @@ void ask_for_no_traces(Json& request) {
     if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
 }
 
-/// The number that a word spells; a word that spells none stays one, for the contract to refuse.
-Json number_or_word(const std::string& word) {
-    Json value = Json::parse(word, nullptr, false);
-    return value.is_number() ? value : Json(word);
-}
-
-/// The record that the words stand for, of no text yet.
-Json record_json(const CsvRequest& question) {
-    Json columns = Json::object();
-    for (const auto& [name, choice] :
-         {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
-        if (choice->empty()) continue;
-        const bool number = choice->size() <= 3 && choice->find_first_not_of("0123456789") == std::string::npos;
-        columns[name] = number ? Json(std::stoi(*choice)) : Json(*choice);
-    }
-    Json record{{"csv", ""}};
-    if (!columns.empty()) record["columns"] = std::move(columns);
-    if (!question.kind.empty()) record["kind"] = question.kind;
-    if (!question.dt.empty()) record["dt"] = number_or_word(question.dt);
-    for (const std::string& limit : question.u_limits) record["u_limits"].push_back(number_or_word(limit));
-    return record;
-}
-
 Json identify_json(const CsvRequest& question) {
     Json options{{"traces", question.traces}};
     if (!question.model.empty()) options["model"] = question.model;
@@ -338,7 +315,7 @@ Answer identify_csv(std::string csv, const CsvRequest& question, const RunContro
     IdentifyQuestion options;
     {
         const Reader::At at(reader, "record");
-        record_contract().read(record_json(question), given, reader);
+        record_contract().read(record_of(question, ""), given, reader);
     }
     {
         const Reader::At at(reader, "units");

@@ -9,6 +9,7 @@
 
 #include "api/contract/terms.h"
 #include "api/problem.h"
+#include "api/shorthand.h"
 #include "engine/progress.h"
 
 namespace tunewright::api {
@@ -78,14 +79,6 @@ Answer identify_call(std::string_view body, const RunControl& control);  ///< PO
 Answer preview_call(std::string_view body);
 Answer preview_file(std::string_view bytes);
 
-/// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
-struct CsvRequest {
-    std::string t, u, y, r;  ///< headings, or numbers from 1
-    std::string dt, time_unit, kind, model;
-    std::vector<std::string> u_limits;  ///< low and high; empty: not given
-    bool traces = false;
-};
-
 /// The same for a CSV file as it is, in any encoding, without a request around it.
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
 Answer parse_plant_call(std::string_view body);                       ///< POST /v1/plants/parse
@@ -100,6 +93,8 @@ Answer controller_twin_call(std::string_view id, std::string_view body);
 std::string methods_json();               ///< GET /v1/methods
 Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none
 std::string examples_json();              ///< GET /v1/examples
+/// The request of the example with that id, or that number from 1; 404 for none.
+Answer example_request(std::string_view which);
 std::string openapi_json();               ///< GET /openapi.json (OpenAPI 3.1)
 
 }  // namespace tunewright::api

@@ -1,3 +1,6 @@
+#include <vector>
+
+#include "api/describe/suggest.h"
 #include "api/embed/files.h"
 #include "api/json/json.h"
 #include "api/service.h"
@@ -18,20 +21,37 @@ void insert_record(Json& request) {
     csv = std::string(embedded_file("examples/" + csv.get<std::string>()));
 }
 
+Json all_examples() {
+    Json examples = Json::array();
+    for (const EmbeddedFile& file : embedded_files()) {
+        if (!is_example(file.name)) continue;
+        Json example = Json::parse(file.text);
+        insert_record(example["request"]);
+        examples.push_back(std::move(example));
+    }
+    return examples;
+}
+
 }  // namespace
 
 std::string examples_json() {
-    static const std::string text = [] {
-        Json examples = Json::array();
-        for (const EmbeddedFile& file : embedded_files()) {
-            if (!is_example(file.name)) continue;
-            Json example = Json::parse(file.text);
-            insert_record(example["request"]);
-            examples.push_back(std::move(example));
-        }
-        return Json{{"examples", std::move(examples)}}.dump();
-    }();
+    static const std::string text = Json{{"examples", all_examples()}}.dump();
     return text;
+}
+
+Answer example_request(std::string_view which) {
+    const Json examples = all_examples();
+    std::vector<std::string> ids;
+    for (const Json& example : examples) {
+        ids.push_back(example.at("id"));
+        if (which == ids.back() || which == std::to_string(ids.size())) return {200, example.at("request").dump()};
+    }
+    Problem problem{404, "not-found", "There is no such example", "", {}, {}};
+    const std::string meant = nearest(which, ids);
+    problem.detail = "There is no example \"" + std::string(which) + "\". " +
+                     (meant.empty() ? "They are numbered from 1 to " + std::to_string(ids.size()) + "."
+                                    : "Did you mean " + meant + "?");
+    return {problem.status, to_json(problem)};
 }
 
 }  // namespace tunewright::api

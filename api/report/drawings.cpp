@@ -50,7 +50,7 @@ void add_responses(Plot& plot, const ReportSubject& s, const char* step, const c
 }
 
 /// To the longest horizon; the request's limits of u where it has them.
-Html response(const ReportSubject& s, const char* title, const char* step, const char* signal,
+Plot response(const ReportSubject& s, const char* title, const char* step, const char* signal,
               const std::string& unit) {
     Plot plot{.title = title, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
     add_responses(plot, s, step, signal);
@@ -59,7 +59,7 @@ Html response(const ReportSubject& s, const char* title, const char* step, const
         for (const char* end : {"min", "max"})
             if (actuator.at(end).value().is_number())
                 plot.limits.emplace_back(std::string(end) + " of u", actuator.at(end).value().get<double>());
-    return drawn(plot);
+    return plot;
 }
 
 double limit_of(const ReportSubject& s, const char* name) {
@@ -143,10 +143,14 @@ Html sensitivities(const ReportSubject& s) {
 
 }  // namespace
 
+std::vector<Plot> response_plots(const ReportSubject& s) {
+    return {response(s, "Set-point step: y", "setpoint", "y", s.y), response(s, "Load step: y", "load", "y", s.y),
+            response(s, "Set-point step: u", "setpoint", "u", s.u), response(s, "Load step: u", "load", "u", s.u)};
+}
+
 Html responses_section(const ReportSubject& s) {
-    const Html figures =
-        response(s, "Set-point step: y", "setpoint", "y", s.y) + response(s, "Load step: y", "load", "y", s.y) +
-        response(s, "Set-point step: u", "setpoint", "u", s.u) + response(s, "Load step: u", "load", "u", s.u);
+    Html figures;
+    for (const Plot& plot : response_plots(s)) figures += drawn(plot);
     if (figures.empty())
         return section("Responses", element("p",
                                             "The result has no traces: its request asked for none (evaluate.points), "

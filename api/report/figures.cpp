@@ -3,13 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include "api/describe/reader.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
-
-const Json kNone;
 
 std::string true_minus(std::string text) {
     if (!text.empty() && text[0] == '-') text = "−" + text.substr(1);
@@ -20,18 +17,9 @@ std::string true_minus(std::string text) {
 
 }  // namespace
 
-const Json& Place::value() const {
-    const Json::json_pointer where(pointer);
-    return root.contains(where) ? root.at(where) : kNone;
-}
+std::string number_text(double value, int digits) { return true_minus(tunewright::text(value, digits)); }
 
-Place Place::at(std::string_view name) const { return {root, pointer + "/" + pointer_segment(name)}; }
-
-Place Place::at(std::size_t index) const { return {root, pointer + "/" + std::to_string(index)}; }
-
-std::string number_text(double value, int digits) { return true_minus(text(value, digits)); }
-
-std::string tick_text(double value) { return true_minus(text(std::abs(value) < 1e-300 ? 0 : value, 6)); }
+std::string tick_text(double value) { return true_minus(tunewright::text(std::abs(value) < 1e-300 ? 0 : value, 6)); }
 
 Html figure(const Place& place, int digits) {
     const Json& value = place.value();
@@ -41,11 +29,6 @@ Html figure(const Place& place, int digits) {
     const Place owner{place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)};
     const std::string why = text_at(owner);
     return element("span", "–", {{"title", why}});
-}
-
-std::string text_at(const Place& place) {
-    const Json& value = place.value();
-    return value.is_string() ? value.get<std::string>() : "";
 }
 
 Html table(const char* caption, const Row& heads, const std::vector<Row>& rows) {

@@ -9,20 +9,10 @@
 
 #include "api/json/json.h"
 #include "api/report/html.h"
+#include "api/report/plot.h"
+#include "api/report/subject.h"
 
 namespace tunewright::api {
-
-/// The result with a pointer to the part that is shown.
-struct Place {
-    const Json& root;
-    std::string pointer;
-
-    /// Null where there is none.
-    const Json& value() const;
-    Place at(std::string_view name) const;
-    Place at(std::size_t index) const;
-    bool exists() const { return !value().is_null(); }
-};
 
 /// "1.385": so many significant digits, a true minus sign.
 std::string number_text(double value, int digits = 4);
@@ -31,9 +21,6 @@ std::string tick_text(double value);
 
 /// A number as <span data-at="/controllers/0/...">1.385</span>; a dash and its reason where it is null.
 Html figure(const Place& place, int digits = 4);
-
-/// A text at the place; "" for none.
-std::string text_at(const Place& place);
 
 using Row = std::vector<Html>;
 
@@ -47,16 +34,11 @@ std::string unit_quotient(const std::string& above, const std::string& below);
 /// "Ti (s)"
 std::string with_unit(const std::string& name, const std::string& unit);
 
-/// What a section is about: places in one document {result, request}.
-struct ReportSubject {
-    Place result, request, entry;
-    std::optional<Place> today;  ///< the baseline's entry, where there is one beside the entry
-    std::string time, u, y;      ///< labels of the units; "" where not given, but for time
-};
-
 Html verdict_section(const ReportSubject& subject);
 Html settings_section(const ReportSubject& subject);
 Html figures_section(const ReportSubject& subject);
+/// Set-point and load step, y and u of each.
+std::vector<Plot> response_plots(const ReportSubject& subject);
 Html responses_section(const ReportSubject& subject);
 Html robustness_section(const ReportSubject& subject);
 Html plant_section(const ReportSubject& subject);

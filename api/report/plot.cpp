@@ -43,8 +43,6 @@ struct Axis {
     }
 };
 
-using Range = std::pair<double, double>;
-
 Range range_of(const Plot& plot, bool of_x) {
     Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     const auto take = [&](double value) {
@@ -216,13 +214,18 @@ std::vector<double> log_ticks(double low, double high) {
     return out;
 }
 
-Html drawn(const Plot& plot) {
-    const Range given_x = plot.x_range.value_or(range_of(plot, true));
-    const Range given_y = plot.y_range ? *plot.y_range : with_room(range_of(plot, false));
-    const bool finite = std::isfinite(given_x.first) && std::isfinite(given_y.first) && given_x.second > given_x.first;
-    if (!finite) return {};
-    Axis x = axis_of(given_x, plot.log_x, kLeft, kWidth - kRight);
-    Axis y = axis_of(given_y, false, kHeight - kBottom, kTop);
+std::optional<Frame> frame_of(const Plot& plot) {
+    const Frame frame{plot.x_range.value_or(range_of(plot, true)),
+                      plot.y_range ? *plot.y_range : with_room(range_of(plot, false))};
+    const bool finite = std::isfinite(frame.x.first) && std::isfinite(frame.y.first) && frame.x.second > frame.x.first;
+    return finite ? std::optional(frame) : std::nullopt;
+}
+
+namespace {
+
+Html picture_of(const Plot& plot, const Frame& given) {
+    Axis x = axis_of(given.x, plot.log_x, kLeft, kWidth - kRight);
+    Axis y = axis_of(given.y, false, kHeight - kBottom, kTop);
     if (plot.equal) make_equal(x, y);
     // A picture of its own inside the frame cuts off what lies outside.
     const Html frame = element("svg", inside_of(plot, x, y),
@@ -232,12 +235,56 @@ Html drawn(const Plot& plot) {
                                 {"height", px(kHeight - kBottom - kTop)},
                                 {"viewBox", px(kLeft) + " " + px(kTop) + " " + px(kWidth - kRight - kLeft) + " " +
                                                 px(kHeight - kBottom - kTop)}});
-    const Html picture = element("svg", axes(plot, x, y) + frame,
-                                 {{"xmlns", "http://www.w3.org/2000/svg"},
-                                  {"viewBox", "0 0 " + px(kWidth) + " " + px(kHeight)},
-                                  {"role", "img"},
-                                  {"aria-label", plot.title}});
-    return element("figure", element("figcaption", element("strong", plot.title) + " " + legend(plot)) + picture);
+    return element("svg", axes(plot, x, y) + frame,
+                   {{"xmlns", "http://www.w3.org/2000/svg"},
+                    {"viewBox", "0 0 " + px(kWidth) + " " + px(kHeight)},
+                    {"role", "img"},
+                    {"aria-label", plot.title}});
+}
+
+/// The title, then a sample and the name of each line.
+Html caption_of(const Plot& plot) {
+    constexpr double kLetter = 6.2, kSample = 22;  // px, about
+    Html out = element("text", plot.title, {{"x", px(kLeft)}, {"y", "12"}, {"font-weight", "bold"}});
+    double at = kLeft + kLetter * static_cast<double>(plot.title.size()) + 14;
+    for (const Trace& trace : plot.traces) {
+        if (trace.name.empty()) continue;
+        out += stroke(trace.line, "M" + px(at) + " 8L" + px(at + kSample) + " 8");
+        out += element("text", trace.name, {{"x", px(at + kSample + 4)}, {"y", "12"}});
+        at += kSample + 14 + kLetter * static_cast<double>(trace.name.size());
+    }
+    return out;
+}
+
+}  // namespace
+
+Html drawn(const Plot& plot) {
+    const auto frame = frame_of(plot);
+    if (!frame) return {};
+    return element(
+        "figure", element("figcaption", element("strong", plot.title) + " " + legend(plot)) + picture_of(plot, *frame));
+}
+
+std::string svg_file(const std::vector<Plot>& plots) {
+    constexpr double kScale = 2, kCaption = 18, kGap = 8;  // a plot is twice as large as on paper
+    Html inside = element("style", Html::trusted("text{font:10.5px system-ui,sans-serif;fill:#17202a}"));
+    inside += empty_element("rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
+    double top = kGap;
+    for (const Plot& plot : plots) {
+        const auto frame = frame_of(plot);
+        if (!frame) continue;
+        inside += element("g", caption_of(plot), {{"transform", "translate(0 " + px(top) + ")"}});
+        inside += element("svg", picture_of(plot, *frame),
+                          {{"y", px(top + kCaption)}, {"width", px(kWidth)}, {"height", px(kHeight)}});
+        top += kCaption + kHeight + kGap;
+    }
+    return element("svg", inside,
+                   {{"xmlns", "http://www.w3.org/2000/svg"},
+                    {"viewBox", "0 0 " + px(kWidth) + " " + px(top)},
+                    {"width", px(kScale * kWidth)},
+                    {"height", px(kScale * top)}})
+               .markup() +
+           "\n";
 }
 
 }  // namespace tunewright::api

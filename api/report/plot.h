@@ -33,8 +33,19 @@ struct Plot {
     std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< else what the traces need
 };
 
-/// A <figure> with the drawing and its legend. Empty where no trace has two finite points.
+using Range = std::pair<double, double>;
+
+/// What a drawing shows along each axis; nothing where no trace has two finite points.
+struct Frame {
+    Range x, y;
+};
+std::optional<Frame> frame_of(const Plot& plot);
+
+/// A <figure> with the drawing and its legend. Empty where there is no frame.
 Html drawn(const Plot& plot);
+
+/// The drawings one below the other as a file of their own, each with its title and the names of its lines.
+std::string svg_file(const std::vector<Plot>& plots);
 
 /// Multiples of 1, 2 or 5 times a power of ten within the range, about `count` of them.
 std::vector<double> ticks(double low, double high, int count);

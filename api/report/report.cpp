@@ -1,8 +1,5 @@
 #include "api/report/report.h"
 
-#include <array>
-
-#include "api/contract/terms.h"
 #include "api/embed/files.h"
 #include "api/json/digest.h"
 #include "api/report/figures.h"
@@ -13,31 +10,6 @@ namespace {
 const std::string& stylesheet() {
     static const std::string text(embedded_file("report/report.css"));
     return text;
-}
-
-std::string label(const Json& units, const char* name, const char* otherwise) {
-    return units.is_object() && units.contains(name) && units[name].is_string() ? units[name].get<std::string>()
-                                                                                : otherwise;
-}
-
-ReportSubject subject_of(const Json& document, std::size_t index) {
-    const Place root{document, ""}, result = root.at("result");
-    const Place controllers = result.at("controllers");
-    Json units = result.at("units").value();
-    if (!units.is_object()) units = root.at("request").at("units").value();
-    ReportSubject subject{.result = result,
-                          .request = root.at("request"),
-                          .entry = controllers.at(index),
-                          .today = {},
-                          .time = label(units, "time", "s"),
-                          .u = label(units, "u", ""),
-                          .y = label(units, "y", "")};
-    for (std::size_t i = 0; i < controllers.value().size(); ++i) {
-        const Place other = controllers.at(i);
-        if (i != index && text_at(other.at("method")) == "baseline" && other.at("controller").exists())
-            subject.today.emplace(other);
-    }
-    return subject;
 }
 
 Html head_of(const ReportSubject& subject, const ReportWords& words, const std::string& title) {
@@ -51,19 +23,6 @@ Html head_of(const ReportSubject& subject, const ReportWords& words, const std::
     const std::string hash = text_at(subject.result.at("request_hash"));
     if (!hash.empty()) out += element("p", "Request " + hash, {{"class", "hash"}});
     return element("header", out);
-}
-
-/// The first of the ranking that is not what runs today; that, where it stands alone.
-std::size_t best_proposal(const ChosenEntry& found) {
-    const Json& controllers = found.result.at("controllers");
-    const Json ranking = found.result.value("ranking", Json::array());
-    for (const Json& number : ranking) {
-        if (!number.is_number_unsigned() || number.get<std::size_t>() >= controllers.size()) continue;
-        const Json& entry = controllers[number.get<std::size_t>()];
-        if (entry.is_object() && entry.contains("controller") && entry.value("method", "") != "baseline")
-            return number.get<std::size_t>();
-    }
-    return found.index;
 }
 
 Html signatures() {
@@ -98,11 +57,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
                            .name = words.name.empty() ? found.name : words.name,
                            .date = words.date.empty() ? found.date : words.date,
                            .origin = words.origin};
-    Json document = Json::object();
-    document["result"] = std::move(found.result);
-    // Whoever runs a printed request again is not to be announced to somebody else by it.
-    if (found.request.is_object()) leave_out_terms(found.request);
-    document["request"] = std::move(found.request);
+    const Json document = document_of(found);
     const ReportSubject subject = subject_of(document, number);
 
     const std::string name = said.name.empty() ? text_at(subject.request.at("name")) : said.name;
@@ -110,7 +65,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     return page(title, head_of(subject, said, title) + verdict_section(subject) + settings_section(subject) +
                            figures_section(subject) + responses_section(subject) + robustness_section(subject) +
                            plant_section(subject) + method_section(subject) + assumptions_section(subject) +
-                           signatures() + request_section(document["request"], said.origin));
+                           signatures() + request_section(document.at("request"), said.origin));
 } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
     return not_a_result();
 }

@@ -1,0 +1,74 @@
+#include "api/report/subject.h"
+
+#include <utility>
+
+#include "api/contract/terms.h"
+
+namespace tunewright::api {
+namespace {
+
+const Json kNone;
+
+std::string label(const Json& units, const char* name, const char* otherwise) {
+    return units.is_object() && units.contains(name) && units[name].is_string() ? units[name].get<std::string>()
+                                                                                : otherwise;
+}
+
+}  // namespace
+
+const Json& Place::value() const {
+    const Json::json_pointer where(pointer);
+    return root.contains(where) ? root.at(where) : kNone;
+}
+
+Place Place::at(std::string_view name) const { return {root, pointer + "/" + pointer_segment(name)}; }
+
+Place Place::at(std::size_t index) const { return {root, pointer + "/" + std::to_string(index)}; }
+
+std::string text_at(const Place& place) {
+    const Json& value = place.value();
+    return value.is_string() ? value.get<std::string>() : "";
+}
+
+ReportSubject subject_of(const Json& document, std::size_t index) {
+    const Place root{document, ""}, result = root.at("result");
+    const Place controllers = result.at("controllers");
+    Json units = result.at("units").value();
+    if (!units.is_object()) units = root.at("request").at("units").value();
+    ReportSubject subject{.result = result,
+                          .request = root.at("request"),
+                          .entry = controllers.at(index),
+                          .today = {},
+                          .time = label(units, "time", "s"),
+                          .u = label(units, "u", ""),
+                          .y = label(units, "y", "")};
+    for (std::size_t i = 0; i < controllers.value().size(); ++i) {
+        const Place other = controllers.at(i);
+        if (i != index && text_at(other.at("method")) == "baseline" && other.at("controller").exists())
+            subject.today.emplace(other);
+    }
+    return subject;
+}
+
+std::size_t best_proposal(const ChosenEntry& found) {
+    const Json& controllers = found.result.at("controllers");
+    const Json ranking = found.result.value("ranking", Json::array());
+    for (const Json& number : ranking) {
+        if (!number.is_number_unsigned() || number.get<std::size_t>() >= controllers.size()) continue;
+        const Json& entry = controllers[number.get<std::size_t>()];
+        if (entry.is_object() && entry.contains("controller") && entry.value("method", "") != "baseline")
+            return number.get<std::size_t>();
+    }
+    return found.index;
+}
+
+Json document_of(ChosenEntry& found) {
+    Json document = Json::object();
+    document["result"] = std::move(found.result);
+    // Whoever runs a printed request again is not to be announced to somebody else by it.
+    if (found.request.is_object()) leave_out_terms(found.request);
+    document["request"] = std::move(found.request);
+    return document;
+}
+
+}  // namespace tunewright::api

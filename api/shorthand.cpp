@@ -1,0 +1,97 @@
+#include "api/shorthand.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "api/csv/text.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr const char* kBlank = " \t\r\n";
+
+Problem unclear(std::string detail) { return {422, "invalid-request", "The request is not valid", std::move(detail), {}, {}}; }
+
+/// The number that a word spells; a word that spells none stays one, for the contract to refuse.
+Json number_or_word(const std::string& word) {
+    Json value = Json::parse(word, nullptr, false);
+    return value.is_number() ? value : Json(word);
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    for (std::size_t at = 0; (at = text.find_first_not_of(" ,;", at)) != text.npos;) {
+        const std::size_t end = std::min(text.find_first_of(" ,;", at), text.size());
+        words.emplace_back(text.substr(at, end - at));
+        at = end;
+    }
+    return words;
+}
+
+std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<std::string>& file) {
+    if (!words.plant.empty() && file)
+        return unclear("Both a plant and a file are given; the file says which plant. Leave one of them out.");
+    if (!words.plant.empty()) return Json{{"plant", words.plant}};
+    if (!file) return unclear("There is nothing to tune: name a file, or give --plant \"2 e^(-3s)/(10s+1)\".");
+    // A file of blanks is as little a request as it is a record; it is refused as the body of a call would be.
+    if (is_request(*file) || file->find_first_not_of(kBlank) == file->npos) return parse(*file);
+    std::string storage;
+    return Json{{"record", record_of(words.record, std::string(utf8_text(*file, storage)))}};
+}
+
+void put_methods(const TuneWords& words, Json& request) {
+    if (!words.methods.empty()) {
+        request["tune"] = Json::array();
+        for (const std::string& method : words.methods) request["tune"].push_back({{"method", method}});
+    }
+    if (words.Ms.empty()) return;
+    if (!request.contains("tune")) request["tune"] = Json::array({{{"method", "robust"}}});
+    for (Json& entry : request["tune"])
+        if (entry.is_object()) entry["Ms"] = entry["Mt"] = number_or_word(words.Ms);
+}
+
+}  // namespace
+
+Json record_of(const CsvRequest& question, std::string csv) {
+    Json columns = Json::object();
+    for (const auto& [name, choice] :
+         {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
+        if (choice->empty()) continue;
+        const bool number = choice->size() <= 3 && choice->find_first_not_of("0123456789") == std::string::npos;
+        columns[name] = number ? Json(std::stoi(*choice)) : Json(*choice);
+    }
+    Json record{{"csv", std::move(csv)}};
+    if (!columns.empty()) record["columns"] = std::move(columns);
+    if (!question.kind.empty()) record["kind"] = question.kind;
+    if (!question.dt.empty()) record["dt"] = number_or_word(question.dt);
+    for (const std::string& limit : question.u_limits) record["u_limits"].push_back(number_or_word(limit));
+    return record;
+}
+
+bool is_request(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(kBlank);
+    if (first == text.npos || text[first] != '{') return false;
+    const std::size_t end = text.find('\n', first);
+    if (end == text.npos) return true;
+    const std::size_t last = text.find_last_not_of(kBlank, end), next = text.find_first_not_of(kBlank, end);
+    return !(text[last] == '}' && next != text.npos && text[next] == '{');
+}
+
+std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file) {
+    auto found = subject(words, file);
+    if (auto* problem = std::get_if<Problem>(&found)) return std::move(*problem);
+    Json& request = std::get<Json>(found);
+    put_methods(words, request);
+    if (!words.record.time_unit.empty()) request["units"]["time"] = words.record.time_unit;
+    if (!words.baseline.empty()) {
+        Json& today = request["baseline"] = {{"form", "ideal"}};
+        const std::vector<std::string> values = words_of(words.baseline);
+        constexpr const char* kNames[] = {"Kp", "Ti", "Td"};
+        if (values.size() > std::size(kNames))
+            return unclear("--baseline is \"" + words.baseline + "\"; it must be Kp, Ti and Td of the ideal form, such as \"0.5 10 0\".");
+        for (std::size_t i = 0; i < values.size(); ++i) today[kNames[i]] = number_or_word(values[i]);
+    }
+    return request.dump();
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,42 @@
+// The tuning request that a few words of a command line stand for, with a file or without one.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "api/json/json.h"
+#include "api/problem.h"
+
+namespace tunewright::api {
+
+/// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
+struct CsvRequest {
+    std::string t, u, y, r;  ///< headings, or numbers from 1
+    std::string dt, time_unit, kind, model;
+    std::vector<std::string> u_limits;  ///< low and high; empty: not given
+    bool traces = false;
+};
+
+struct TuneWords {
+    std::string plant;                 ///< as `tunewright plant` reads it; "": the file has it
+    std::vector<std::string> methods;  ///< empty: those of the file, or the default
+    std::string Ms;                    ///< limit of Ms and Mt, for each of the methods; "": not given
+    std::string baseline;              ///< today's settings, "Kp Ti Td"; "": those of the file, or none
+    CsvRequest record;                 ///< where the file is a recorded test; its time_unit counts for a plant too
+};
+
+/// The member `record` of a request, with that text.
+Json record_of(const CsvRequest& question, std::string csv);
+
+/// Whether a text is one JSON object, which a log with one in each line is not.
+bool is_request(const std::string& text);
+
+/// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none where the words
+/// have a plant. Words stand above what the file says. Problems: 400 for a request that is not JSON; 422 where there is
+/// neither plant nor file, or both; whatever else is wrong prepare_job() finds.
+std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file);
+
+}  // namespace tunewright::api

@@ -1,0 +1,78 @@
+// A few words of a command line as the request that they stand for.
+#include "api/shorthand.h"
+
+#include "support.h"
+
+namespace tunewright::api {
+namespace {
+
+Json request_of(const TuneWords& words, std::optional<std::string> file = std::nullopt) {
+    const auto made = tuning_request(words, std::move(file));
+    return std::holds_alternative<std::string>(made) ? Json::parse(std::get<std::string>(made)) : Json();
+}
+
+std::string refusal_of(const TuneWords& words, std::optional<std::string> file = std::nullopt) {
+    const auto made = tuning_request(words, std::move(file));
+    return std::holds_alternative<Problem>(made) ? std::get<Problem>(made).detail : "";
+}
+
+TEST(Shorthand, WordsBecomeMembersOfTheRequest) {
+    TuneWords words;
+    words.plant = "2 e^(-3s)/(10s+1)";
+    words.methods = {"robust", "simc"};
+    words.Ms = "1.6";
+    words.baseline = "0.5, 10";
+    words.record.time_unit = "min";
+    EXPECT_EQ(request_of(words), Json::parse(R"({"plant": "2 e^(-3s)/(10s+1)",
+        "tune": [{"method": "robust", "Ms": 1.6, "Mt": 1.6}, {"method": "simc", "Ms": 1.6, "Mt": 1.6}],
+        "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 10}, "units": {
+        "time" : "min"}
+})"));
+}
+
+TEST(Shorthand, WordsStandAboveTheFileAndLeaveTheRestOfItAlone) {
+    const std::string file =
+        R"( {"plant": {"type": "ipdt", "K": 1, "L": 2}, "name": "LIC-3", "tune": [{"method": "simc"}]})";
+    EXPECT_EQ(request_of({}, file), Json::parse(file));
+    TuneWords words;
+    words.methods = {"amigo"};
+    Json changed = Json::parse(file);
+    changed["tune"] = Json::parse(R"([{"method": "amigo"}])");
+    EXPECT_EQ(request_of(words, file), changed);
+}
+
+TEST(Shorthand, ATestInAFileBecomesTheRecord) {
+    TuneWords words;
+    words.record.u = "2";
+    words.record.y = "PV";
+    words.record.dt = "0.5";
+    words.record.u_limits = {"0", "100"};
+    const std::string csv = "t,u,PV\n0,1,2\n";
+    EXPECT_EQ(
+        request_of(words, csv),
+        (Json{{"record", {{"csv", csv}, {"columns", {{"u", 2}, {"y", "PV"}}}, {"dt", 0.5}, {"u_limits", {0, 100}}}}}));
+    // A log with an object in each line is a record too, a request over several lines is none.
+    EXPECT_TRUE(request_of({}, "{\"t\": 0, \"u\": 1}\n{\"t\": 1, \"u\": 2}\n").contains("record"));
+    EXPECT_FALSE(request_of({}, "{\n\"plant\": \"1/(s+1)\"}").contains("record"));
+}
+
+TEST(Shorthand, NothingAndTwoThingsToTuneAreRefused) {
+    TuneWords both;
+    both.plant = "1/(s+1)";
+    EXPECT_NE(refusal_of(both, "{}").find("Leave one of them out"), std::string::npos);
+    EXPECT_NE(refusal_of({}).find("--plant"), std::string::npos);
+    EXPECT_NE(refusal_of({}, " \n").find("empty"), std::string::npos);
+    EXPECT_NE(refusal_of({}, "{").find("not JSON"), std::string::npos);
+    both.baseline = "1 2 3 4";
+    EXPECT_NE(refusal_of(both).find("Kp, Ti and Td"), std::string::npos);
+}
+
+TEST(Shorthand, AWordThatIsNoNumberIsLeftForTheContractToRefuse) {
+    TuneWords words;
+    words.plant = "1/(s+1)";
+    words.Ms = "high";
+    EXPECT_EQ(request_of(words).at("tune").at(0).at("Ms"), "high");
+}
+
+}  // namespace
+}  // namespace tunewright::api

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <stdexcept>
 
 #include "api/json/digest.h"
@@ -40,6 +42,13 @@ std::unordered_map<std::string, KeyHolder> holders_by_digest(std::string_view te
 
 constexpr int kFailed = 1;
 constexpr int kBadName = 2;
+
+bool has_key(const std::string& file, const std::string& name) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    const auto lines = named_lines(text);
+    return std::any_of(lines.begin(), lines.end(), [&](const NamedLine& line) { return line.name == name; });
+}
 
 }  // namespace
 
@@ -85,6 +94,11 @@ bool KeyRing::usable() {
 int make_key(const KeyCommand& command) {
     if (!is_key_name(command.name)) {
         std::cerr << "tunewright: the name must be 1 to 64 letters, digits, dots, underscores or hyphens.\n";
+        return kBadName;
+    }
+    if (!command.rotate && has_key(command.file, command.name)) {
+        std::cerr << "tunewright: " << command.name << " has a key in " << command.file
+                  << ". Use --rotate for one more: both work until the old line is deleted. Or choose another name.\n";
         return kBadName;
     }
     const std::string key = new_key();

@@ -42,10 +42,12 @@ struct KeyCommand {
     std::string name;
     std::string file;  ///< "": the line for such a file goes to standard error
     bool admin = false;
+    bool rotate = false;  ///< the name may have a key already, which stays in force
 };
 
 /// Prints the key, which is kept nowhere, and adds its digest to the file. A new file is readable by its owner alone.
-/// Returns the exit code of the process: 0; 1 where the file cannot be written; 2 for a name that is not allowed.
+/// Returns the exit code of the process: 0; 1 where the file cannot be written; 2 for a name that is not allowed, or
+/// that has a key while `rotate` is not asked for.
 int make_key(const KeyCommand& command);
 
 /// The keys that are in force, by a watched file: one that holds nothing admits nobody, and usable() tells the file

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "server/commands.h"
+#include "server/cli/commands.h"
 #include "server/config.h"
 
 namespace tunewright::server {

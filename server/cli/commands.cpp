@@ -1,0 +1,157 @@
+#include "server/cli/commands.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "api/report/report.h"
+#include "api/report/terminal.h"
+#include "api/service.h"
+#include "server/clock.h"
+#include "server/jobs/timer.h"
+#include "server/json_text.h"
+
+namespace tunewright::server {
+namespace {
+
+/// The result as JSON, or the problem as JSON.
+struct Tuned {
+    bool succeeded = false;
+    std::string json;
+};
+
+Tuned tuned(const api::PreparedJob& job) {
+    std::stop_source stop;
+    Timer timer;
+    timer.after(std::chrono::duration<double>(job.timeout_s), [&stop] { stop.request_stop(); });
+    RunControl control;
+    control.stop = stop.get_token();
+    control.now_ms = monotonic_ms;
+    api::JobOutcome outcome = api::run_job(job, control);
+    timer.stop();
+    if (outcome.status == api::JobOutcome::Status::succeeded) return {true, std::move(outcome.result_json)};
+    if (!outcome.error_json.empty()) return {false, std::move(outcome.error_json)};
+    Error error;
+    error.kind = ErrorKind::timeout;
+    error.where = "timeout_s";
+    error.message = "The computation was stopped after timeout_s. Ask for less, or raise timeout_s.";
+    return {false, api::to_json(api::to_problem(error))};
+}
+
+int answered(const api::Answer& answer, const OutputWords& words, const Table& table, const std::string& file = "") {
+    return answer.status >= 400 ? write_problem(answer.body, words, file) : write_answer(answer.body, words, table);
+}
+
+int write_drawing(const std::string& file, const std::string& drawing, const OutputWords& words) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << drawing;
+    stream.close();
+    if (stream) return 0;
+    api::Problem problem{500, "not-written", "The drawing cannot be written", {}, {}, {}};
+    problem.detail = "The drawing cannot be written to " + file + ": " + std::strerror(errno) + ".";
+    return write_problem(problem, words);
+}
+
+/// The drawings that were asked for; the first problem ends it.
+int draw(const TuneCommand& command, const std::string& result, const std::string& request) {
+    const api::ResultSource source{result, request};
+    if (command.plot) {
+        const auto drawn = api::responses_text(source, "");
+        if (const auto* problem = std::get_if<api::Problem>(&drawn)) return write_problem(*problem, command.output);
+        std::cout << "\n" << std::get<std::string>(drawn);
+    }
+    if (command.svg.empty()) return 0;
+    const auto drawn = api::responses_svg(source, "");
+    if (const auto* problem = std::get_if<api::Problem>(&drawn)) return write_problem(*problem, command.output);
+    return write_drawing(command.svg, std::get<std::string>(drawn), command.output);
+}
+
+/// The text of a result's file and of its request's, or the file that cannot be read.
+std::variant<std::pair<std::string, std::string>, std::string> texts_of(const ResultWords& words) {
+    std::pair<std::string, std::string> texts;
+    if (!read_input(words.file, texts.first)) return words.file;
+    if (!words.request.empty() && !read_input(words.request, texts.second)) return words.request;
+    return texts;
+}
+
+}  // namespace
+
+int tune(const TuneCommand& command) {
+    std::string text;
+    if (!command.file.empty() && !read_input(command.file, text))
+        return write_problem(unreadable(command.file), command.output);
+    api::TuneWords words = command.words;
+    if (command.all) words.methods = {"all"};
+    auto request = api::tuning_request(words, command.file.empty() ? std::nullopt : std::optional(std::move(text)));
+    if (const auto* problem = std::get_if<api::Problem>(&request))
+        return write_problem(*problem, command.output, command.file);
+    const std::string& asked = std::get<std::string>(request);
+    const auto prepared = api::prepare_job(asked);
+    if (const auto* problem = std::get_if<api::Problem>(&prepared))
+        return write_problem(*problem, command.output, command.file);
+    const Tuned answer = tuned(std::get<api::PreparedJob>(prepared));
+    if (!answer.succeeded) return write_problem(answer.json, command.output, command.file);
+    OutputWords output = command.output;
+    output.table = output.table || command.plot;
+    const int written = write_answer(answer.json, output, api::result_text);
+    return written != 0 ? written : draw(command, answer.json, asked);
+}
+
+int identify(const IdentifyCommand& command) {
+    std::string text;
+    if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
+    const api::Answer answer = api::is_request(text) ? api::identify_call(text, {})
+                                                     : api::identify_csv(std::move(text), command.question, {});
+    return answered(answer, command.output, api::model_text, command.file);
+}
+
+int plant(const PlantCommand& command) {
+    std::string text = command.text;
+    if (text == "-") read_input("-", text);
+    while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+    const std::string units = std::move(JsonObject().text("time", command.time_unit)).str();
+    const std::string question = std::move(JsonObject().raw("units", units).text("text", text)).str();
+    return answered(api::parse_plant_call(question), command.output, {});
+}
+
+int code(const CodeCommand& command) {
+    const auto texts = texts_of(command.result);
+    if (const auto* file = std::get_if<std::string>(&texts)) return write_problem(unreadable(*file), {});
+    const auto& [result, request] = std::get<0>(texts);
+    const auto written = api::controller_code({result, request}, command.result.controller, command.words);
+    if (const auto* problem = std::get_if<api::Problem>(&written))
+        return write_problem(*problem, {}, command.result.file);
+    std::cout << std::get<api::ControllerCode>(written).text;
+    return 0;
+}
+
+int report(const ResultWords& command) {
+    const auto texts = texts_of(command);
+    if (const auto* file = std::get_if<std::string>(&texts)) return write_problem(unreadable(*file), {});
+    const auto& [result, request] = std::get<0>(texts);
+    const auto written = api::report_html({result, request}, command.controller, {});
+    if (const auto* problem = std::get_if<api::Problem>(&written)) return write_problem(*problem, {}, command.file);
+    std::cout << std::get<std::string>(written);
+    return 0;
+}
+
+int methods(const ListCommand& command) {
+    if (!command.name.empty()) return answered(api::method_json(command.name), command.output, {});
+    return write_answer(api::methods_json(), command.output, api::methods_text);
+}
+
+int controllers(const ListCommand& command) {
+    if (!command.name.empty()) return answered(api::controller_json(command.name), command.output, {});
+    return write_answer(api::controllers_json(), command.output, api::controllers_text);
+}
+
+int examples(const ListCommand& command) {
+    if (!command.name.empty()) return answered(api::example_request(command.name), command.output, {});
+    return write_answer(api::examples_json(), command.output, api::examples_text);
+}
+
+}  // namespace tunewright::server

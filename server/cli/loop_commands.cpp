@@ -1,0 +1,146 @@
+// The commands about one loop: from a plant or a record to settings, a report or a program.
+#include <algorithm>
+
+#include "server/cli/command_tree.h"
+#include "server/cli/commands.h"
+
+namespace tunewright::server {
+namespace {
+
+void add_output_options(CLI::App& app, OutputWords& words, bool has_table) {
+    CLI::Option* json = app.add_flag("--json", words.json, "Compact JSON, on a terminal too");
+    CLI::Option* pretty = app.add_flag("--pretty", words.pretty, "JSON with a line for each member");
+    json->excludes(pretty);
+    if (!has_table) return;
+    CLI::Option* table = app.add_flag("--table", words.table, "The short table, where it is no terminal too");
+    table->excludes(json)->excludes(pretty);
+}
+
+void add_record_options(CLI::App& app, api::CsvRequest& question) {
+    app.add_option("--t", question.t, "CSV: heading or number of the time column")->type_name("COLUMN");
+    app.add_option("--u", question.u, "CSV: heading or number of the controller output")->type_name("COLUMN");
+    app.add_option("--y", question.y, "CSV: heading or number of the measurement")->type_name("COLUMN");
+    app.add_option("--r", question.r, "CSV: heading or number of the set point, where there is one")
+        ->type_name("COLUMN");
+    app.add_option("--dt", question.dt, "CSV without times: their spacing")->type_name("TIME");
+    app.add_option("--kind", question.kind, "CSV: auto, step, relay or general")->type_name("WORD");
+    app.add_option("--model", question.model, "CSV: auto, fopdt, sopdt, sopdt_zero, ipdt or ipdt_lag")
+        ->type_name("WORD");
+    app.add_option("--u-limits", question.u_limits, "CSV: the ends of the actuator, low and high")
+        ->expected(2)
+        ->type_name("NUMBER");
+    app.add_option("--time-unit", question.time_unit, "Unit of every time of the answer; s if not given")
+        ->type_name("UNIT");
+}
+
+void add_tune_options(CLI::App& app, TuneCommand& command) {
+    app.add_option("file", command.file, "A request as JSON, or a recorded test as CSV; - reads standard input");
+    app.add_option("--plant", command.words.plant, "A plant in place of a file: \"2 e^(-3s)/(10s+1)\"")
+        ->type_name("TEXT");
+    if (!command.all)
+        app.add_option("--method", command.words.methods, "A tuning method; may be repeated (default: robust)")
+            ->type_name("ID")
+            ->take_all()
+            ->expected(1)
+            ->allow_extra_args(false);
+    app.add_option("--Ms", command.words.Ms, "Limit of Ms and of Mt, in (1, 4]")->type_name("NUMBER");
+    app.add_option("--baseline", command.words.baseline, "Today's settings in the ideal form: \"Kp Ti Td\"")
+        ->type_name("TEXT");
+    add_record_options(app, command.words.record);
+    CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it the best one's responses drawn");
+    app.add_option("--svg", command.svg, "A file that those responses are drawn into, as SVG")->type_name("FILE");
+    add_output_options(app, command.output, true);
+    plot->excludes(app.get_option("--json"))->excludes(app.get_option("--pretty"));
+}
+
+void add_result_options(CLI::App& app, ResultWords& words, const std::string& help_of_request) {
+    app.add_option("file", words.file, "A result of tune, or a job as JSON; - reads standard input")->required();
+    app.add_option("--controller", words.controller, "Number in the result, from 0 (default: the best)")
+        ->type_name("NUMBER");
+    app.add_option("--request", words.request, help_of_request)->type_name("FILE");
+}
+
+/// An option of the command that is a parameter of the call too, under the same name: --sample-time is sample_time.
+void code_word(CLI::App& app, const std::string& name, api::CodeWords& words, const std::string& help) {
+    std::string parameter = name;
+    std::replace(parameter.begin(), parameter.end(), '-', '_');
+    app.add_option_function<std::string>(
+           "--" + name, [&words, parameter](const std::string& word) { words.emplace_back(parameter, word); }, help)
+        ->type_name("WORD");
+}
+
+void add_code_words(CLI::App& app, api::CodeWords& words) {
+    code_word(app, "language", words, "st, c or python");
+    code_word(app, "sample-time", words, "Time from call to call, in the result's unit of time");
+    code_word(app, "integral", words, "backward, forward or trapezoidal");
+    code_word(app, "derivative", words,
+              "difference, filtered_backward, filtered_forward, filtered_trapezoidal, slope or four_points");
+    code_word(app, "slope-samples", words, "Sample times that the rule slope spans");
+    code_word(app, "form", words, "position or velocity");
+    code_word(app, "anti-windup", words, "back_calculation or clamping");
+    code_word(app, "tracking-time", words, "Tracking time of back-calculation");
+    code_word(app, "u-min", words, "Least u");
+    code_word(app, "u-max", words, "Largest u");
+    code_word(app, "rate-limit", words, "Most that u moves in a unit of time");
+    code_word(app, "bias", words, "u at the operating point");
+    code_word(app, "y0", words, "y at the operating point");
+}
+
+void add_list_command(CommandTree& tree, const std::string& name, const std::string& help, const std::string& one,
+                      int (*action)(const ListCommand&)) {
+    ListCommand& words = tree.keep<ListCommand>();
+    CLI::App& app = tree.add(name, help, [&words, action] { return action(words); });
+    app.add_option("name", words.name, one);
+    add_output_options(app, words.output, true);
+}
+
+}  // namespace
+
+void add_loop_commands(CommandTree& tree) {
+    TuneCommand& tuning = tree.keep<TuneCommand>();
+    add_tune_options(tree.add("tune", "Settings for a plant or a recorded test", [&] { return tune(tuning); }), tuning);
+
+    TuneCommand& comparing = tree.keep<TuneCommand>();
+    comparing.all = true;
+    add_tune_options(tree.add("compare", "The same by every method that applies, ranked", [&] { return tune(comparing); }),
+                     comparing);
+
+    IdentifyCommand& identifying = tree.keep<IdentifyCommand>();
+    CLI::App& identify_app =
+        tree.add("identify", "A model from a recorded test", [&] { return identify(identifying); });
+    identify_app
+        .add_option("file", identifying.file, "CSV, or {record, identify} as JSON; - reads standard input")
+        ->required();
+    add_record_options(identify_app, identifying.question);
+    identify_app.add_flag("--traces", identifying.question.traces,
+                          "CSV: answer the record beside the models' free runs too");
+    add_output_options(identify_app, identifying.output, true);
+
+    PlantCommand& typing = tree.keep<PlantCommand>();
+    CLI::App& plant_app = tree.add("plant", "A typed plant such as \"2 e^(-3s)/(10s+1)\" as JSON, with its formula",
+                                   [&] { return plant(typing); });
+    plant_app.add_option("text", typing.text, "The plant; - reads standard input")->required();
+    plant_app.add_option("--time-unit", typing.time_unit, "Unit of the times of the answer; s if not given")
+        ->type_name("UNIT");
+    add_output_options(plant_app, typing.output, false);
+
+    CodeCommand& coding = tree.keep<CodeCommand>();
+    CLI::App& code_app =
+        tree.add("code", "A controller of a result as Structured Text, C or Python", [&] { return code(coding); });
+    add_result_options(code_app, coding.result, "File of the request, for the head comment and its sample time");
+    add_code_words(code_app, coding.words);
+
+    ResultWords& reporting = tree.keep<ResultWords>();
+    CLI::App& report_app =
+        tree.add("report", "A controller of a result as a page to print, in HTML", [&] { return report(reporting); });
+    add_result_options(report_app, reporting, "File of the request, where the result does not have it");
+}
+
+void add_list_commands(CommandTree& tree) {
+    add_list_command(tree, "methods", "The tuning methods with their options", "Id of one of them", methods);
+    add_list_command(tree, "controllers", "The controllers that settings can be converted for", "Id of one of them",
+                     controllers);
+    add_list_command(tree, "examples", "Requests to start from", "Id or number of one, to print it for tune", examples);
+}
+
+}  // namespace tunewright::server

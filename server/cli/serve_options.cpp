@@ -1,0 +1,125 @@
+// `tunewright serve` with its options.
+#include <stdexcept>
+#include <utility>
+
+#include "server/cli/command_tree.h"
+#include "server/config.h"
+#include "server/serve.h"
+
+namespace tunewright::server {
+namespace {
+
+void flag(CLI::App& app, const std::string& name, bool& value, const std::string& help) {
+    app.add_flag("--" + name, value, help)->envname(variable_of(name));
+}
+
+/// An option that is typed with a unit and kept as a number; `shown` is the default as one would type it.
+template <class T>
+void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const std::string&), const std::string& shown,
+              std::pair<double, double> range, const std::string& help) {
+    const auto take = [&value, read, range, name](const std::string& text) {
+        try {
+            value = read(text);
+        } catch (const std::invalid_argument& error) {
+            throw CLI::ValidationError("--" + name, error.what());
+        }
+        if (static_cast<double>(value) < range.first || static_cast<double>(value) > range.second)
+            throw CLI::ValidationError("--" + name, "\"" + text + "\" is out of range");
+    };
+    app.add_option_function<std::string>("--" + name, take, help)->envname(variable_of(name))->default_str(shown);
+}
+
+void duration(CLI::App& app, const std::string& name, double& seconds, const std::string& shown,
+              std::pair<double, double> range, const std::string& help) {
+    quantity(app, name, seconds, parse_duration, shown, range, help);
+}
+
+void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std::string& shown,
+          const std::string& help) {
+    quantity(app, name, bytes, parse_size, shown, {0, 1e18}, help);
+}
+
+void add_process_options(CLI::App& app, Config& config) {
+    option(app, "listen", config.listen, "HOST:PORT; port 0 lets the system choose")->capture_default_str();
+    option(app, "metrics-listen", config.metrics_listen,
+           "Another HOST:PORT, for /metrics and probes alone; it asks for no key");
+    option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
+        ->capture_default_str();
+    option(app, "migrate", config.migrate,
+           "auto: the tables of an older store are brought up to date at the start; manual: by `tunewright migrate`")
+        ->capture_default_str();
+    flag(app, "pooled", config.pooled,
+         "PostgreSQL is behind a pooler in transaction mode: no notices, all processes poll");
+    option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")
+        ->capture_default_str();
+    option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
+        ->check(CLI::Range(1, 1024));
+    option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
+    duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
+             "Time that running jobs get when the service is stopped");
+    option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
+    option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
+}
+
+void add_job_options(CLI::App& app, Config& config) {
+    option(app, "queue-limit", config.queue_limit, "Single jobs that may wait; more are answered 429")
+        ->check(CLI::Range(1, 10'000'000))
+        ->capture_default_str();
+    option(app, "entry-limit", config.entry_limit, "Entries of batches that may wait; more are answered 429")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    option(app, "max-attempts", config.max_attempts, "Interruptions after which a job fails")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
+             "Time without a sign of life after which another worker takes a job");
+    duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: without limit");
+    duration(app, "retention-failed", config.retention_failed_s, "as --retention", {0, 1e9},
+             "The same for jobs that failed, where it differs");
+    duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
+             "The same for jobs that were cancelled");
+    duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
+             "Time for a job that does not say timeout_s");
+    duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
+             "Longest timeout_s that a request may ask for");
+}
+
+void add_notify_options(CLI::App& app, Config& config) {
+    option(app, "notify-target", config.notify_targets,
+           "Where a job's or batch's notify may lead: https://HOST[:PORT][/PATH]; may be repeated (default: nowhere)")
+        ->type_name("ORIGIN")
+        ->delimiter(',');
+    option(app, "notify-secrets", config.notify_secrets,
+           "File of the secrets that sign it, made by `tunewright secret`");
+}
+
+void add_port_options(CLI::App& app, Config& config) {
+    size(app, "max-body", config.max_body, "8MiB", "Largest body of one request; larger ones are answered 413");
+    size(app, "max-batch-body", config.max_batch_body, "256MiB", "Largest body of one batch");
+    option(app, "auth", config.auth, "none or keys: what a call below /v1 must show")->capture_default_str();
+    option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
+    flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
+    option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    option(app, "allowed-host", config.allowed_hosts,
+           "A name by which it is called, beside its address; may be repeated")
+        ->type_name("NAME");
+    option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
+        ->delimiter(',');
+    flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");
+}
+
+}  // namespace
+
+void add_serve_command(CommandTree& tree) {
+    Config& config = tree.keep<Config>();
+    CLI::App& app =
+        tree.add("serve", "Answer over HTTP until SIGTERM or Ctrl-C", [&config] { return serve(config); });
+    add_process_options(app, config);
+    add_job_options(app, config);
+    add_notify_options(app, config);
+    add_port_options(app, config);
+}
+
+}  // namespace tunewright::server

@@ -112,7 +112,7 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
             if (c != '{')
                 return not_valid(
                     "/notify",
-                    "notify is no object; it must be one such as {\"url\": \"https://hooks.example.com/x\"}.");
+                    R"(notify is no object; it must be one such as {"url": "https://hooks.example.com/x"}.)");
             in_notify_ = true;
             return open_element(c);
         case At::array:

@@ -17,6 +17,8 @@ def main():
         suite = unittest.defaultTestLoader.loadTestsFromNames(names)
     result = unittest.TextTestRunner(verbosity=2).run(suite)
     bad = len(result.failures) + len(result.errors) + len(result.unexpectedSuccesses)
+    for test, reason in result.skipped:
+        print("skipped: %s: %s" % (test, reason))
     print("passed: %d" % (result.testsRun - bad - len(result.skipped)))
     print("failed: %d" % bad)
     return 1 if bad or result.testsRun == 0 else 0

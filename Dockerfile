@@ -1,12 +1,12 @@
 # Three stages: the binary, the page, and what runs. Everything comes from Debian; npm's packages are pinned by the
-# lock file.
+# lock file. What the first two install is in script/bootstrap alone, and is installed before the sources come, so that
+# a change of theirs leaves it as it is.
 FROM debian:bookworm-slim AS binary
-RUN apt-get update && apt-get install -y --no-install-recommends \
-        g++ make cmake ninja-build pkg-config libcpp-httplib-dev nlohmann-json3-dev libeigen3-dev libnlopt-dev \
-        libsqlitecpp-dev libsqlite3-dev libpqxx-dev libpq-dev libspdlog-dev libfmt-dev libcli11-dev prometheus-cpp-dev \
-        libboost-dev libssl-dev zlib1g-dev \
-    && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
+COPY script/bootstrap script/bootstrap
+RUN script/bootstrap build
+COPY deploy/container/sbom deploy/container/sbom
+RUN deploy/container/sbom '*-dev' >build-packages.txt
 COPY CMakeLists.txt CMakePresets.json ./
 COPY engine engine
 COPY api api
@@ -15,13 +15,12 @@ RUN cmake --preset release -DTUNEWRIGHT_TESTS=OFF && cmake --build --preset rele
     && strip build/release/tunewright
 
 FROM debian:bookworm-slim AS page
-RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates nodejs npm \
-    && rm -rf /var/lib/apt/lists/*
-WORKDIR /src/web
-COPY web/package.json web/package-lock.json web/.npmrc ./
-RUN npm ci --no-audit --no-fund
-COPY web ./
-RUN npm run build
+WORKDIR /src
+COPY script/bootstrap script/bootstrap
+COPY web/package.json web/package-lock.json web/.npmrc web/
+RUN script/bootstrap page
+COPY web web
+RUN cd web && npm run build && npm ls --omit=dev >../page-packages.txt
 
 FROM debian:bookworm-slim
 RUN apt-get update && apt-get install -y --no-install-recommends \
@@ -30,8 +29,24 @@ RUN apt-get update && apt-get install -y --no-install-recommends \
     && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
     && useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin tunewright \
     && install -d -o tunewright -g tunewright /var/lib/tunewright
-COPY --from=binary /src/build/release/tunewright /opt/tunewright/bin/tunewright
+COPY LICENSE /opt/tunewright/LICENSE
+COPY --from=page /src/page-packages.txt /tmp/
+COPY --from=binary /src/build-packages.txt /src/deploy/container/sbom /tmp/
+RUN { echo "# Debian packages of this image"; /tmp/sbom '*'; \
+      echo "# Debian packages that the program was built with; of some, headers are compiled into it"; \
+      cat /tmp/build-packages.txt; \
+      echo "# npm packages in the page"; cat /tmp/page-packages.txt; } >/opt/tunewright/SBOM.txt \
+    && rm /tmp/*
 COPY --from=page /src/build/web /opt/tunewright/web
+COPY --from=binary /src/build/release/tunewright /opt/tunewright/bin/tunewright
+# The version is CMakeLists.txt's. Whoever builds from sources of his own says where they are.
+ARG VERSION=0.1.0
+ARG SOURCE=https://tunewright.example/source
+LABEL org.opencontainers.image.title="Tunewright" \
+      org.opencontainers.image.description="Tunes PID controllers over HTTP, in a browser and on the command line" \
+      org.opencontainers.image.licenses="MIT" \
+      org.opencontainers.image.version="$VERSION" \
+      org.opencontainers.image.source="$SOURCE"
 USER 10001
 VOLUME /var/lib/tunewright
 EXPOSE 8080

@@ -51,7 +51,7 @@ HeldPlant::HeldPlant(const LinearPlant& plant, double sample_time, double comput
     d_ = delay.whole;
     delta_ = delay.rest;
     const Realisation& r = plant.realisation();
-    const Index n = static_cast<Index>(r.n);
+    const auto n = static_cast<Index>(r.n);
     const auto effect_of_hold = [&](double h) {
         std::vector<double> gamma(n);
         if (h > 0) multiply(integrated_exponential(r.A, r.n, h), r.B, gamma);

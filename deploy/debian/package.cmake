@@ -8,6 +8,13 @@ install(FILES ${CMAKE_SOURCE_DIR}/deploy/systemd/tunewright.service DESTINATION 
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
+set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
+install(CODE "set(program \"$<TARGET_FILE:tunewright>\")\nset(documents \"${documents}\")")
+install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/documents.cmake)
+install(FILES ${documents}/tunewright.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${documents}/tunewright DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${documents}/_tunewright DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tunewright)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})

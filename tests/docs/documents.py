@@ -118,7 +118,7 @@ def difference(expected: str, came: str) -> str | None:
 
 def script(blocks: list[Commands], mark: str) -> str:
     """All blocks as one script for bash; a line with the mark and the exit code ends what each of them prints."""
-    return "".join(f"{block.text}\nprintf '\\n{mark} %s\\n' \"$?\"\n" for block in blocks)
+    return "set -o pipefail\n" + "".join(f"{block.text}\nprintf '\\n{mark} %s\\n' \"$?\"\n" for block in blocks)
 
 
 def faults(name: str, document: str, port: int, binary: str, folder: pathlib.Path) -> list[str]:
@@ -126,13 +126,12 @@ def faults(name: str, document: str, port: int, binary: str, folder: pathlib.Pat
     sentence. The commands run in `folder`, against the service at `port` and with the program `binary`."""
     blocks = [block for block in commands_of(document) if block.run]
     mark = "--- end of a block of this document, exit code"
-    text = script(blocks, mark).replace("127.0.0.1:8080", f"127.0.0.1:{port}").replace("localhost:8080",
-                                                                                       f"localhost:{port}")
+    text = script(blocks, mark).replace("127.0.0.1:8080", f"127.0.0.1:{port}")
     lay_out(folder, binary)
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
     done = subprocess.run(["bash"], input=text, cwd=folder, env={**os.environ, "PATH": path}, text=True, timeout=600,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-    parts = done.stdout.replace(str(port), "8080").split(mark)
+    parts = done.stdout.replace(f"127.0.0.1:{port}", "127.0.0.1:8080").split(mark)
     if len(parts) != len(blocks) + 1:
         return [f"{name}: the commands ended after {len(parts) - 1} of {len(blocks)} blocks: {done.stdout[-2000:]}"]
     found = []
@@ -145,6 +144,9 @@ def faults(name: str, document: str, port: int, binary: str, folder: pathlib.Pat
                 found.append(f"{where}: {wrong}\n{came[:4000]}")
         elif code != "0" or PROBLEM.search(came):
             found.append(f"{where}: exit code {code}: {came[:2000]}")
+    for file in sorted(folder.glob("*.json")):
+        if PROBLEM.search(kept := file.read_text(encoding="utf-8")):
+            found.append(f"{name}: {file.name} holds a problem: {kept[:2000]}")
     return found
 
 

@@ -27,7 +27,7 @@ TOKEN = re.compile(r"(?<![\w.])[+-]?\d+\.\d+\.\.\."
                    r"|\w+|[^\w\s]")
 OPENING, CLOSING = "{[", "}]"
 REST = "..."
-PROBLEM = re.compile(r'"status":\s*[45]\d\d\b')
+PROBLEM = re.compile(r'^\{\s*"type":\s*"[^"]*",\s*"title":\s*"[^"]*",\s*"status":\s*[45]\d\d\b', re.MULTILINE)
 
 
 @dataclasses.dataclass
@@ -76,9 +76,15 @@ def same(expected: str, came: str) -> bool:
     return abs(decimal.Decimal(came) - shown) <= digit / 2
 
 
+def without_commas_beside_rest(words: list[str]) -> list[str]:
+    """What is left out may be nothing, and then has no comma of its own."""
+    return [word for at, word in enumerate(words)
+            if word != "," or REST not in (words[at - 1] if at else "", words[at + 1] if at + 1 < len(words) else "")]
+
+
 def difference(expected: str, came: str) -> str | None:
     """A sentence on where what came leaves what the document says; None where it does not."""
-    want, have = TOKEN.findall(expected), TOKEN.findall(came)
+    want, have = without_commas_beside_rest(TOKEN.findall(expected)), TOKEN.findall(came)
     farthest = [0, 0]
     dead = set()
 

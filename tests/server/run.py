@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Runs every *_test.py beside it, in deploy/, in stores/ and in tests/docs, and prints the counts that script/test adds up."""
+"""Runs every *_test.py beside it, in deploy/ and stores/, and in tests/docs and tests/clients, and prints the counts that
+script/test adds up."""
 
 import pathlib
 import sys
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOMS = [HERE, HERE / "deploy", HERE / "stores", HERE.parent / "docs"]
+ROOMS = [HERE, HERE / "deploy", HERE / "stores", HERE.parent / "docs", HERE.parent / "clients"]
 sys.path[:0] = map(str, ROOMS)
 
 

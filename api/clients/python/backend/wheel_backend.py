@@ -1,0 +1,48 @@
+"""Writes the wheel of the client for pip (PEP 517), with nothing but the standard library.
+
+The one module goes in as a package, because only packages can carry py.typed, by which type checkers know that its
+annotations count (PEP 561). Name, version and description are those of pyproject.toml.
+"""
+
+import base64
+import hashlib
+import os
+import pathlib
+import re
+import zipfile
+from typing import Any, Dict, Optional, Tuple
+
+HERE = pathlib.Path(__file__).resolve().parents[1]
+
+
+def project() -> Dict[str, str]:
+    """The texts of the table [project]; Python has a reader of TOML only since 3.11."""
+    table = (HERE / "pyproject.toml").read_text("utf-8").split("[project]")[1].split("\n[")[0]
+    return dict(re.findall(r'^([\w-]+) = "(.*)"$', table, re.MULTILINE))
+
+
+def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] = None,
+                metadata_directory: Optional[str] = None) -> str:
+    about = project()
+    name = "%(name)s-%(version)s" % about
+    metadata = ("Metadata-Version: 2.1\nName: %(name)s\nVersion: %(version)s\nSummary: %(description)s\nLicense: MIT\n"
+                "Requires-Python: %(requires-python)s\nDescription-Content-Type: text/markdown\n\n" % about)
+    files = {
+        "tunewright/__init__.py": (HERE / "tunewright.py").read_bytes(),
+        "tunewright/py.typed": b"",
+        name + ".dist-info/METADATA": metadata.encode() + (HERE / "README.md").read_bytes(),
+        name + ".dist-info/WHEEL": b"Wheel-Version: 1.0\nGenerator: tunewright\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+    }
+    record = name + ".dist-info/RECORD"
+    files[record] = "".join(map(_row, files.items())).encode() + record.encode() + b",,\n"
+    wheel = name + "-py3-none-any.whl"
+    with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
+        for path, content in files.items():
+            archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # equal sources, equal wheels
+    return wheel
+
+
+def _row(file: Tuple[str, bytes]) -> str:
+    path, content = file
+    digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+    return "%s,sha256=%s,%d\n" % (path, digest, len(content))

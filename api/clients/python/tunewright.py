@@ -1,0 +1,370 @@
+"""Tunes PID controllers with a Tunewright service. Python's standard library is all that it needs.
+
+    from tunewright import Client
+
+    result = Client().tune(plant="2 e^(-3s)/(10s+1)", tune=[{"method": "robust", "Ms": 1.4, "Mt": 1.4}])
+    print(result.best["controller"])
+
+Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: names, units and
+sentences of every field stand there and are not repeated here. What a call does not name goes into its request as it
+is given, so that a newer service needs no newer client.
+"""
+
+import json
+import os
+import random
+import socket
+import time
+import uuid
+from contextlib import suppress
+from http.client import HTTPException, HTTPResponse
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Union
+from urllib.error import HTTPError
+from urllib.parse import quote, urlencode
+from urllib.request import Request, urlopen
+
+__all__ = ["Client", "Fault", "Problem", "Result", "record"]
+
+Json = Dict[str, Any]
+Methods = Sequence[Union[str, Mapping[str, Any]]]
+Progress = Callable[[int, int], None]
+
+_LONGEST_WAIT = 20  # seconds that one call waits for a job: below what proxies cut off
+_LONGEST_PAUSE = 30.0  # seconds between two tries
+_MOST_LOST = 6  # connections lost in a row: half a minute, enough for a service that is started anew
+
+
+class Fault(NamedTuple):
+    """One thing that is wrong in a request."""
+
+    pointer: str  #: JSON Pointer into the request, such as /plant/L
+    detail: str
+
+
+class Problem(Exception):
+    """Why something cannot be done (RFC 9457). A job that fails raises it too."""
+
+    def __init__(self, body: Mapping[str, Any], result: "Optional[Result]" = None) -> None:
+        self.body = dict(body)
+        self.status: int = body.get("status", 0)
+        self.type: str = body.get("type", "about:blank")
+        self.title: str = body.get("title", "Problem")
+        self.detail: str = body.get("detail", "")
+        self.errors: List[Fault] = [Fault(each["pointer"], each["detail"]) for each in body.get("errors", [])]
+        self.result = result  #: the best design of a job that was stopped while it searched, if it had one
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        lines = ["%s: %s" % (self.title, self.detail)]
+        lines += ["  %s: %s" % (fault.pointer or "(the request)", fault.detail) for fault in self.errors]
+        return "\n".join(lines)
+
+
+class Result(Dict[str, Any]):
+    """The result of a job (TuningResult), and the job itself without it."""
+
+    def __init__(self, job: Mapping[str, Any]) -> None:
+        super().__init__(job["result"])
+        self.job: Json = {name: value for name, value in job.items() if name != "result"}
+
+    @property
+    def best(self) -> Json:
+        """The entry that ranks first."""
+        entry: Json = self["controllers"][self["ranking"][0]]
+        return entry
+
+
+def record(source: Any, **fields: Any) -> Json:
+    """A recorded test as a request takes it.
+
+    `source` is a dict of lists or arrays (t or dt, u, y), the path of a CSV, its text (known by its line ends), or a
+    pandas DataFrame, whose index is a column too where it has a name or holds dates. Further `fields` stand beside it:
+    columns={"u": "FIC101.OP"}, time_unit="min", kind="step", u_limits=[0, 100], ...
+    """
+    if isinstance(source, Mapping):
+        return {**source, **fields}
+    if hasattr(source, "to_csv"):
+        dates = type(source.index).__name__ == "DatetimeIndex"
+        name = source.index.name or ("time" if dates else None)
+        source = source.to_csv(index=name is not None, index_label=name)
+    elif isinstance(source, os.PathLike) or "\n" not in source:
+        with open(source, "rb") as file:
+            source = _text(file.read())
+    return {"csv": source, **fields}
+
+
+class Client:
+    """A service, the key to it where it asks for one, and how long a call may take.
+
+    `timeout` is in seconds and covers a whole call: waiting for the job, and trying again where the service has no room
+    just now or is being started anew. A job that takes longer than that goes on; TimeoutError names it.
+    """
+
+    def __init__(self, base_url: str = "http://127.0.0.1:8080", key: Optional[str] = None,
+                 timeout: float = 600) -> None:
+        self.base_url = base_url.rstrip("/")
+        self.key = key
+        self.timeout = timeout
+        self._reached = False
+
+    # Jobs: kept by the service, found again by their id.
+
+    def tune(self, plant: Any = None, record: Any = None, tune: Optional[Methods] = None,
+             baseline: Optional[Mapping[str, Any]] = None, evaluate: Optional[Mapping[str, Any]] = None,
+             **rest: Any) -> Result:
+        """Tunes for a plant or a recorded test, waits for the end, and returns the result.
+
+        `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` all that record() takes; `tune` a list of
+        methods, by name or with their options. An interrupt from the keyboard cancels the job.
+        """
+        return self.run(_request(plant=plant, record=record, tune=_methods(tune), baseline=baseline, evaluate=evaluate,
+                                 **rest))
+
+    def compare(self, plant: Any = None, record: Any = None, methods: Methods = ("all",), **rest: Any) -> Result:
+        """As tune(), with every method that applies, or those named. `ranking` has the order."""
+        return self.tune(plant=plant, record=record, tune=methods, **rest)
+
+    def run(self, request: Mapping[str, Any]) -> Result:
+        """Runs a tuning request as it stands, such as one of GET /v1/examples, and returns the result."""
+        end = time.monotonic() + self.timeout
+        key = {"Idempotency-Key": str(uuid.uuid4())}
+        wait = max(1, min(_LONGEST_WAIT, int(self.timeout)))
+        job: Optional[Json] = None
+        try:
+            job = self._json("POST", "/v1/jobs", request, {**key, "Prefer": "wait=%d" % wait}, end + 5)
+            return self._ended(job, end)
+        except KeyboardInterrupt:
+            with suppress(Problem, OSError):
+                soon = time.monotonic() + 5
+                # Interrupted before the answer came: the same key and body give the same job, and so its id.
+                job = job or self._json("POST", "/v1/jobs", request, key, soon)
+                self._json("POST", _job(job["id"]) + "/cancel", end=soon)
+            raise
+
+    def wait(self, job: Union[str, Result]) -> Result:
+        """Waits for the end of a job and returns its result."""
+        end = time.monotonic() + self.timeout
+        return self._ended(self._json("GET", _job(job), end=end), end)
+
+    def job(self, job: Union[str, Result]) -> Json:
+        """A job as it stands, with its request, and its result or error once it has ended."""
+        return self._json("GET", _job(job))
+
+    def jobs(self, **query: Any) -> Iterator[Json]:
+        """The jobs kept, newest first, without requests and results: jobs(q="TIC-101"), jobs(status="failed"), ..."""
+        page: Optional[str] = "/v1/jobs" + _query(query)
+        while page:
+            answer = self._json("GET", page)
+            yield from answer["jobs"]
+            page = answer.get("next")
+
+    def cancel(self, job: Union[str, Result]) -> Json:
+        """Stops a job, within a second as a rule."""
+        return self._json("POST", _job(job) + "/cancel")
+
+    def delete(self, job: Union[str, Result]) -> None:
+        """Deletes a job that has ended."""
+        self._open("DELETE", _job(job)).close()
+
+    def report_html(self, job: Union[str, Result], controller: Optional[int] = None) -> str:
+        """A controller of a job as a page to print, sign and keep; by default the first of the ranking."""
+        return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
+
+    def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:
+        """A controller of a job as a program: language "st", "c" or "python"; options such as sample_time=0.5."""
+        if controller is None:
+            controller = (job if isinstance(job, Result) else self.job(job)["result"])["ranking"][0]
+        query = _query({"language": language, **options})
+        return self._body("%s/controllers/%d/code%s" % (_job(job), controller, query))
+
+    # Many at once.
+
+    def batch(self, requests: Iterable[Mapping[str, Any]], progress: Optional[Progress] = None,
+              name: Optional[str] = None) -> Iterator[Json]:
+        """Tunes thousands of loops: yields {index, id, name, status, result or error} in the order of the requests,
+        each as soon as it has ended. A request that is not valid fails alone.
+
+        The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
+        early, by an interrupt too, cancels what is left. `timeout` bounds the silence between two rows.
+        """
+        lines = b"".join(_encoded(request) + b"\n" for request in requests)
+        headers = {"Content-Type": "application/x-ndjson", "Idempotency-Key": str(uuid.uuid4())}
+        batch = self._json("POST", "/v1/batches" + _query({"name": name}), lines, headers)
+        return self._rows("/v1/batches/" + batch["id"], batch["total"], progress or (lambda done, total: None))
+
+    def _rows(self, path: str, total: int, progress: Progress) -> Iterator[Json]:
+        done, lost = 0, 0
+        try:
+            while done < total:
+                for row in self._stream("%s/results?follow=true&from=%d" % (path, done)):
+                    done, lost = done + 1, 0
+                    progress(done, total)
+                    yield row
+                if done < total:
+                    lost += 1
+                    if lost > _MOST_LOST:
+                        raise ConnectionError("The results of %s ended at row %d of %d." % (path, done, total))
+                    _pause(lost)
+        except (KeyboardInterrupt, GeneratorExit):
+            with suppress(Problem, OSError):
+                self._json("POST", path + "/cancel", end=time.monotonic() + 5)
+            raise
+
+    def _stream(self, path: str) -> Iterator[Json]:
+        """The lines of an answer as they come. Ends where the answer is cut off, be it within a line."""
+        with self._open("GET", path) as lines:
+            with suppress(ConnectionError, HTTPException, ValueError):
+                for line in lines:
+                    yield json.loads(line)
+
+    # Answered at once, and not kept.
+
+    def identify(self, record: Any, identify: Optional[Mapping[str, Any]] = None, **rest: Any) -> Json:
+        """Finds the plant in a recorded test: {"model": {"plant", "fit_percent", ...}}."""
+        return self._post("/v1/identify", record=record, identify=identify, **rest)
+
+    def evaluate(self, plant: Any, controllers: Sequence[Mapping[str, Any]], **rest: Any) -> Json:
+        """Judges given controllers on a plant: {"controllers": [an entry for each]}."""
+        return self._post("/v1/evaluate", plant=plant, controllers=list(controllers), **rest)
+
+    def design(self, plant: Any, method: Union[str, Mapping[str, Any]] = "robust", **rest: Any) -> Json:
+        """Designs with one method: {"controllers": [its entry, and that of `baseline` where one is given]}."""
+        return self._post("/v1/design", plant=plant, tune=_methods([method]), **rest)
+
+    def frontier(self, plant: Any, **rest: Any) -> Json:
+        """The least load IAE under each limit on Ms: {"points": [...], "infeasible_below"}."""
+        return self._post("/v1/frontier", plant=plant, **rest)
+
+    def relay_test(self, plant: Any, relay: Optional[Mapping[str, Any]] = None, **rest: Any) -> Json:
+        """Simulates a relay test, and plans one: {"record", "limit_cycle", "plan", ...}."""
+        return self._post("/v1/experiments/relay", plant=plant, relay=relay, **rest)
+
+    def settings(self, product: str, controller: Mapping[str, Any], **rest: Any) -> Json:
+        """What to type into a product for a controller: {"settings", "units", "as_typed", "realised", "notes"}."""
+        return self._post("/v1/controllers/%s/settings" % quote(product, safe=""), controller=controller, **rest)
+
+    def get(self, path: str) -> Json:
+        """Anything else that is only read, such as get("/v1/methods"), get("/v1/controllers"), get("/v1/examples")."""
+        return self._json("GET", path)
+
+    # The calls themselves.
+
+    def _post(self, path: str, **fields: Any) -> Json:
+        return self._json("POST", path, _request(**fields))
+
+    def _json(self, method: str, path: str, body: Any = None, headers: Optional[Mapping[str, str]] = None,
+              end: Optional[float] = None) -> Json:
+        with self._open(method, path, body, headers, end) as response:
+            answer: Json = json.load(response)
+            return answer
+
+    def _body(self, path: str) -> str:
+        with self._open("GET", path) as response:
+            return str(response.read(), "utf-8")
+
+    def _open(self, method: str, path: str, body: Any = None, headers: Optional[Mapping[str, str]] = None,
+              end: Optional[float] = None) -> HTTPResponse:
+        """The answer, once there is one; tried again while that is safe and there is time."""
+        end = end or time.monotonic() + self.timeout
+        data = body if body is None or isinstance(body, bytes) else _encoded(body)
+        fields = {"Content-Type": "application/json", **(headers or {})}
+        if self.key:
+            fields["Authorization"] = "Bearer " + self.key
+        tries, lost = 0, 0
+        while True:
+            left = max(end - time.monotonic(), 0.1)
+            request = Request(self.base_url + path, data, fields, method=method)
+            try:
+                response: HTTPResponse = urlopen(request, timeout=left)
+                self._reached = True
+                return response
+            except HTTPError as error:
+                self._reached = True
+                problem, seconds = _problem(error), error.headers.get("Retry-After", "")
+                if error.code not in (429, 503) or not seconds.isdigit() or not _pause(tries, end, int(seconds)):
+                    raise problem from None
+            except (OSError, HTTPException) as error:
+                reason = getattr(error, "reason", error)
+                if isinstance(reason, socket.timeout):
+                    raise TimeoutError("%s%s did not answer within %g s." % (self.base_url, path, left)) from error
+                lost += 1
+                # A service that was there before may be back in a moment; one that never answered is not there.
+                if not self._reached or lost > _MOST_LOST or not _pause(tries, end):
+                    raise ConnectionError("No answer from %s (%s). Is the service running there?"
+                                          % (self.base_url, reason)) from error
+            tries += 1
+
+    def _ended(self, job: Json, end: float) -> Result:
+        pause = 0.05
+        while job["status"] in ("queued", "running"):
+            if time.monotonic() > end:
+                raise TimeoutError("Job %s is still %s after %g s and goes on; wait(%r) waits for it again."
+                                   % (job["id"], job["status"], self.timeout, job["id"]))
+            time.sleep(min(pause, max(end - time.monotonic(), 0)))
+            pause = min(1.5 * pause, 2.0)
+            job = self._json("GET", "/v1/jobs/" + job["id"], end=max(end, time.monotonic() + 5))
+        result = Result(job) if job.get("result") else None
+        if job["status"] == "succeeded" and result is not None:
+            return result
+        cancelled = {"type": "cancelled", "title": "Cancelled", "detail": "Job %s was cancelled." % job["id"]}
+        raise Problem(job.get("error") or cancelled, result)
+
+
+def _request(**fields: Any) -> Json:
+    """The fields that were given."""
+    if fields.get("record") is not None:
+        fields["record"] = record(fields["record"])
+    return {name: value for name, value in fields.items() if value is not None}
+
+
+def _methods(methods: Optional[Methods]) -> Optional[List[Any]]:
+    if methods is None:
+        return None
+    return [{"method": each} if isinstance(each, str) else each for each in methods]
+
+
+def _encoded(value: Any) -> bytes:
+    """JSON; NumPy's arrays and numbers and pandas' columns as the lists and numbers that they hold."""
+
+    def plain(other: Any) -> Any:
+        if hasattr(other, "tolist"):
+            return other.tolist()
+        raise TypeError("A %s cannot be sent; use dictionaries, lists, texts and numbers." % type(other).__name__)
+
+    return json.dumps(value, default=plain).encode()
+
+
+def _text(data: bytes) -> str:
+    """A file's text: UTF-16 by its mark, else UTF-8, else what Windows wrote."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")
+
+
+def _job(job: Union[str, Result]) -> str:
+    return "/v1/jobs/" + quote(job.job["id"] if isinstance(job, Result) else job, safe="")
+
+
+def _query(fields: Mapping[str, Any]) -> str:
+    given = urlencode({name: value for name, value in fields.items() if value is not None})
+    return "?" + given if given else ""
+
+
+def _problem(error: HTTPError) -> Problem:
+    with error:
+        try:
+            return Problem({"status": error.code, **json.load(error)})
+        except (ValueError, TypeError):  # not from the service: a proxy's page
+            return Problem({"status": error.code, "title": str(error.reason), "detail": error.url})
+
+
+def _pause(tries: int, end: float = float("inf"), least: float = 0) -> bool:
+    """Sleeps longer with each try, and never in step with others. False: `end` comes before."""
+    pause = max(least, min(0.5 * 2 ** tries, _LONGEST_PAUSE)) * random.uniform(1, 1.2)
+    if time.monotonic() + pause > end:
+        return False
+    time.sleep(pause)
+    return True

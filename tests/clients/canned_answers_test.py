@@ -1,0 +1,108 @@
+"""The Python client where answers are refused, cut off or missing: a server that says what it was told to say."""
+
+import http.server
+import json
+import sys
+import threading
+import unittest
+
+from service import ROOT
+
+sys.path.insert(0, str(ROOT / "api" / "clients" / "python"))
+import tunewright  # noqa: E402
+
+BUSY = (429, {"Retry-After": "1"}, {"title": "Too Many Requests", "status": 429, "detail": "The queue is full."})
+AGAIN = (503, {"Retry-After": "0"}, {"title": "Service Unavailable", "status": 503, "detail": "Being stopped."})
+DONE = {"id": "j", "status": "succeeded", "result": {"controllers": [{"method": "simc"}], "ranking": [0]}}
+CUT = None  # the connection ends without an answer
+
+
+class Canned(http.server.BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"
+
+    def answer(self):
+        self.server.calls.append((self.command, self.path, dict(self.headers),
+                                  self.rfile.read(int(self.headers.get("Content-Length", 0)))))
+        given = self.server.answers.pop(0)
+        self.close_connection = True
+        if given is CUT:
+            return
+        status, headers, body = given
+        data = body if isinstance(body, bytes) else json.dumps(body).encode()
+        self.send_response(status)
+        for name, value in {"Content-Length": str(len(data)), "Connection": "close", **headers}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(data)
+
+    do_GET = do_POST = do_DELETE = answer
+
+    def log_message(self, *_):
+        pass
+
+
+class CannedTest(unittest.TestCase):
+    def serve(self, *answers, timeout=30):
+        """A client of a server that gives these answers one after the other; its calls are in self.server.calls."""
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Canned)
+        self.server.answers, self.server.calls = list(answers), []
+        threading.Thread(target=self.server.serve_forever, args=(0.01,), daemon=True).start()
+        self.addCleanup(self.server.server_close)
+        self.addCleanup(self.server.shutdown)
+        return tunewright.Client("http://127.0.0.1:%d" % self.server.server_port, timeout=timeout)
+
+    def test_a_service_without_room_is_asked_again_with_the_same_key(self):
+        client = self.serve(AGAIN, BUSY, (200, {}, DONE))
+        self.assertEqual(client.run({})["ranking"], [0])
+        keys = [headers["Idempotency-Key"] for _, _, headers, _ in self.server.calls]
+        self.assertEqual(keys, keys[:1] * 3)
+
+    def test_where_there_is_no_time_the_refusal_is_told(self):
+        late = (429, {"Retry-After": "60"}, BUSY[2])
+        with self.assertRaisesRegex(tunewright.Problem, "The queue is full") as caught:
+            self.serve(late, timeout=5).run({})
+        self.assertEqual((caught.exception.status, len(self.server.calls)), (429, 1))
+
+    def test_a_restart_between_two_looks_at_a_job_is_waited_for(self):
+        client = self.serve((202, {}, {"id": "j", "status": "queued"}), CUT, (200, {}, DONE))
+        self.assertEqual(client.run({}).best["method"], "simc")
+        self.assertEqual([path for _, path, _, _ in self.server.calls], ["/v1/jobs", "/v1/jobs/j", "/v1/jobs/j"])
+
+    def test_rows_go_on_where_they_were_cut_off(self):
+        row = [json.dumps({"index": i}).encode() + b"\n" for i in range(3)]
+        whole = str(sum(map(len, row)))
+        client = self.serve((202, {}, {"id": "b", "total": 3}), (200, {"Content-Length": whole}, row[0] + row[1][:5]),
+                            (200, {}, row[1]), (200, {}, row[2]))
+        told = []
+        rows = list(client.batch([{"name": "a"}, {}, {}], lambda done, total: told.append(done)))
+        self.assertEqual([each["index"] for each in rows], [0, 1, 2])
+        self.assertEqual(told, [1, 2, 3])
+        self.assertEqual([path[-6:] for _, path, _, _ in self.server.calls[1:]], ["from=0", "from=1", "from=2"])
+        self.assertEqual(self.server.calls[0][3], b'{"name": "a"}\n{}\n{}\n')
+
+    def test_a_design_that_a_cancelled_search_had_is_kept(self):
+        ended = {**DONE, "status": "cancelled", "partial": True}
+        with self.assertRaisesRegex(tunewright.Problem, "Job j was cancelled") as caught:
+            self.serve((200, {}, ended)).run({})
+        self.assertEqual(caught.exception.result.best["method"], "simc")
+        self.assertTrue(caught.exception.result.job["partial"])
+
+    def test_a_proxys_page_is_a_problem_too(self):
+        with self.assertRaisesRegex(tunewright.Problem, "Bad Gateway: http://127.0.0.1") as caught:
+            self.serve((502, {"Content-Type": "text/html"}, b"<html>")).get("/v1/methods")
+        self.assertEqual(caught.exception.status, 502)
+
+    def test_a_service_that_is_not_there_is_told_at_once(self):
+        client = self.serve()
+        self.server.shutdown()
+        self.server.server_close()
+        with self.assertRaisesRegex(ConnectionError, "No answer from http://127.0.0.1:[0-9]+ .*Is the service running"):
+            client.run({})
+
+    def test_what_is_no_json_is_named(self):
+        with self.assertRaisesRegex(TypeError, "A set cannot be sent"):
+            tunewright.Client("http://127.0.0.1:9").run({"plant": {1, 2}})
+
+
+if __name__ == "__main__":
+    unittest.main()

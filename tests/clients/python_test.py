@@ -201,11 +201,15 @@ class ClientTest(unittest.TestCase):
         self.check_model(self.client.identify(test["record"]))
 
     def test_settings_are_those_that_the_product_takes(self):
-        product = self.client.get("/v1/controllers")["controllers"][0]["id"]
-        example = self.client.get("/v1/controllers/" + product)["example"]
-        self.assertTrue(self.client.settings(product, {"Kp": 1.5, "Ti": 20}, y_span=[0, 200], u_span=[0, 100],
-                                             sample_time=0.25, nearest=True)["as_typed"], example)
-        with self.assertRaisesRegex(tunewright.Problem, "a%2Fb|a/b"):
+        # The published example: from the maker's formula, to six digits.
+        example = self.client.get("/v1/controllers/emerson_deltav_series")["example"]
+        expected, controller = example.pop("settings"), example.pop("controller")
+        settings = self.client.settings("emerson_deltav_series", controller, **example)["settings"]
+        for name, value in expected.items():
+            if isinstance(value, float):
+                self.assertAlmostEqual(settings[name], value, delta=1e-5 * abs(value))
+        self.assertIn("GAIN", expected)
+        with self.assertRaisesRegex(tunewright.Problem, "There is no such controller"):
             self.client.settings("a/b", {"Kp": 1})
 
     def test_jobs_are_listed_over_all_pages(self):

@@ -150,7 +150,7 @@ void add_method_fields(Description<TuningEntry>& d) {
             "options", {},
             [](const TuningEntry& entry, Writer& out) { write_options(entry.method, entry.options, out); },
             [](SchemaBook&) {
-                return Json{{"type", "object"}};
+                return Json{{"type", "object"}, {"additionalProperties", true}};
             },
             "Options given, over the defaults.", {},
             [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });

@@ -2,19 +2,17 @@
 #include "api/contract/method_options.h"
 
 #include "api/describe/suggest.h"
+#include "api/formula/method_mathml.h"
 #include "api/service.h"
 
 namespace tunewright::api {
 namespace {
 
 Json to_json(const TuningMethod& method) {
-    return {{"id", method.id},
-            {"title", method.title},
-            {"formula", method.formula},
-            {"needs", method.needs},
-            {"validity", method.validity},
-            {"source", method.source},
-            {"options", options_schema(method.options)}};
+    return {{"id", method.id},           {"title", method.title},
+            {"formula", method.formula}, {"formula_mathml", method_mathml(method.formula).value()},
+            {"needs", method.needs},     {"validity", method.validity},
+            {"source", method.source},   {"options", options_schema(method.options)}};
 }
 
 }  // namespace

@@ -11,13 +11,13 @@
 namespace tunewright::api {
 namespace {
 
-struct Row {
+struct KindRow {
     ErrorKind kind;
     int status;
     const char* title;
 };
 
-constexpr Row kTable[] = {
+constexpr KindRow kTable[] = {
     {ErrorKind::invalid_argument, 422, "The request is not valid"},
     {ErrorKind::unsupported, 422, "This cannot be done for this plant or method"},
     {ErrorKind::not_identifiable, 422, "The record does not determine a model"},
@@ -48,7 +48,7 @@ Problem to_problem(const Error& error) {
     Problem problem;
     problem.type = to_string(error.kind);
     problem.detail = error.message;
-    for (const Row& row : kTable) {
+    for (const KindRow& row : kTable) {
         if (row.kind != error.kind) continue;
         problem.status = row.status;
         problem.title = row.title;

@@ -4,26 +4,15 @@
 #include <cstdlib>
 #include <initializer_list>
 
+#include "api/formula/elements.h"
 #include "api/json/writer.h"
 
 namespace tunewright::api {
 namespace {
 
+using namespace mathml_elements;
 using typed::Formula;
 using typed::Polynomial;
-
-std::string element(const char* tag, const std::string& inside) {
-    return std::string("<") + tag + ">" + inside + "</" + tag + ">";
-}
-
-std::string mo(const char* sign) { return element("mo", sign); }
-std::string mi(const char* name) { return element("mi", name); }
-std::string row(const std::string& inside) { return element("mrow", inside); }
-std::string brackets(const std::string& inside) { return row(mo("(") + inside + mo(")")); }
-std::string fraction(const std::string& top, const std::string& bottom) {
-    return element("mfrac", row(top) + row(bottom));
-}
-std::string power(const std::string& base, const std::string& exponent) { return element("msup", base + exponent); }
 
 /// The size of a number as it is shown; its sign is an operator of its own. 1.2e-07 is a product with a power of ten.
 std::string mn(double value) {
@@ -116,10 +105,7 @@ std::string right_side(const StateSpace& p) {
     return (p.D == 0 ? main : brackets(main + mo(p.D < 0 ? "−" : "+") + mn(p.D))) + delay(p.L);
 }
 
-std::string equation(const std::string& right) {
-    return "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">" +
-           row(mi("P") + brackets(mi("s")) + mo("=") + right) + "</math>";
-}
+std::string equation(const std::string& right) { return math(row(mi("P") + brackets(mi("s")) + mo("=") + right)); }
 
 }  // namespace
 

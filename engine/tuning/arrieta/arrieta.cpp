@@ -260,9 +260,8 @@ TuningMethod arrieta_ms_method() {
     method.id = "arrieta_ms";
     method.title = "Servo and regulation for an Ms (Arrieta et al.)";
     method.formula = std::string(kFormula) +
-                     "a1 ... c3 from Table 1 for Ms free, 2.0, 1.8, 1.6 and 1.4, in between from Eq. 9, quadratic in "
-                     "Ms, with b3 and "
-                     "c3 corrected";
+                     "a1 to c3 from Table 1 for Ms free, 2.0, 1.8, 1.6 and 1.4, in between from equation 9, quadratic "
+                     "in Ms, with b3 and c3 corrected";
     method.source = std::string(kSource) + "Eqs. 7-9, Table 1";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, Ms from 1.4 to 2";
@@ -279,8 +278,8 @@ TuningMethod arrieta_degradation_method() {
     method.title = "Servo and regulation with allowed degradation (Arrieta et al.)";
     method.formula =
         std::string(kFormula) +
-        "a1 ... c3 from Table 2 for degradation 0, 0.25, 0.35, 0.45 and 0.55; exact: from Eq. 9 with the Ms "
-        "for which 1 - J_rd(free)/J_rd on the model is the degradation asked for";
+        "a1 to c3 from Table 2 for degradation 0, 0.25, 0.35, 0.45 and 0.55; exact: from equation 9 with the Ms "
+        "for which 1 - J_free/J_rd on the model, J_free being J_rd of Ms free, is the degradation asked for";
     method.source = std::string(kSource) + "Eqs. 5-11, Table 2";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, degradation up to 0.55";

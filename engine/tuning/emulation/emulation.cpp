@@ -94,9 +94,10 @@ TuningMethod emulation_method() {
     method.id = kEmulation;
     method.title = "Emulation of a nonlinear controller";
     method.formula =
-        "min over Kp, Ti, Td of the mean over scenarios of int_0^horizon wy (y_nl - y)^2 + wu (u_nl - u)^2 dt, with "
-        "y_nl, u_nl the run under u = (v - sum_k beta_k L_f^k h)/(beta_r L_g L_f^(r-1) h), within alpha_low and "
-        "alpha_high times classical settings; remark6: error taken from y_nl, wy = 0";
+        "minimise over Kp, Ti, Td the mean over scenarios of int_0^t_f [wy (y_nl - y)^2 + wu (u_nl - u)^2] dt; "
+        "y_nl, u_nl: the run under u = (v - sum_k beta_k L_f^k h)/(beta_r L_g L_f^(r-1) h); Kp, Ti, Td: within "
+        "alpha_low and alpha_high times classical settings; t_f: the horizon; remark6: error taken from y_nl, wy "
+        "= 0";
     method.source =
         "Mhaskar, El-Farra and Christofides, A method for PID controller tuning using nonlinear control techniques, "
         "American Control Conference (2004)";

@@ -80,7 +80,7 @@ TuningMethod simc_method() {
     method.formula =
         "series form Kp (1 + 1/(s Ti)) (1 + s Td): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td "
         "= T2; "
-        "integrating (lag T): Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; "
+        "integrating with lag T: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; "
         "double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti = Td = 4 (tau_c + L); answered in the ideal form, exactly";
     method.source = "Skogestad, J. Process Control 13 (2003) 291-309, Table 1";
     method.needs = "fopdt for PI, sopdt for PID, ipdt (others are reduced)";

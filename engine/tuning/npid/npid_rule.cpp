@@ -119,7 +119,7 @@ TuningMethod described(const Rule& rule, Solve* solve) {
     method.weighs_setpoint = false;
     method.title = std::string("Nonlinear PID, ") + rule.index + " (Jin, Son)";
     method.formula =
-        std::string("u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt], q = L/T; q <= 0.9: ") +
+        std::string("u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td (dy/dt)], q = L/T; q <= 0.9: ") +
         formula_of(rule.short_delay) + "; q > 0.9: " + formula_of(rule.long_delay);
     method.source = "Jin and Son, Studies in Informatics and Control 28 (2019) 157-166, Tables 2 and 3";
     method.needs = "stable fopdt with L > 0 (others are reduced); with optimise any linear plant";

@@ -40,9 +40,11 @@ TuningMethod chien_hrones_reswick_method() {
     method.id = "chien_hrones_reswick";
     method.title = "Chien-Hrones-Reswick";
     method.formula =
-        "a = K L/T (integrating: K L). Regulation, 0 %: P: Kp = 0.3/a; PI: 0.6/a, Ti = 4 L; PID: 0.95/a, Ti = 2.4 L, "
-        "Td = 0.42 L; 20 %: P: 0.7/a; PI: 0.7/a, 2.3 L; PID: 1.2/a, 2 L, 0.42 L. Servo, 0 %: P: 0.3/a; PI: 0.35/a, "
-        "1.2 T; PID: 0.6/a, T, 0.5 L; 20 %: P: 0.7/a; PI: 0.6/a, T; PID: 0.95/a, 1.4 T, 0.47 L";
+        "a = K L/T; integrating: a = K L; regulation, 0 %: P: Kp = 0.3/a; PI: Kp = 0.6/a, Ti = 4 L; PID: Kp = "
+        "0.95/a, Ti = 2.4 L, Td = 0.42 L; regulation, 20 %: P: Kp = 0.7/a; PI: Kp = 0.7/a, Ti = 2.3 L; PID: Kp = "
+        "1.2/a, Ti = 2 L, Td = 0.42 L; servo, 0 %: P: Kp = 0.3/a; PI: Kp = 0.35/a, Ti = 1.2 T; PID: Kp = 0.6/a, "
+        "Ti = T, Td = 0.5 L; servo, 20 %: P: Kp = 0.7/a; PI: Kp = 0.6/a, Ti = T; PID: Kp = 0.95/a, Ti = 1.4 T, Td "
+        "= 0.47 L";
     method.source = "Chien, Hrones and Reswick, Trans. ASME 74 (1952) 175-185";
     method.needs =
         "fopdt with T > 0 and L > 0, regulation also ipdt (others are reduced; T is then static gain over steepest "

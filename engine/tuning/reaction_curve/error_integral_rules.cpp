@@ -180,7 +180,7 @@ TuningMethod zhuang_atherton_method() {
     method.id = "zhuang_atherton";
     method.title = "Zhuang-Atherton";
     method.formula =
-        "Kp = a1 (L/T)^b1/K, Td = a3 T (L/T)^b3; servo: Ti = T/(a2 + b2 L/T), regulation: Ti = T (L/T)^b2/a2. "
+        "Kp = a1 (L/T)^b1/K, Td = a3 T (L/T)^b3; servo: Ti = T/(a2 + b2 L/T); regulation: Ti = T (L/T)^b2/a2. "
         "PID, ISTE, L/T up to 1, servo: 1.042, -0.897, 0.987, -0.238, 0.385, 0.906; regulation: 1.468, -0.970, 0.942, "
         "0.725, 0.443, 0.939. Tables for PI, ISE and L/T above 1 in docs/methods.md";
     method.source = "Zhuang and Atherton, IEE Proceedings D 140 (1993) 216-224";

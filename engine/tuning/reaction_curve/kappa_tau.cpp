@@ -48,10 +48,11 @@ TuningMethod kappa_tau_method() {
     method.id = "kappa_tau";
     method.title = "Kappa-tau";
     method.formula =
-        "tau = L/(L + T), a = K L/T; a Kp, Ti/L, Td/L, b = a0 exp(a1 tau + a2 tau^2). PID, Ms 1.4: 3.8, -8.4, 7.3; "
-        "5.2, -2.5, -1.4; 0.89, -0.37, -4.1; 0.40, 0.18, 2.8; Ms 2: 8.4, -9.6, 9.8; 3.2, -1.5, -0.93; 0.86, -1.9, "
-        "-0.44; 0.22, 0.65, 0.051. PI, Ms 1.4: 0.29, -2.7, 3.7; 8.9, -6.6, 3.0; b 0.81, 0.73, 1.9; Ms 2: 0.78, -4.1, "
-        "5.7; 8.9, -6.6, 3.0; b 0.44, 0.78, -0.45";
+        "tau = L/(L + T), a = K L/T; a Kp, Ti/L, Td/L and b: a0 exp(a1 tau + a2 tau^2), each with its a0, a1, a2; "
+        "PID, Ms = 1.4: a Kp: 3.8, -8.4, 7.3; Ti/L: 5.2, -2.5, -1.4; Td/L: 0.89, -0.37, -4.1; b: 0.40, 0.18, 2.8; "
+        "PID, Ms = 2: a Kp: 8.4, -9.6, 9.8; Ti/L: 3.2, -1.5, -0.93; Td/L: 0.86, -1.9, -0.44; b: 0.22, 0.65, 0.051; "
+        "PI, Ms = 1.4: a Kp: 0.29, -2.7, 3.7; Ti/L: 8.9, -6.6, 3.0; b: 0.81, 0.73, 1.9; PI, Ms = 2: a Kp: 0.78, -4.1, "
+        "5.7; Ti/L: 8.9, -6.6, 3.0; b: 0.44, 0.78, -0.45";
     method.source = "Åström and Hägglund, PID Controllers: Theory, Design, and Tuning, 2nd edition (1995), section 5.3";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity =
@@ -62,9 +63,9 @@ TuningMethod kappa_tau_method() {
     options.choice(&KappaTauOptions::table_Ms, "table_Ms", "The Ms that the table was fitted for.",
                    Words<TableMs>{{"1.4", TableMs::Ms_1_4}, {"2.0", TableMs::Ms_2_0}});
     options.embed(&KappaTauOptions::model, first_order_options());
-    method.variants = {{"PI, Ms 1.4", options.given_for({.controller = ControllerKind::PI})},
-                       {"PID, Ms 1.4", {}},
-                       {"PID, Ms 2", options.given_for({.table_Ms = TableMs::Ms_2_0})}};
+    method.variants = {{"PI, Ms = 1.4", options.given_for({.controller = ControllerKind::PI})},
+                       {"PID, Ms = 1.4", {}},
+                       {"PID, Ms = 2", options.given_for({.table_Ms = TableMs::Ms_2_0})}};
     method.serve(options, tune);
     return method;
 }

@@ -55,7 +55,8 @@ TuningMethod t_sum_method() {
     method.id = "t_sum";
     method.title = "T-sum rule (Kuhn)";
     method.formula =
-        "T_sum = lags - leads + L; normal: P: Kp = 1/K; PI: Kp = 0.5/K, Ti = 0.5 T_sum; PID: Kp = 1/K, Ti = 0.66 "
+        "T_sum = sum T_lag - sum T_lead + L; normal: P: Kp = 1/K; PI: Kp = 0.5/K, Ti = 0.5 T_sum; PID: Kp = 1/K, Ti = "
+        "0.66 "
         "T_sum, "
         "Td = 0.167 T_sum; fast: PI: Kp = 1/K, Ti = 0.7 T_sum; PID: Kp = 2/K, Ti = 0.8 T_sum, Td = 0.194 T_sum";
     method.source = "Kuhn, Automatisierungstechnische Praxis 37 (1995) 10-16";

@@ -45,7 +45,8 @@ TuningMethod ziegler_nichols_step_method() {
     method.id = "ziegler_nichols_step";
     method.title = "Ziegler-Nichols, step response";
     method.formula =
-        "a = K L/T (integrating: K L); P: Kp = 1/a; PI: Kp = 0.9/a, Ti = L/0.3; PID: Kp = 1.2/a, Ti = 2 L, Td = 0.5 L";
+        "a = K L/T; integrating: a = K L; P: Kp = 1/a; PI: Kp = 0.9/a, Ti = L/0.3; PID: Kp = 1.2/a, Ti = 2 L, Td "
+        "= 0.5 L";
     method.source = "Ziegler and Nichols, Trans. ASME 64 (1942) 759-768";
     method.needs = "fopdt or ipdt with L > 0 (others are reduced; T is then static gain over steepest slope)";
     method.validity =

@@ -58,8 +58,9 @@ TuningMethod ziegler_nichols_ultimate_method() {
     method.id = kZieglerNicholsUltimate;
     method.title = "Ziegler-Nichols, ultimate gain";
     method.formula =
-        "P: Kp = 0.5 Ku; PI: Kp = 0.45 Ku, Ti = Pu/1.2; PID: Kp = 0.6 Ku, Ti = Pu/2, Td = Pu/8; pessen: 0.7 Ku, 0.4 "
-        "Pu, 0.15 Pu; some_overshoot: Ku/3, Pu/2, Pu/3; no_overshoot: 0.2 Ku, Pu/2, Pu/3";
+        "P: Kp = 0.5 Ku; PI: Kp = 0.45 Ku, Ti = Pu/1.2; PID: Kp = 0.6 Ku, Ti = Pu/2, Td = Pu/8; pessen: Kp = 0.7 "
+        "Ku, Ti = 0.4 Pu, Td = 0.15 Pu; some_overshoot: Kp = Ku/3, Ti = Pu/2, Td = Pu/3; no_overshoot: Kp = 0.2 "
+        "Ku, Ti = Pu/2, Td = Pu/3";
     method.source =
         "Ziegler and Nichols, Trans. ASME 64 (1942) 759-768; Pessen, J. Dyn. Syst. Meas. Control 116 (1994)";
     method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";

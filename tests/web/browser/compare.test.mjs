@@ -314,30 +314,6 @@ test("a nonlinear PID is taken as today's settings, and shown in its own form wi
   });
 });
 
-test("the methods' page lists what the service lists, finds by words, and shows one with its options", async () => {
-  await withPage("#/methods", {}, async (page) => {
-    const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
-    await page.locator("article").first().waitFor();
-    const text = await page.locator(".method-list").innerText();
-    for (const method of methods) {
-      assert.ok(text.includes(method.title), method.id);
-      assert.ok(text.includes(method.source), `source of ${method.id}`);
-    }
-    await page.getByLabel("Find a method").fill("skogestad simc");
-    const said = (method) => JSON.stringify({ ...method, options: null }).toLowerCase();
-    const matching = methods.filter((method) => said(method).includes("simc") && said(method).includes("skogestad"));
-    assert.ok(matching.length > 0 && matching.length < methods.length / 2);
-    assert.deepEqual(
-      await page.locator("article:visible h2 a").allInnerTexts(),
-      matching.map((method) => method.title),
-    );
-    await page.locator("article:visible h2 a").first().click();
-    await page.getByRole("heading", { level: 1, name: /SIMC/ }).waitFor();
-    assert.match(await page.getByRole("region", { name: /^Options of/ }).innerText(), /tau_c/);
-    assert.deepEqual(await accessibilityViolations(page), []);
-  });
-});
-
 for (const [name, options] of WINDOWS) {
   test(`the league table on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage(PLANT, options, async (page) => {

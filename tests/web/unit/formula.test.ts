@@ -39,6 +39,12 @@ test("nothing but formulas comes in", () => {
     assert.equal(parseMathml(text), null, text);
   const tree = parseMathml('<math onclick="alert(1)"><mi style="color:red" onclick="x()">x</mi></math>');
   assert.deepEqual((tree!.children![0] as TreeNode).attributes, {}, "attributes stay outside");
+  const signs = parseMathml('<math><mo stretchy="false">(</mo><mo stretchy="false" onclick="x()">(</mo></math>');
+  assert.deepEqual(
+    signs!.children!.map((sign) => (sign as TreeNode).attributes),
+    [{ stretchy: "false" }, {}],
+    "but for brackets that must not grow",
+  );
 });
 
 test("identified numbers are shown with four digits", () => {

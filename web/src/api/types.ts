@@ -359,6 +359,7 @@ export interface Method {
   id: string;
   title: string;
   formula?: string;
+  formula_mathml?: string;
   needs?: string;
   validity?: string;
   source?: string;

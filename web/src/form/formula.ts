@@ -1,12 +1,19 @@
-// A plant's formula as the service writes it: MathML text to plain nodes, because the page takes no markup from text.
+// Formulas of plants and methods as the service writes them: MathML text to plain nodes, because the page takes no
+// markup from text.
 import { formulaText } from "../api/plants.ts";
 import type { Plant } from "../api/types.ts";
 import { h, mathElement, node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 
-const TAGS = new Set(["math", "mrow", "mi", "mn", "mo", "msup", "mfrac", "mtable", "mtr", "mtd"]);
+const TAGS = new Set("math mrow mi mn mo mtext msub msup msubsup msqrt mfrac mtable mtr mtd".split(" "));
 const PIECE = /<(\/?)([a-z]+)((?:\s[^<>]*)?)>|([^<>]+)/y;
 const ENTITIES: Record<string, string> = { amp: "&", lt: "<", gt: ">", quot: '"', apos: "'" };
+
+/** Of all attributes none comes in but these. */
+function attributesOf(tag: string, written: string | undefined): Record<string, string> {
+  if (tag === "math") return { display: "block" };
+  return tag === "mo" && written?.trim() === 'stretchy="false"' ? { stretchy: "false" } : {};
+}
 
 /** The tree of a formula; null where the text is anything else than elements of formulas and their texts. */
 export function parseMathml(text: string): TreeNode | null {
@@ -15,7 +22,7 @@ export function parseMathml(text: string): TreeNode | null {
   while (PIECE.lastIndex < text.length) {
     const piece = PIECE.exec(text);
     if (!piece) return null;
-    const [, slash, tag, , words] = piece;
+    const [, slash, tag, attributes, words] = piece;
     const inside = open[open.length - 1]!;
     if (words !== undefined) {
       inside.children!.push(words.replace(/&(\w+);/g, (all, name: string) => ENTITIES[name] ?? all));
@@ -24,7 +31,7 @@ export function parseMathml(text: string): TreeNode | null {
     } else if (slash) {
       if (open.pop()!.tag !== tag) return null;
     } else {
-      const element = node(tag!, tag === "math" ? { display: "block" } : {});
+      const element = node(tag!, attributesOf(tag!, attributes));
       inside.children!.push(element);
       open.push(element);
     }

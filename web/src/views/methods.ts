@@ -1,6 +1,7 @@
 // Methods: what the service can tune by, each with its formula, source, range and options, as it says of itself.
 import type { Method } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
+import { methodFormula } from "../form/method_formula.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { mentions, optionRows } from "../words/methods.ts";
@@ -104,9 +105,9 @@ function articleOf(method: Method, alone: boolean): HTMLElement {
     title,
     method.formula
       ? h(
-          "pre",
+          "div",
           { class: "method-formula", tabindex: 0, role: "region", "aria-label": `Formula of ${method.title}` },
-          method.formula.replaceAll("; ", "\n"),
+          methodFormula(method.formula_mathml) ?? h("pre", {}, method.formula.replaceAll("; ", "\n")),
         )
       : null,
     h("dl", {}, fact("Needs", method.needs), fact("Valid", method.validity), fact("Source", method.source)),

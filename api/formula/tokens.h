@@ -1,0 +1,29 @@
+// The words and signs of the notation, told apart.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/expected.h"
+
+namespace tunewright::api::notation {
+
+enum class Kind { number, symbol, function, big, word, sign, line_end, label_end };
+
+struct FormulaToken {
+    Kind kind = Kind::sign;
+    std::string text;
+    std::size_t position = 1;  ///< of its first character, from 1
+
+    bool is(std::string_view sign) const { return kind == Kind::sign && text == sign; }
+    bool is_relation() const { return is("=") || is("<") || is(">") || is("<=") || is(">="); }
+};
+
+/// Lower-case names of Greek letters that formulas use, each with its letter; "" where `name` is none.
+std::string_view greek_letter(std::string_view name);
+
+/// Errors: a character that the notation has no use for.
+Expected<std::vector<FormulaToken>> formula_tokens(std::string_view text);
+
+}  // namespace tunewright::api::notation

@@ -2,7 +2,7 @@
 #include "api/contract/method_options.h"
 
 #include "api/describe/suggest.h"
-#include "api/formula/method_mathml.h"
+#include "api/formula/notation.h"
 #include "api/service.h"
 
 namespace tunewright::api {

@@ -1,9 +1,8 @@
-#include "api/formula/method_mathml.h"
+#include "api/formula/notation.h"
 
 #include <algorithm>
 
 #include "api/formula/elements.h"
-#include "api/formula/notation.h"
 #include "api/formula/tokens.h"
 
 namespace tunewright::api {

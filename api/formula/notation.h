@@ -1,4 +1,5 @@
-// The plain-text notation in which the registry states the formulas of tuning methods, read into a tree.
+// The plain-text notation in which the registry states the formulas of tuning methods, read into a tree, and written as
+// MathML.
 //
 //     PI: Kp = 2 T/(3 K L), Ti = T; PID: Kp = 2 (T1 + T2)/(3 K L), Ti = T1 + T2
 //
@@ -49,3 +50,13 @@ struct Line {
 Expected<std::vector<Line>> read_formula(std::string_view text);
 
 }  // namespace tunewright::api::notation
+
+namespace tunewright::api {
+
+/// One `math` element without white space around it: a table with a row for each line of the text. A row's first cell
+/// is the line's label (empty where it has none), the others are its formulas; words stand in `mtext`. No attributes
+/// but those of `math` and stretchy="false" of brackets, no entities but &lt; and &gt;. Errors: as
+/// notation::read_formula.
+Expected<std::string> method_mathml(std::string_view formula);
+
+}  // namespace tunewright::api

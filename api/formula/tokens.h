@@ -9,7 +9,16 @@
 
 namespace tunewright::api::notation {
 
-enum class Kind { number, symbol, function, big, word, sign, line_end, label_end };
+enum class Kind {
+    number,
+    symbol,
+    function,  ///< min, max, exp, sqrt, with a bracket behind it
+    big,       ///< int, sum, with its lower limit: sum_k
+    word,
+    sign,
+    line_end,
+    label_end
+};
 
 struct FormulaToken {
     Kind kind = Kind::sign;

@@ -27,3 +27,8 @@ test("what is no table of lines is no formula of a method", () => {
   for (const text of [undefined, "", "<math><mi>x</mi></math>", math("<mtr><mtd><script>x</script></mtd></mtr>")])
     assert.equal(formulaLines(text), null, text);
 });
+
+test("a line without a label has an empty one", () => {
+  const [line] = formulaLines(math("<mtr><mtd></mtd><mtd><mi>x</mi></mtd></mtr>"))!;
+  assert.deepEqual(line!.label, []);
+});

@@ -1,4 +1,4 @@
-#include "tests/api/read_mathml.h"
+#include "tests/api/formula/read_mathml.h"
 
 #include <algorithm>
 #include <initializer_list>

@@ -1,4 +1,5 @@
-// MathML read back: a second reader, which shares nothing with the writers.
+// MathML read back: a second reader, which shares nothing with the writers. What a formula says is compared with its
+// text by the leaves, what it is worth by typing it out for the reader of the plants' equations.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs every *_test.py beside it, in deploy/ and stores/, and in tests/docs and tests/clients, and prints the counts that
+"""Runs every *_test.py beside it, in cli/, deploy/ and stores/, and in tests/docs and tests/clients, and prints the counts that
 script/test adds up."""
 
 import pathlib
@@ -7,7 +7,7 @@ import sys
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOMS = [HERE, HERE / "deploy", HERE / "stores", HERE.parent / "docs", HERE.parent / "clients"]
+ROOMS = [HERE, HERE / "cli", HERE / "deploy", HERE / "stores", HERE.parent / "docs", HERE.parent / "clients"]
 sys.path[:0] = map(str, ROOMS)
 
 

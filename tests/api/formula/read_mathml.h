@@ -14,7 +14,8 @@ struct Markup {
     std::vector<Markup> inside;
 };
 
-/// Throws std::runtime_error where the text is not well-formed.
+/// A text without a root around it is one too. Throws std::runtime_error where the text is not well-formed: a tag that
+/// is not closed, or an entity that is not known.
 Markup read_markup(std::string_view text);
 
 /// The texts of all leaves, one after another.

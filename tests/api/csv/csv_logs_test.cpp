@@ -6,7 +6,7 @@
 #include <random>
 
 #include "api/csv/record.h"
-#include "written_logs.h"
+#include "tests/api/csv/written_logs.h"
 
 namespace tunewright::api {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "api/csv/record.h"
 #include "api/csv/time_stamp.h"
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

@@ -111,13 +111,13 @@ class CommandLineTest(unittest.TestCase):
             self.assertEqual(service.post("/v1/jobs", padded).status, 202)
 
     def test_identify_reads_a_file_as_exported(self):
-        record = os.path.join(os.path.dirname(__file__), "..", "data", "records", "tclab-step.csv")
+        record = os.path.join(os.path.dirname(__file__), "..", "..", "data", "records", "tclab-step.csv")
         done = run("identify", record, "--u", "Q1", "--y", "T1", "--time-unit", "min")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertGreater(json.loads(done.stdout)["model"]["fit_percent"], 97)
 
     def test_identify_answers_traces_only_where_asked(self):
-        record = os.path.join(os.path.dirname(__file__), "..", "data", "records", "tclab-step.csv")
+        record = os.path.join(os.path.dirname(__file__), "..", "..", "data", "records", "tclab-step.csv")
         without = json.loads(run("identify", record).stdout)["model"]
         self.assertNotIn("fit", without)
         self.assertTrue(all("y_model" not in candidate for candidate in without["candidates"]))

@@ -11,7 +11,7 @@ import unittest
 from command_line_test import run
 from service import BINARY
 
-RECORD = os.path.join(os.path.dirname(__file__), "..", "data", "records", "tclab-step.csv")
+RECORD = os.path.join(os.path.dirname(__file__), "..", "..", "data", "records", "tclab-step.csv")
 PLANT = "2 e^(-3s)/(10s+1)"
 
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "api/csv/record.h"
-#include "written_logs.h"
+#include "tests/api/csv/written_logs.h"
 
 namespace tunewright::api {
 namespace {

@@ -39,7 +39,8 @@ class DocumentTest(unittest.TestCase):
             self.skipTest("its commands need jq")
         if any(word in text for word in ("--plant ", "--pretty", "--table")) and not knows_plants():
             self.skipTest("its commands need a program whose tune takes --plant")
-        self.assertEqual("", "\n\n".join(faults_of(name, text, self.service.port)))
+        if found := faults_of(name, text, self.service.port):
+            self.fail("\n\n".join(found))
 
     def test_a_wrong_figure_a_failing_command_and_a_refused_request_are_found(self):
         call = "curl -s http://127.0.0.1:8080/v1/"

@@ -10,7 +10,9 @@ namespace {
 
 constexpr const char* kBlank = " \t\r\n";
 
-Problem unclear(std::string detail) { return {422, "invalid-request", "The request is not valid", std::move(detail), {}, {}}; }
+Problem unclear(std::string detail) {
+    return {422, "invalid-request", "The request is not valid", std::move(detail), {}, {}};
+}
 
 /// The number that a word spells; a word that spells none stays one, for the contract to refuse.
 Json number_or_word(const std::string& word) {
@@ -46,8 +48,17 @@ void put_methods(const TuneWords& words, Json& request) {
     }
     if (words.Ms.empty()) return;
     if (!request.contains("tune")) request["tune"] = Json::array({{{"method", "robust"}}});
-    for (Json& entry : request["tune"])
-        if (entry.is_object()) entry["Ms"] = entry["Mt"] = number_or_word(words.Ms);
+    const auto holds_limits = [](const Json& entry) {
+        const Json method = entry.is_object() ? entry.value("method", Json()) : Json();
+        return method == "robust" || method == "all";
+    };
+    Json& entries = request["tune"];
+    const bool some = std::any_of(entries.begin(), entries.end(), holds_limits);
+    for (Json& entry : entries) {
+        if (!entry.is_object() || (some && !holds_limits(entry))) continue;
+        entry["Ms"] = number_or_word(words.Ms);
+        if (holds_limits(entry)) entry["Mt"] = entry["Ms"];
+    }
 }
 
 }  // namespace
@@ -82,13 +93,15 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
     if (auto* problem = std::get_if<Problem>(&found)) return std::move(*problem);
     Json& request = std::get<Json>(found);
     put_methods(words, request);
-    if (!words.record.time_unit.empty()) request["units"]["time"] = words.record.time_unit;
+    if (!words.record.time_unit.empty() && request.value("units", Json::object()).is_object())
+        request["units"]["time"] = words.record.time_unit;
     if (!words.baseline.empty()) {
         Json& today = request["baseline"] = {{"form", "ideal"}};
         const std::vector<std::string> values = words_of(words.baseline);
         constexpr const char* kNames[] = {"Kp", "Ti", "Td"};
         if (values.size() > std::size(kNames))
-            return unclear("--baseline is \"" + words.baseline + "\"; it must be Kp, Ti and Td of the ideal form, such as \"0.5 10 0\".");
+            return unclear("--baseline is \"" + words.baseline +
+                           "\"; it must be Kp, Ti and Td of the ideal form, such as \"0.5 10 0\".");
         for (std::size_t i = 0; i < values.size(); ++i) today[kNames[i]] = number_or_word(values[i]);
     }
     return request.dump();

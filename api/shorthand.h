@@ -23,9 +23,9 @@ struct CsvRequest {
 struct TuneWords {
     std::string plant;                 ///< as `tunewright plant` reads it; "": the file has it
     std::vector<std::string> methods;  ///< empty: those of the file, or the default
-    std::string Ms;                    ///< limit of Ms and Mt, for each of the methods; "": not given
-    std::string baseline;              ///< today's settings, "Kp Ti Td"; "": those of the file, or none
-    CsvRequest record;                 ///< where the file is a recorded test; its time_unit counts for a plant too
+    std::string Ms;  ///< limit of Ms and Mt for robust and all; where neither is asked for, Ms of each; "": not given
+    std::string baseline;  ///< today's settings, "Kp Ti Td"; "": those of the file, or none
+    CsvRequest record;     ///< where the file is a recorded test; its time_unit counts for a plant too
 };
 
 /// The member `record` of a request, with that text.
@@ -34,9 +34,9 @@ Json record_of(const CsvRequest& question, std::string csv);
 /// Whether a text is one JSON object, which a log with one in each line is not.
 bool is_request(const std::string& text);
 
-/// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none where the words
-/// have a plant. Words stand above what the file says. Problems: 400 for a request that is not JSON; 422 where there is
-/// neither plant nor file, or both; whatever else is wrong prepare_job() finds.
+/// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none where the
+/// words have a plant. Words stand above what the file says. Problems: 400 for a request that is not JSON; 422 where
+/// there is neither plant nor file, or both; whatever else is wrong prepare_job() finds.
 std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file);
 
 }  // namespace tunewright::api

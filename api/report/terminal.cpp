@@ -71,16 +71,24 @@ std::string sentences(const Json& list, const char* member) {
     return out;
 }
 
-/// "K 0.6954 (standard error 0.0086), T1 141.4 (5.9)"
+/// "5.93 0.695"
+std::string coefficients(const Json& values) {
+    std::string out;
+    for (const Json& value : values) out += (out.empty() ? "" : " ") + number(value);
+    return out;
+}
+
+/// "K 0.6954 +- 0.0086, T1 141.4 +- 5.9", with the standard errors behind the signs; "num [5.93 0.695], den [..]".
 std::string parameters(const Json& model) {
     const Json errors = model.value("standard_errors", Json::object());
     const Json plant = model.value("plant", Json::object());
     std::string out;
     for (const auto& [name, value] : plant.items()) {
-        if (!value.is_number()) continue;
-        out += (out.empty() ? "" : ", ") + name + " " + tunewright::text(value.get<double>());
+        if (!value.is_number() && !value.is_array()) continue;
+        out += (out.empty() ? "" : ", ") + name + " " +
+               (value.is_array() ? "[" + coefficients(value) + "]" : number(value));
         if (errors.is_object() && errors.contains(name) && errors[name].is_number())
-            out += " +- " + tunewright::text(errors[name].get<double>(), 2);
+            out += " +- " + figure_text(errors[name].get<double>(), 2);
     }
     return out;
 }
@@ -177,7 +185,7 @@ std::string model_text(std::string_view answer) try {
     std::string out = model_lines(model);
     const std::string reason = words(model.value("choice_reason", Json()));
     if (!reason.empty()) out += "  " + reason + "\n";
-    Columns columns({"candidate", "fit (%)", "parameters"}, 1);
+    Columns columns({"candidate", "fit (%)", "parameters"}, 3);
     for (const Json& candidate : model.value("candidates", Json::array()))
         columns.row({words(at(candidate, "/plant/type")), number(candidate.value("fit_percent", Json())),
                      parameters(candidate)});

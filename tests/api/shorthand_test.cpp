@@ -24,7 +24,7 @@ TEST(Shorthand, WordsBecomeMembersOfTheRequest) {
     words.baseline = "0.5, 10";
     words.record.time_unit = "min";
     EXPECT_EQ(request_of(words), Json::parse(R"({"plant": "2 e^(-3s)/(10s+1)",
-        "tune": [{"method": "robust", "Ms": 1.6, "Mt": 1.6}, {"method": "simc", "Ms": 1.6, "Mt": 1.6}],
+        "tune": [{"method": "robust", "Ms": 1.6, "Mt": 1.6}, {"method": "simc"}],
         "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 10}, "units": {
         "time" : "min"}
 })"));
@@ -65,6 +65,14 @@ TEST(Shorthand, NothingAndTwoThingsToTuneAreRefused) {
     EXPECT_NE(refusal_of({}, "{").find("not JSON"), std::string::npos);
     both.baseline = "1 2 3 4";
     EXPECT_NE(refusal_of(both).find("Kp, Ti and Td"), std::string::npos);
+}
+
+TEST(Shorthand, OtherMethodsGetMsAloneWhereNoneHoldsLimits) {
+    TuneWords words;
+    words.plant = "1/(s+1)";
+    words.methods = {"arrieta_ms"};
+    words.Ms = "1.8";
+    EXPECT_EQ(request_of(words).at("tune"), Json::parse(R"([{"method": "arrieta_ms", "Ms": 1.8}])"));
 }
 
 TEST(Shorthand, AWordThatIsNoNumberIsLeftForTheContractToRefuse) {

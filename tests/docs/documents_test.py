@@ -1,8 +1,6 @@
 """Holds the documents' commands: each runs as it stands, and prints what the document says that it prints."""
 
 import pathlib
-import shutil
-import subprocess
 import tempfile
 import unittest
 
@@ -20,11 +18,6 @@ def faults_of(name, text, port):
         return documents.faults(name, text, port, service.BINARY, pathlib.Path(folder))
 
 
-def knows_plants():
-    told = subprocess.run([service.BINARY, "tune", "--help"], capture_output=True, text=True, check=False)
-    return "--plant" in told.stdout
-
-
 class DocumentTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -35,10 +28,6 @@ class DocumentTest(unittest.TestCase):
         text = (ROOT / name).read_text(encoding="utf-8")
         blocks = [block for block in documents.commands_of(text) if block.run]
         self.assertTrue(blocks, f"{name} has no block of commands.")
-        if any("jq " in block.text for block in blocks) and not shutil.which("jq"):
-            self.skipTest("its commands need jq")
-        if any(word in text for word in ("--plant ", "--pretty", "--table")) and not knows_plants():
-            self.skipTest("its commands need a program whose tune takes --plant")
         if found := faults_of(name, text, self.service.port):
             self.fail("\n\n".join(found))
 

@@ -95,6 +95,6 @@ Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for non
 std::string examples_json();              ///< GET /v1/examples
 /// The request of the example with that id, or that number from 1; 404 for none.
 Answer example_request(std::string_view which);
-std::string openapi_json();               ///< GET /openapi.json (OpenAPI 3.1)
+std::string openapi_json();  ///< GET /openapi.json (OpenAPI 3.1)
 
 }  // namespace tunewright::api

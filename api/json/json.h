@@ -27,8 +27,8 @@ Problem not_json(std::string detail);
 /// `text` without the white space between its tokens. `text` must be JSON.
 std::string compact(std::string_view text);
 
-/// `text` over several lines, two blanks for each depth; what holds neither objects nor arrays stays on one line. `text`
-/// must be JSON; everything is passed on as it is spelled. Ends in a newline.
+/// `text` over several lines, two blanks for each depth; what holds neither objects nor arrays stays on one line.
+/// `text` must be JSON; everything is passed on as it is spelled. Ends in a newline.
 std::string indented(std::string_view text);
 
 /// `json`, an object or an array as compact() or a Writer spells it, without the members of these names, wherever they

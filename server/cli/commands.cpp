@@ -104,8 +104,8 @@ int tune(const TuneCommand& command) {
 int identify(const IdentifyCommand& command) {
     std::string text;
     if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
-    const api::Answer answer = api::is_request(text) ? api::identify_call(text, {})
-                                                     : api::identify_csv(std::move(text), command.question, {});
+    const api::Answer answer =
+        api::is_request(text) ? api::identify_call(text, {}) : api::identify_csv(std::move(text), command.question, {});
     return answered(answer, command.output, api::model_text, command.file);
 }
 

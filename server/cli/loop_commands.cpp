@@ -102,14 +102,14 @@ void add_loop_commands(CommandTree& tree) {
 
     TuneCommand& comparing = tree.keep<TuneCommand>();
     comparing.all = true;
-    add_tune_options(tree.add("compare", "The same by every method that applies, ranked", [&] { return tune(comparing); }),
-                     comparing);
+    add_tune_options(
+        tree.add("compare", "The same by every method that applies, ranked", [&] { return tune(comparing); }),
+        comparing);
 
     IdentifyCommand& identifying = tree.keep<IdentifyCommand>();
     CLI::App& identify_app =
         tree.add("identify", "A model from a recorded test", [&] { return identify(identifying); });
-    identify_app
-        .add_option("file", identifying.file, "CSV, or {record, identify} as JSON; - reads standard input")
+    identify_app.add_option("file", identifying.file, "CSV, or {record, identify} as JSON; - reads standard input")
         ->required();
     add_record_options(identify_app, identifying.question);
     identify_app.add_flag("--traces", identifying.question.traces,

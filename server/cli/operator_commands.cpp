@@ -19,14 +19,15 @@ void add_key_command(CommandTree& tree) {
     app.add_option("--keys", words.file, "The file it is added to (default: the line goes to stderr)")
         ->type_name("FILE");
     app.add_flag("--admin", words.admin, "For whoever runs the service: sees and acts on everybody's jobs");
-    app.add_flag("--rotate", words.rotate, "One more key for a name that has one, which works until its line is deleted");
+    app.add_flag("--rotate", words.rotate,
+                 "One more key for a name that has one, which works until its line is deleted");
 }
 
 void add_secret_command(CommandTree& tree) {
     SecretCommand& words = tree.keep<SecretCommand>();
-    CLI::App& app = tree.add("secret",
-                             "Make a secret that signs what others are told of ends: printed on stdout, kept in a file",
-                             [&] { return make_secret(words); });
+    CLI::App& app =
+        tree.add("secret", "Make a secret that signs what others are told of ends: printed on stdout, kept in a file",
+                 [&] { return make_secret(words); });
     app.add_option("name", words.name, "Its name, which a request gives as notify.secret_id")->required();
     app.add_option("--file", words.file, "The file it is added to (default: the line goes to stderr)")
         ->type_name("FILE");
@@ -50,9 +51,8 @@ struct HealthWords {
 
 void add_health_command(CommandTree& tree) {
     HealthWords& words = tree.keep<HealthWords>();
-    CLI::App& app = tree.add("health", "Ask a running service whether it is well: exit code 0 if so", [&] {
-        return check_health(words.url.empty() ? health_url(words.listen) : words.url);
-    });
+    CLI::App& app = tree.add("health", "Ask a running service whether it is well: exit code 0 if so",
+                             [&] { return check_health(words.url.empty() ? health_url(words.listen) : words.url); });
     app.add_option("url", words.url, "Default: /healthz of this machine's service, by TUNEWRIGHT_LISTEN");
     option(app, "listen", words.listen, "HOST:PORT of that service");
 }

@@ -114,8 +114,7 @@ void add_port_options(CLI::App& app, Config& config) {
 
 void add_serve_command(CommandTree& tree) {
     Config& config = tree.keep<Config>();
-    CLI::App& app =
-        tree.add("serve", "Answer over HTTP until SIGTERM or Ctrl-C", [&config] { return serve(config); });
+    CLI::App& app = tree.add("serve", "Answer over HTTP until SIGTERM or Ctrl-C", [&config] { return serve(config); });
     add_process_options(app, config);
     add_job_options(app, config);
     add_notify_options(app, config);

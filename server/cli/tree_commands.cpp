@@ -106,9 +106,12 @@ void write_zsh(const CLI::App& app, std::ostream& out) {
 std::string troff(const std::string& text) {
     std::string out;
     for (const char c : text) {
-        if (c == '\\') out += "\\e";
-        else if (c == '-') out += "\\-";
-        else out += c;
+        if (c == '\\')
+            out += "\\e";
+        else if (c == '-')
+            out += "\\-";
+        else
+            out += c;
     }
     return out.starts_with(".") || out.starts_with("'") ? "\\&" + out : out;
 }
@@ -130,7 +133,8 @@ void write_option(const CLI::Option& option, std::ostream& out) {
 }
 
 void write_manual(const CLI::App& app, std::ostream& out) {
-    out << ".TH TUNEWRIGHT 1 \"\" \"tunewright " TUNEWRIGHT_VERSION "\" \"User Commands\"\n"
+    out << ".TH TUNEWRIGHT 1 \"\" \"tunewright " TUNEWRIGHT_VERSION
+           "\" \"User Commands\"\n"
            ".SH NAME\n"
            "tunewright \\- tunes PID controllers\n"
            ".SH SYNOPSIS\n"
@@ -167,10 +171,11 @@ void write_manual(const CLI::App& app, std::ostream& out) {
 void add_tree_commands(CommandTree& tree) {
     CLI::App& app = tree.app();
     std::string& shell = tree.keep<std::string>();
-    tree.add("completion", "What a shell needs to complete the command line", [&] {
-            shell == "zsh" ? write_zsh(app, std::cout) : write_bash(app, std::cout);
-            return 0;
-        })
+    tree.add("completion", "What a shell needs to complete the command line",
+             [&] {
+                 shell == "zsh" ? write_zsh(app, std::cout) : write_bash(app, std::cout);
+                 return 0;
+             })
         .add_option("shell", shell, "bash or zsh")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh"}));

@@ -25,8 +25,8 @@ TEST(Shorthand, WordsBecomeMembersOfTheRequest) {
     words.record.time_unit = "min";
     Json expected{{"plant", words.plant}};
     expected["tune"] = Json::parse(R"([{"method": "robust", "Ms": 1.6, "Mt": 1.6}, {"method": "simc"}])");
-    expected["baseline"] = Json::parse(R"({"form": "ideal", "Kp": 0.5, "Ti": 10})");
     expected["units"] = {{"time", "min"}};
+    expected["baseline"] = Json::parse(R"({"form": "ideal", "Kp": 0.5, "Ti": 10})");
     EXPECT_EQ(request_of(words), expected);
 }
 

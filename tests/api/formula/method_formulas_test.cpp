@@ -111,7 +111,8 @@ void collect_equations(const Markup& markup, std::vector<std::string>& found) {
     if (markup.tag == "mtd") {
         std::string text = typed_out(markup);
         if (text.ends_with(",")) text.pop_back();
-        if (std::ranges::count(text, '=') == 1) found.push_back(text);
+        const bool limit = text.find("<=") != text.npos || text.find(">=") != text.npos;
+        if (std::ranges::count(text, '=') == 1 && !limit) found.push_back(text);
     }
     for (const Markup& one : markup.inside) collect_equations(one, found);
 }
@@ -222,7 +223,7 @@ TEST(MethodFormulas, SlashesAndProductsBindFromLeftToRight) {
 
 TEST(MethodFormulas, LabelsLinesAndWordsAreTold) {
     EXPECT_EQ(cells("q = L/T; PID, Ms = 1.4: P: Kp = 1/q, Ti = min(T, 4 L), as it is"),
-              "[][q=((L)/(T))]\n[PID, M_s=1.4:P:][K_p=((1)/(q)),][T_i=min(T,4*L),][as it is]\n");
+              "[][q=((L)/(T))]\n[PID, M_s=1.4 : P:][K_p=((1)/(q)),][T_i=min(T,4*L),][as it is]\n");
     EXPECT_EQ(cells("a step after a load step: 1, -2"), "[a step after a load step:][1,-2]\n");
 }
 

@@ -25,7 +25,7 @@ std::vector<double> propagator(const Realisation& realisation, double tau) {
     return matrix_exponential(augmented, n + 1);
 }
 
-std::vector<double> apply(const std::vector<double>& propagator, const std::vector<double>& x) {
+std::vector<double> propagated(const std::vector<double>& propagator, const std::vector<double>& x) {
     std::vector<double> augmented = x;
     augmented.push_back(1);
     std::vector<double> next(x.size());
@@ -63,7 +63,7 @@ double spacing(const LinearPlant& plant, double t, double shortest) {
 }  // namespace
 
 StepSample step_response_after(const Realisation& realisation, const StepSample& from, double tau) {
-    return sample(realisation, from.t + tau, apply(propagator(realisation, tau), from.x));
+    return sample(realisation, from.t + tau, propagated(propagator(realisation, tau), from.x));
 }
 
 std::vector<StepSample> step_response(const LinearPlant& plant) {
@@ -84,8 +84,8 @@ std::vector<StepSample> step_response(const LinearPlant& plant) {
             static_cast<size_t>(std::max(0.0, std::floor(std::log2(spacing(plant, t, shortest) / shortest))));
         while (doublings.size() <= k)
             doublings.push_back(propagator(realisation, std::ldexp(shortest, static_cast<int>(doublings.size()))));
-        samples.push_back(
-            sample(realisation, t + std::ldexp(shortest, static_cast<int>(k)), apply(doublings[k], samples.back().x)));
+        samples.push_back(sample(realisation, t + std::ldexp(shortest, static_cast<int>(k)),
+                                 propagated(doublings[k], samples.back().x)));
     }
     return samples;
 }

@@ -91,6 +91,7 @@ test("loops that failed say why; gain and risk order the table", async () => {
     await page.getByRole("button", { name: "Try the failed again" }).click();
     await page.waitForFunction((old) => !location.hash.includes(old), batch.id);
     await page.getByText("1 loop: 0 tuned, 1 failed", { exact: true }).waitFor();
+    await page.getByRole("rowheader", { name: "impossible" }).waitFor(); // rows come after the counts
     assert.deepEqual(await page.getByRole("rowheader").allInnerTexts(), ["impossible"]);
   });
 });

@@ -200,6 +200,8 @@ def round_of_calls(service, api, examples, number=None, counts=None, shrink=Fals
             raise AssertionError("no answer, %r\n  call: %r" % (fault, call)) from None
         if call.method == "DELETE" and answer.status == 204:
             replace_deleted(service, ids, call)
+        if call.target.split("?")[0].endswith("/queue/pause"):  # else each job that is waited for would cost its whole wait
+            service.post("/v1/queue/resume", b"")
         if counts is not None:
             counts[operation["operationId"], answer.status] += 1
         try:

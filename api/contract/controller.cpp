@@ -176,7 +176,8 @@ const Description<IdealPid>& ideal() {
             .field("Ti", &IdealPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.unit = "time"})
             .field("Td", &IdealPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
-        return with_weights(d).example({{"form", "ideal"}, {"Kp", 1.2}, {"Ti", 10}, {"Td", 0}});
+        with_weights(d).example({{"form", "ideal"}, {"Kp", 1.2}, {"Ti", 10}, {"Td", 0}});
+        return d;
     }();
     return description;
 }
@@ -189,10 +190,11 @@ const Description<ParallelPid>& parallel() {
             .field("Kp", &ParallelPid::Kp, number(), "Proportional gain.", {.unit = "u/y"})
             .field("Ki", &ParallelPid::Ki, number(), "Integral gain.", {.unit = "u/(y time)"})
             .field("Kd", &ParallelPid::Kd, number(), "Derivative gain.", {.unit = "u time/y"});
-        return with_weights(d).check([](const Json&, ParallelPid& pid, Reader& reader) {
+        with_weights(d).check([](const Json&, ParallelPid& pid, Reader& reader) {
             if (pid.Kp == 0 && pid.Ki == 0 && pid.Kd == 0)
                 reader.fault_at("Kp", "Kp, Ki and Kd are all 0; one of them must differ from 0.");
         });
+        return d;
     }();
     return description;
 }
@@ -207,10 +209,10 @@ const Description<SeriesPid>& series() {
             .field("Ti", &SeriesPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.required = true, .unit = "time"})
             .field("Td", &SeriesPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
-        return with_weights(d).field(
-            "b_equivalent", &SeriesPid::b_equivalent, number(),
-            "Ti'/Ti: what b = 1 in the series form amounts to in the ideal one. Only in answers.",
-            {.answer_only = true});
+        with_weights(d).field("b_equivalent", &SeriesPid::b_equivalent, number(),
+                              "Ti'/Ti: what b = 1 in the series form amounts to in the ideal one. Only in answers.",
+                              {.answer_only = true});
+        return d;
     }();
     return description;
 }
@@ -260,7 +262,7 @@ const Description<Npid>& nonlinear() {
                    {.unit = "y"});
         fixed_weight(d, "b", 1, "Set-point weight of the proportional part: 1.");
         fixed_weight(d, "c", 0, "Set-point weight of the derivative part: 0.");
-        return with_filter_and_action(d)
+        with_filter_and_action(d)
             .check([](const Json&, Npid& pid, Reader& reader) {
                 if (pid.filter.type != FilterType::none && pid.filter.type != FilterType::derivative)
                     reader.fault_at("filter",
@@ -268,6 +270,7 @@ const Description<Npid>& nonlinear() {
                                     "derivative: its integral sees the error itself. Choose one of these.");
             })
             .example({{"form", "npid"}, {"Kp", 3.8}, {"Ti", 9.9}, {"Td", 1.4}, {"delta_r", 1}});
+        return d;
     }();
     return description;
 }

@@ -56,7 +56,8 @@ const Description<Uncertainty>& uncertainty_contract(const std::string& type) {
             d.field("T2", &Uncertainty::T2, factors(), "Of T2.");
         }
         d.field("L", &Uncertainty::L, factors(), "Of the dead time.");
-        return d.example({{"K", {0.8, 1.2}}, {"L", {0.9, 1.2}}});
+        d.example({{"K", {0.8, 1.2}}, {"L", {0.9, 1.2}}});
+        return d;
     }();
     return description;
 }
@@ -100,7 +101,8 @@ const Description<Fopdt>& fopdt() {
                 "T", &Fopdt::T, number(),
                 "Time constant; negative: an unstable plant (k/(tau s - 1) is K = -k, T = -tau); 0: a pure dead time.",
                 {.required = true, .unit = "time"});
-        return with_dead_time(d, true).example({{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}});
+        with_dead_time(d, true).example({{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}});
+        return d;
     }();
     return description;
 }
@@ -114,7 +116,8 @@ const Description<Sopdt>& sopdt() {
                    "First time constant; negative: unstable. (Oscillatory plants: T and zeta instead of T1 and T2.)",
                    {.required = true, .unit = "time"})
             .field("T2", &Sopdt::T2, number(), "Second time constant.", {.required = true, .unit = "time"});
-        return with_dead_time(d, true).example({{"type", "sopdt"}, {"K", 1.5}, {"T1", 12}, {"T2", 4}, {"L", 2}});
+        with_dead_time(d, true).example({{"type", "sopdt"}, {"K", 1.5}, {"T1", 12}, {"T2", 4}, {"L", 2}});
+        return d;
     }();
     return description;
 }
@@ -129,8 +132,8 @@ const Description<OscillatorySopdt>& oscillatory_sopdt() {
                    "1/T is the undamped angular frequency.", {.required = true, .unit = "time"})
             .field("zeta", &OscillatorySopdt::zeta, number(), "Relative damping; below 0 the plant is unstable.",
                    {.required = true});
-        return with_dead_time(d, true).example(
-            {{"type", "sopdt"}, {"K", 1}, {"T", 0.333}, {"zeta", 0.167}, {"L", 0.1}});
+        with_dead_time(d, true).example({{"type", "sopdt"}, {"K", 1}, {"T", 0.333}, {"zeta", 0.167}, {"L", 0.1}});
+        return d;
     }();
     return description;
 }
@@ -142,7 +145,8 @@ const Description<Ipdt>& ipdt() {
             .field("K", &Ipdt::K, gain(), "Slope of y per unit of u, any sign.",
                    {.required = true, .unit = "y/(u time)"});
         with_dead_time(d, true).field("T", &Ipdt::T, number(), "Lag.", {.unit = "time"});
-        return d.example({{"type", "ipdt"}, {"K", 0.05}, {"L", 4}});
+        d.example({{"type", "ipdt"}, {"K", 0.05}, {"L", 4}});
+        return d;
     }();
     return description;
 }
@@ -155,8 +159,9 @@ const Description<TransferFunction>& transfer_function() {
                    {.required = true})
             .field("den", &TransferFunction::den, numbers(1, kMaxOrder + 1), "Denominator, descending powers of s.",
                    {.required = true});
-        return with_dead_time(d, false).example(
+        with_dead_time(d, false).example(
             {{"type", "transfer_function"}, {"num", {1}}, {"den", {1, 3, 3, 1}}, {"L", 0.5}});
+        return d;
     }();
     return description;
 }
@@ -215,12 +220,12 @@ const Description<Zpk>& zpk() {
             .field("zeros", &Zpk::zeros, roots(), "Zeros: numbers, or [re, im] in conjugate pairs.", {.unit = "1/time"})
             .field("poles", &Zpk::poles, roots(), "Poles: numbers, or [re, im] in conjugate pairs.",
                    {.required = true, .unit = "1/time"});
-        return with_dead_time(d, false).example(
-            {{"type", "zpk"},
-             {"K", 6},
-             {"zeros", {-1}},
-             {"poles", Json::array({-3, Json::array({-1, 2}), Json::array({-1, -2})})},
-             {"L", 0.2}});
+        with_dead_time(d, false).example({{"type", "zpk"},
+                                          {"K", 6},
+                                          {"zeros", {-1}},
+                                          {"poles", Json::array({-3, Json::array({-1, 2}), Json::array({-1, -2})})},
+                                          {"L", 0.2}});
+        return d;
     }();
     return description;
 }
@@ -273,10 +278,11 @@ const Description<StateSpace>& state_space() {
             .field("B", &StateSpace::B, vector(), "Input column, n numbers.", {.required = true})
             .field("C", &StateSpace::C, vector(), "Output row, n numbers.", {.required = true})
             .field("D", &StateSpace::D, direct_term(), "Direct term.");
-        return with_dead_time(d, false).example({{"type", "state_space"},
-                                                 {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
-                                                 {"B", {1, 0}},
-                                                 {"C", {0, 1}}});
+        with_dead_time(d, false).example({{"type", "state_space"},
+                                          {"A", Json::array({Json::array({-1, 0}), Json::array({1, -2})})},
+                                          {"B", {1, 0}},
+                                          {"C", {0, 1}}});
+        return d;
     }();
     return description;
 }

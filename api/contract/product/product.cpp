@@ -60,7 +60,7 @@ public:
                               const std::optional<double> number = get(value);
                               number ? out.number(*number) : out.null();
                           },
-                          maybe_number_schema, std::move(sentence), {.unit = std::move(unit)});
+                          maybe_number_schema, std::move(sentence), {.unit = unit});
         return *this;
     }
     template <class Get>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "engine/plant/expression/scalar.h"
 #include "engine/plant/expression/tokens.h"
 
 namespace tunewright {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/plant/expression/program.h"
+#include "engine/plant/expression/scalar.h"
 
 namespace tunewright {
 

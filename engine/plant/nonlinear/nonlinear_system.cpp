@@ -10,6 +10,7 @@
 #include "engine/expected.h"
 #include "engine/number_text.h"
 #include "engine/numerics/linear_algebra.h"
+#include "engine/plant/expression/program_run.h"
 #include "engine/plant/expression/tokens.h"
 
 namespace tunewright {

@@ -12,6 +12,7 @@
 #include "engine/number_text.h"
 #include "engine/plant/expression/parser.h"
 #include "engine/plant/expression/program_builder.h"
+#include "engine/plant/expression/program_run.h"
 #include "engine/plant/expression/tokens.h"
 #include "engine/plant/nonlinear/nonlinear_plant.h"
 

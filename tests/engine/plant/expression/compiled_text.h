@@ -5,6 +5,7 @@
 
 #include "engine/plant/expression/parser.h"
 #include "engine/plant/expression/program_builder.h"
+#include "engine/plant/expression/program_run.h"
 
 namespace tunewright {
 

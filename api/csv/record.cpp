@@ -52,7 +52,7 @@ private:
             }
         }
         return "csv has no line of numbers in columns, nor lines that name two values or more each; it begins with " +
-               quoted(first_line()) +
+               in_quotes(first_line()) +
                ". Export a heading line such as t,u,y and one line a sample, with all its values.";
     }
 
@@ -241,13 +241,14 @@ private:
 
     std::string column_name(Role role) const {
         const std::size_t column = *columns_.at[role];
-        return column < layout_.headings.size() && !layout_.headings[column].empty() ? quoted(layout_.headings[column])
-                                                                                     : role_name(role);
+        return column < layout_.headings.size() && !layout_.headings[column].empty()
+                   ? in_quotes(layout_.headings[column])
+                   : role_name(role);
     }
 
     void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
-        const std::string reason = ", column " + column_name(role) + ": " + quoted(text) + " is not " +
+        const std::string reason = ", column " + column_name(role) + ": " + in_quotes(text) + " is not " +
                                    (stamps ? "a time stamp like the first." : "a number.");
         const char* cure = other_separator ? " The line is not separated like the others."
                                            : " Mend the line, or leave the cell blank to drop it.";
@@ -259,14 +260,14 @@ private:
 
     void report_size(const CsvLine& line, Role role) {
         fault("csv", "Line " + std::to_string(line.number) + ", column " + column_name(role) + ": " +
-                         quoted(cell(line, *columns_.at[role])) +
+                         in_quotes(cell(line, *columns_.at[role])) +
                          " is beyond 1e30, no measurement. Mend the line, or leave the cell blank to drop it.");
     }
 
     void note_switch() {
         std::string levels;
-        if (!low_word_.empty()) levels = quoted(low_word_) + " is 0";
-        if (!high_word_.empty()) levels += (levels.empty() ? "" : " and ") + quoted(high_word_) + " is 1";
+        if (!low_word_.empty()) levels = in_quotes(low_word_) + " is 0";
+        if (!high_word_.empty()) levels += (levels.empty() ? "" : " and ") + in_quotes(high_word_) + " is 1";
         if (!levels.empty())
             record_.notes.emplace_back("u is two levels: " + levels +
                                        ". The gain is per switch, not per unit of power.");
@@ -279,8 +280,8 @@ private:
         if (unit.empty()) unit = profiles_[column].suffix;
         if (unit.empty() || unit == given) return;
         record_.notes.push_back(
-            role_name(role) + " is in " + quoted(unit) + " by the file" +
-            (given.empty() ? "." : ", and " + quoted(given) + " was given: the numbers are used as they are."));
+            role_name(role) + " is in " + in_quotes(unit) + " by the file" +
+            (given.empty() ? "." : ", and " + in_quotes(given) + " was given: the numbers are used as they are."));
     }
 
     void write_notes(std::optional<TimeColumn>& times) {
@@ -290,7 +291,7 @@ private:
             for (std::string& note : times->take_notes()) notes.push_back(std::move(note));
         }
         if (columns_.spacing)
-            notes.emplace_back("Times are made from column " + quoted(layout_.headings[*columns_.spacing]) +
+            notes.emplace_back("Times are made from column " + in_quotes(layout_.headings[*columns_.spacing]) +
                                ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
         if (layout_.skipped > 0)
             notes.push_back(std::to_string(layout_.skipped) +
@@ -308,7 +309,7 @@ private:
             record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +
                              (unread_ == 1 ? "was" : "were") + " left out: " + first.substr(0, first.find(". ")) + ".";
         }
-        if (!missing_word_.empty()) notes.push_back(quoted(missing_word_) + " and the like are read as no value.");
+        if (!missing_word_.empty()) notes.push_back(in_quotes(missing_word_) + " and the like are read as no value.");
         note_unit(kInputRole, options_.unit_u);
         note_unit(kOutputRole, options_.unit_y);
     }

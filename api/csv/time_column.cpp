@@ -21,7 +21,7 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Fou
     }
     const auto answer = seconds_per(options.time_unit);
     if (!answer) {
-        faults.push_back({"csv", "The times are time stamps, and the unit of time is " + quoted(options.time_unit) +
+        faults.push_back({"csv", "The times are time stamps, and the unit of time is " + in_quotes(options.time_unit) +
                                      "; it must be a unit that they can be converted to: ms, s, min, h or d."});
         return;
     }
@@ -39,7 +39,7 @@ void TimeColumn::note_short_clock(std::string_view text, const CsvLayout& layout
         const std::string_view cell = line.cells[column];
         const auto stamp = read_time_stamp(cell);
         if (stamp && !stamp->has_date && std::count(cell.begin(), cell.end(), ':') == 1)
-            notes_.push_back("Times such as " + quoted(cell) + " are read as hours and minutes; write 0:" +
+            notes_.push_back("Times such as " + in_quotes(cell) + " are read as hours and minutes; write 0:" +
                              std::string(cell) + " for minutes and seconds.");
         return;
     }

@@ -61,7 +61,7 @@ bool ColumnFacts::held(std::size_t a, std::size_t b) const {
 }
 
 std::string ColumnFacts::shown(std::size_t column) const {
-    return column < layout_.headings.size() && !layout_.headings[column].empty() ? quoted(layout_.headings[column])
+    return column < layout_.headings.size() && !layout_.headings[column].empty() ? in_quotes(layout_.headings[column])
                                                                                  : std::to_string(column + 1);
 }
 
@@ -75,12 +75,12 @@ std::string ColumnFacts::shown(const std::vector<std::size_t>& columns) const {
 std::string ColumnFacts::headings_listed() const {
     std::vector<std::string> names;
     for (const std::string& heading : layout_.headings) {
-        if (!tunewright::api::is_index(heading)) names.push_back(quoted(heading));
+        if (!tunewright::api::is_index(heading)) names.push_back(in_quotes(heading));
     }
     return listed(names, "and");
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t kShownLength = 40;
     std::string out(text.substr(0, kShownLength));
     if (out.size() < text.size()) {

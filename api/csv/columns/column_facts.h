@@ -44,6 +44,6 @@ private:
 };
 
 /// The first 40 bytes in quotes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace tunewright::api

@@ -11,7 +11,7 @@ namespace {
 std::vector<std::string> quoted_all(const std::vector<std::string>& texts) {
     std::vector<std::string> out;
     out.reserve(texts.size());
-    for (const std::string& text : texts) out.push_back(quoted(text));
+    for (const std::string& text : texts) out.push_back(in_quotes(text));
     return out;
 }
 

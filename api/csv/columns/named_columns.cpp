@@ -24,7 +24,7 @@ std::optional<std::size_t> loosely(const ColumnFacts& facts, Role role, const st
     for (std::size_t i = 0; i < headings.size(); ++i) {
         if (lower_case(headings[i]) != wanted && facts.heading(i).name != wanted) continue;
         if (found) {
-            faults.push_back(column_fault(role, role_name(role) + " is " + quoted(text) +
+            faults.push_back(column_fault(role, role_name(role) + " is " + in_quotes(text) +
                                                     ", which fits several headings: " + facts.headings_listed() +
                                                     ". Write the heading in full."));
             return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<std::size_t> loosely(const ColumnFacts& facts, Role role, const st
         found = i;
     }
     if (!found)
-        faults.push_back(column_fault(role, role_name(role) + " is " + quoted(text) +
+        faults.push_back(column_fault(role, role_name(role) + " is " + in_quotes(text) +
                                                 ", which is not a heading; the headings are " +
                                                 facts.headings_listed() + "."));
     return found;
@@ -46,7 +46,7 @@ std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, co
     const auto& text = std::get<std::string>(choice);
     const auto& headings = facts.layout().headings;
     if (headings.empty()) {
-        faults.push_back(column_fault(role, role_name(role) + " is " + quoted(text) +
+        faults.push_back(column_fault(role, role_name(role) + " is " + in_quotes(text) +
                                                 ", but the first line of the csv has no headings; give column numbers "
                                                 "from 1, or add a heading line."));
         return std::nullopt;

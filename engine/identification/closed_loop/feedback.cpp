@@ -10,8 +10,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinMoves = 12;     ///< fewer moves of u tell no law
-constexpr double kTiny = 1e-150;  ///< keeps a division by what may be 0 finite; its square is too
+constexpr int kMinMoves = 12;         ///< fewer moves of u tell no law
+constexpr double kTinyRoot = 1e-150;  ///< keeps a division by what may be 0 finite; its square is too
 
 /// Least squares that a few outliers, the set point's moves, do not bend.
 struct Regression {
@@ -34,7 +34,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
     constexpr double kRidge = 1e-12;  // of a column's length squared: dependent columns share their coefficient
     const Eigen::Index n = z.size(), m = X.cols();
     Eigen::VectorXd length(m);
-    for (Eigen::Index k = 0; k < m; ++k) length[k] = std::max(X.col(k).norm(), kTiny);
+    for (Eigen::Index k = 0; k < m; ++k) length[k] = std::max(X.col(k).norm(), kTinyRoot);
     const Eigen::MatrixXd Y = X * length.cwiseInverse().asDiagonal();
     Regression out;
     out.usual.assign(static_cast<std::size_t>(n), 1);
@@ -62,7 +62,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
 /// Root mean squares of two regressions of the same z over the rows usual to both.
 struct Errors {
     double a = 0, b = 0;
-    double ratio() const { return b / std::max(a, kTiny); }
+    double ratio() const { return b / std::max(a, kTinyRoot); }
 };
 
 Errors compare(const Regression& a, const Regression& b) {
@@ -308,7 +308,7 @@ double restlessness(const CleanRecord& r) {
     const std::optional<Moves> moves = possible_moves(r, u);
     if (!moves || moves->size() < kOften * r.samples() || is_law_of_lag(r, u)) return 0;
     const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
-    return compare(p.by_u, p.by_u).a / std::max(deviation(u), kTiny);
+    return compare(p.by_u, p.by_u).a / std::max(deviation(u), kTinyRoot);
 }
 
 std::optional<Feedback> find_feedback(const CleanRecord& r) {

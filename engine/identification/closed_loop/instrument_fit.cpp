@@ -14,8 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNoLength = 1e-12;  ///< a column of zeros keeps a length to divide by
-constexpr double kTiny = 1e-300;     ///< keeps a division by what may be 0 finite
+constexpr double kNoLength = 1e-12;     ///< a column of zeros keeps a length to divide by
+constexpr double kNoVariance = 1e-300;  ///< keeps a division by what may be 0 finite
 
 /// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
 VectorXd whitening(const VectorXd& e) {
@@ -279,13 +279,13 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
     const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
     // A filter of a few rows does not make white what a load leaves for the rest of the record.
     const InstrumentEquations unfiltered(rows, VectorXd::Ones(1), free);
-    const double scale = here.length[place], white = std::max(gain_variance(here, place), kTiny);
+    const double scale = here.length[place], white = std::max(gain_variance(here, place), kNoVariance);
     const double slow =
         std::max(kOfUnfiltered * gain_variance(unfiltered, place), jackknife(here, place) / (scale * scale)) / white;
     out.fit.deviations = deviations_of(here, free, rows.J.cols(), std::max({1.0, out.mismatch / kUsualMismatch, slow}));
     double squares = 0;
     for (const auto& row : out.fit.deviations) squares += row[gain] * row[gain];
-    out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), kTiny);
+    out.gain_error = std::sqrt(squares) / std::max(std::abs(fit.linear[0]), kNoVariance);
     if (!std::isfinite(out.fit.sse) || !std::isfinite(out.gain_error)) return std::nullopt;
     return out;
 }

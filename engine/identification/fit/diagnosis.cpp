@@ -17,7 +17,7 @@ double root_mean_square(const std::vector<double>& x) {
            std::sqrt(static_cast<double>(x.size()));
 }
 
-constexpr double kTiny = 1e-300;         ///< keeps a division by what may be 0 finite
+constexpr double kTinyDivisor = 1e-300;  ///< keeps a division by what may be 0 finite
 constexpr double kSettledWithin = 0.05;  ///< of the largest distance from rest, as in settling times of 5 %
 
 bool self_regulating(const Fit& fit) {
@@ -35,7 +35,7 @@ double remaining_movement(const CleanRecord& r, const Fit& fit) {
     double moved = 0;
     for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
     const double final_value = fit.linear[0] * r.v_level.back() + offset;
-    return std::abs(final_value - fit.model.back()) / std::max(moved, kTiny);
+    return std::abs(final_value - fit.model.back()) / std::max(moved, kTinyDivisor);
 }
 
 void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {

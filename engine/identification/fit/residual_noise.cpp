@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, few enough to be slow
 
-constexpr double kTiny = 1e-150;         ///< keeps the logarithm of what may be 0 finite
-constexpr std::size_t kLongest = 20;     ///< times the series: so far an answer near the unit circle is followed
-constexpr std::size_t kLeastAnswer = 8;  ///< steps of an impulse response before it may count as faded
-constexpr double kFaded = 1e-6;          ///< of the impulse: two values in a row below it end the answer
-constexpr double kNoMore = 1e-12;        ///< of the sum so far: rows that add less are left out
+constexpr double kLeastVariance = 1e-150;  ///< keeps the logarithm of what may be 0 finite
+constexpr std::size_t kLongest = 20;       ///< times the series: so far an answer near the unit circle is followed
+constexpr std::size_t kLeastAnswer = 8;    ///< steps of an impulse response before it may count as faded
+constexpr double kFaded = 1e-6;            ///< of the impulse: two values in a row below it end the answer
+constexpr double kNoMore = 1e-12;          ///< of the sum so far: rows that add less are left out
 
 /// Burg's estimates of the orders 0 to `highest`, or fewer where the series is short.
 std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
@@ -50,7 +50,7 @@ Autoregression autoregression(std::span<const double> e, std::size_t highest) {
     const auto n = static_cast<double>(e.size());
     const std::vector<Autoregression> orders = burg(e, highest);
     const auto criterion = [&](const Autoregression& model) {
-        return 2 * n * std::log(std::max(model.innovation, kTiny)) + 2 * static_cast<double>(model.a.size());
+        return 2 * n * std::log(std::max(model.innovation, kLeastVariance)) + 2 * static_cast<double>(model.a.size());
     };
     return *std::ranges::min_element(orders, {}, criterion);
 }

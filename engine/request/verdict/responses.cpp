@@ -27,7 +27,7 @@ constexpr Share kShares[] = {{0.09, 0.11, "about a tenth of"},
                              {1.9, 2.1, "about twice"},
                              {2.85, 3.15, "about three times"}};
 
-const Performance* todays(const Case& c) {
+const Performance* todays_performance(const Case& c) {
     if (c.today == nullptr) return nullptr;
     return &performance_of(*c.today);
 }
@@ -53,7 +53,7 @@ Found load_error(const Case& c) {
     Draft draft(c.today != nullptr ? "against-today" : "load-error", Level::note);
     draft.say("A load step gives an integrated absolute error of ")
         .number("load_IAE", *IAE, product_unit(labels.y, labels.time));
-    const Performance* today = todays(c);
+    const Performance* today = todays_performance(c);
     if (today == nullptr) return draft.say(".");
     const Robustness& runs = c.today->as_built ? c.today->as_built->loop.robustness : c.today->evaluation->robustness;
     if (!runs.stable) return draft.say("; today's settings are unstable.");
@@ -76,7 +76,7 @@ Found overshoot(const Case& c) {
 }
 
 Found movement(const Case& c) {
-    const Performance* today = todays(c);
+    const Performance* today = todays_performance(c);
     const Figure& TV = c.performance().setpoint.TV;
     if (today == nullptr || !TV || !today->setpoint.TV || !(*today->setpoint.TV > 0)) return {};
     const double ratio = *TV / *today->setpoint.TV;

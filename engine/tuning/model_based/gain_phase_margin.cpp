@@ -10,13 +10,13 @@
 namespace tunewright {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;
 
 SeriesPid settings(const ReducedModel& model, const GainPhaseMarginOptions& margins) {
-    const double Am = margins.gain_margin, phi = margins.phase_margin_deg * pi / 180, L = model.L;
-    const double omega = (Am * phi + 0.5 * pi * Am * (Am - 1)) / ((Am * Am - 1) * L);
+    const double Am = margins.gain_margin, phi = margins.phase_margin_deg * kPi / 180, L = model.L;
+    const double omega = (Am * phi + 0.5 * kPi * Am * (Am - 1)) / ((Am * Am - 1) * L);
     return {.Kp = omega * model.T1 / (Am * model.K),
-            .Ti = 1 / (2 * omega - 4 * omega * omega * L / pi + 1 / model.T1),
+            .Ti = 1 / (2 * omega - 4 * omega * omega * L / kPi + 1 / model.T1),
             .Td = model.T2};
 }
 
@@ -29,7 +29,7 @@ Error contradiction(const GainPhaseMarginOptions& margins) {
                 text(90 * (1 - 1 / margins.gain_margin)) + " degrees."};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const GainPhaseMarginOptions& options) {
+Expected<TunedController> tune_gain_phase_margin(const TuningProblem& problem, const GainPhaseMarginOptions& options) {
     const bool wants_PID = options.controller == ControllerKind::PID;
     const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
@@ -66,7 +66,7 @@ TuningMethod gain_phase_margin_method() {
                    {.unit = "deg", .exclusive_minimum = 0, .maximum = 89});
     add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune);
+    method.serve(options, tune_gain_phase_margin);
     return method;
 }
 

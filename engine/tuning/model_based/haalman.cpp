@@ -8,7 +8,7 @@
 namespace tunewright {
 namespace {
 
-Expected<TunedController> tune(const TuningProblem& problem, const HaalmanOptions& options) {
+Expected<TunedController> tune_haalman(const TuningProblem& problem, const HaalmanOptions& options) {
     const bool wants_PID = options.controller == ControllerKind::PID;
     const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
@@ -39,7 +39,7 @@ TuningMethod haalman_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune);
+    method.serve(options, tune_haalman);
     return method;
 }
 

@@ -7,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-IdealPid pi(const ReducedModel& model, double tau_c) {
+IdealPid improved_pi(const ReducedModel& model, double tau_c) {
     const double horizon = tau_c + model.L, T = model.T1 + model.L / 3;
     if (model.integrators == 1) return {.Kp = 1 / (model.K * horizon), .Ti = 4 * horizon};
     return {.Kp = T / (model.K * horizon), .Ti = std::min(T, 4 * horizon)};
@@ -15,7 +15,7 @@ IdealPid pi(const ReducedModel& model, double tau_c) {
 
 // Series Kp, Ti, Td as Kp (1 + Td/Ti), Ti + Td, Ti Td/(Ti + Td); written without the quotient Kp/Ti = 0/0 that a pure
 // dead time would give.
-IdealPid pid(const ReducedModel& model, double tau_c) {
+IdealPid improved_pid(const ReducedModel& model, double tau_c) {
     const double horizon = tau_c + model.L, Td = model.L / 3;
     const bool integrates = model.integrators == 1;
     const double Ti = integrates ? 4 * horizon : std::min(model.T1, 4 * horizon);
@@ -24,7 +24,7 @@ IdealPid pid(const ReducedModel& model, double tau_c) {
     return {.Kp = Kp + Ki * Td, .Ti = Ti + Td, .Td = Ti * Td / (Ti + Td)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const ImprovedSimcOptions& options) {
+Expected<TunedController> tune_improved_simc(const TuningProblem& problem, const ImprovedSimcOptions& options) {
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::half_rule});
     if (!model) return model.error();
     if (model->L <= 0)
@@ -33,7 +33,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const ImprovedSimcO
     const bool wants_PID = options.controller == ControllerKind::PID;
     const double least = wants_PID ? model->L / 2 : model->L;
     const double tau_c = options.tau_c.value_or(least);
-    IdealPid answer = wants_PID ? pid(*model, tau_c) : pi(*model, tau_c);
+    IdealPid answer = wants_PID ? improved_pid(*model, tau_c) : improved_pi(*model, tau_c);
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
     if (tau_c < least)
@@ -65,7 +65,7 @@ TuningMethod improved_simc_method() {
         {.unit = "time", .exclusive_minimum = 0});
     add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune);
+    method.serve(options, tune_improved_simc);
     return method;
 }
 

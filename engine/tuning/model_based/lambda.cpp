@@ -12,13 +12,13 @@ double default_lambda(const ReducedModel& model) {
     return model.integrators == 1 ? std::sqrt(10.0) * model.L : std::max(model.T1, model.L);
 }
 
-IdealPid pi(const ReducedModel& model, double lambda) {
+IdealPid lambda_pi(const ReducedModel& model, double lambda) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1) return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L, 2)), .Ti = 2 * lambda + L};
     return {.Kp = T / (K * (lambda + L)), .Ti = T};
 }
 
-IdealPid pid(const ReducedModel& model, double lambda) {
+IdealPid lambda_pid(const ReducedModel& model, double lambda) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1)
         return {.Kp = (2 * lambda + L) / (K * std::pow(lambda + L / 2, 2)),
@@ -41,7 +41,7 @@ std::vector<Warning> remarks(const ReducedModel& model, double lambda, bool want
                              ", the least that the source recommends for this model. Give a larger lambda.")};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const LambdaOptions& options) {
+Expected<TunedController> tune_lambda(const TuningProblem& problem, const LambdaOptions& options) {
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators == 0 && model->T1 <= 0)
@@ -54,7 +54,7 @@ Expected<TunedController> tune(const TuningProblem& problem, const LambdaOptions
                           "Give lambda, the closed-loop time constant that you want.");
 
     const bool wants_PID = options.controller == ControllerKind::PID;
-    IdealPid controller = wants_PID ? pid(*model, lambda) : pi(*model, lambda);
+    IdealPid controller = wants_PID ? lambda_pid(*model, lambda) : lambda_pi(*model, lambda);
     controller.filter = chosen_filter(options.filter, FilterType::derivative, controller.Td);
     return rule_answer(problem, *model, controller, remarks(*model, lambda, wants_PID));
 }
@@ -87,7 +87,7 @@ TuningMethod lambda_method() {
         {.unit = "time", .exclusive_minimum = 0});
     add_reduction(options, "tangent, half_rule where the step response has no tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
-    method.serve(options, tune);
+    method.serve(options, tune_lambda);
     return method;
 }
 

@@ -55,7 +55,7 @@ std::optional<Error> unfit(const ReducedModel& model, double tau_c) {
     return std::nullopt;
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const SimcOptions& options) {
+Expected<TunedController> tune_simc(const TuningProblem& problem, const SimcOptions& options) {
     const bool wants_PID = options.controller == ControllerKind::PID;
     const auto model = half_rule_model(problem, options.reduction, options.controller);
     if (!model) return model.error();
@@ -94,7 +94,7 @@ TuningMethod simc_method() {
         {.unit = "time", .exclusive_minimum = 0});
     add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune);
+    method.serve(options, tune_simc);
     return method;
 }
 

@@ -14,7 +14,8 @@ using enum FittedCriterion;
 const std::map<FittedCriterion, Row> kTable{
     {ise, {1.37, 1.49, 0.59}}, {itse, {1.36, 1.66, 0.53}}, {istse, {1.34, 1.83, 0.49}}};
 
-Expected<TunedController> tune(const TuningProblem& problem, const VisioliIntegratingOptions& options) {
+Expected<TunedController> tune_visioli_integrating(const TuningProblem& problem,
+                                                   const VisioliIntegratingOptions& options) {
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators != 1)
@@ -45,7 +46,7 @@ TuningMethod visioli_integrating_method() {
     add_criterion(options, {istse, itse, ise});
     add_reduction(options, "the asymptote of the ramp; half_rule where that leads the step.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune);
+    method.serve(options, tune_visioli_integrating);
     return method;
 }
 

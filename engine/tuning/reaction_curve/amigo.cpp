@@ -7,14 +7,14 @@
 namespace tunewright {
 namespace {
 
-IdealPid pi(const ReducedModel& model) {
+IdealPid amigo_pi(const ReducedModel& model) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1) return {.Kp = 0.35 / (K * L), .Ti = 13.4 * L};
     return {.Kp = (0.15 + (0.35 - L * T / std::pow(L + T, 2)) * T / L) / K,
             .Ti = 0.35 * L + 13 * L * T * T / (T * T + 12 * L * T + 7 * L * L)};
 }
 
-IdealPid pid(const ReducedModel& model) {
+IdealPid amigo_pid(const ReducedModel& model) {
     const double K = model.K, T = model.T1, L = model.L;
     if (model.integrators == 1) return {.Kp = 0.45 / (K * L), .Ti = 8 * L, .Td = 0.5 * L, .b = 0};
     return {.Kp = (0.2 + 0.45 * T / L) / K,
@@ -34,7 +34,7 @@ Expected<TunedController> tune_amigo(const TuningProblem& problem, const AmigoOp
                           "a fixed filter Tf.");
 
     const bool wants_PID = options.controller == ControllerKind::PID;
-    IdealPid controller = wants_PID ? pid(*model) : pi(*model);
+    IdealPid controller = wants_PID ? amigo_pid(*model) : amigo_pi(*model);
     controller.filter = chosen_filter(options.filter, FilterType::measurement_second_order, controller.Td);
 
     std::vector<Warning> warnings;

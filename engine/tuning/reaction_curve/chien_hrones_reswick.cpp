@@ -16,7 +16,8 @@ IdealPid servo(ControllerKind controller, bool overshoots, double a, double T, d
     return {.Kp = (overshoots ? 0.95 : 0.6) / a, .Ti = (overshoots ? 1.4 : 1) * T, .Td = (overshoots ? 0.47 : 0.5) * L};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const ChienHronesReswickOptions& options) {
+Expected<TunedController> tune_chien_hrones_reswick(const TuningProblem& problem,
+                                                    const ChienHronesReswickOptions& options) {
     const ControllerKind controller = options.controller;
     const bool for_load = options.mode == Mode::regulation;
     const bool overshoots = options.overshoot == DesignOvershoot::twenty_percent;
@@ -67,7 +68,7 @@ TuningMethod chien_hrones_reswick_method() {
         {"PID, servo, 0 %", options.given_for({.mode = Mode::servo})},
         {"PID, servo, 20 %", options.given_for({.mode = Mode::servo, .overshoot = twenty_percent})},
     };
-    method.serve(options, tune);
+    method.serve(options, tune_chien_hrones_reswick);
     return method;
 }
 

@@ -10,7 +10,7 @@ IdealPid settings(ControllerKind controller, const ReducedModel& model) {
     return {.Kp = unit * (4.0 / 3 + q / 4), .Ti = L * (32 + 6 * q) / (13 + 8 * q), .Td = 4 * L / (11 + 2 * q)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const CohenCoonOptions& options) {
+Expected<TunedController> tune_cohen_coon(const TuningProblem& problem, const CohenCoonOptions& options) {
     return tune_first_order(problem, options.model,
                             {.name = "Cohen-Coon", .least = 0.1, .most = 1, .tangent_time = TangentTime::by_slope},
                             [&](const ReducedModel& model) { return settings(options.controller, model); });
@@ -31,7 +31,7 @@ TuningMethod cohen_coon_method() {
     OptionSet<CohenCoonOptions> options;
     add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
     options.embed(&CohenCoonOptions::model, first_order_options());
-    method.serve(options, tune);
+    method.serve(options, tune_cohen_coon);
     return method;
 }
 

@@ -31,7 +31,7 @@ IdealPid settings(const Row& row, const ReducedModel& model) {
             .b = std::min(1.0, row.b.at(tau))};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const KappaTauOptions& options) {
+Expected<TunedController> tune_kappa_tau(const TuningProblem& problem, const KappaTauOptions& options) {
     const bool robust = options.table_Ms == TableMs::Ms_1_4;
     const bool wants_PID = options.controller == ControllerKind::PID;
     const Row& row = wants_PID ? (robust ? kPID14 : kPID20) : (robust ? kPI14 : kPI20);
@@ -66,7 +66,7 @@ TuningMethod kappa_tau_method() {
     method.variants = {{"PI, Ms = 1.4", options.given_for({.controller = ControllerKind::PI})},
                        {"PID, Ms = 1.4", {}},
                        {"PID, Ms = 2", options.given_for({.table_Ms = TableMs::Ms_2_0})}};
-    method.serve(options, tune);
+    method.serve(options, tune_kappa_tau);
     return method;
 }
 

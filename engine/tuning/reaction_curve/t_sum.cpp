@@ -39,7 +39,7 @@ std::vector<Warning> remarks(const LinearPlant& plant, double T_sum, const TSumO
                              "the normal ones, or robust.")};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const TSumOptions& options) {
+Expected<TunedController> tune_t_sum(const TuningProblem& problem, const TSumOptions& options) {
     const LinearPlant& plant = problem.linear;
     const double T_sum = plant.lag_sum() + plant.dead_time();
     if (const auto error = unfit(plant, T_sum, options)) return *error;
@@ -68,7 +68,7 @@ TuningMethod t_sum_method() {
                    Words<TSumSpeed>{{"normal", TSumSpeed::normal}, {"fast", TSumSpeed::fast}});
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
     method.variants = {{"PI", options.given_for({.controller = PI})}, {"PID", {}}};
-    method.serve(options, tune);
+    method.serve(options, tune_t_sum);
     return method;
 }
 

@@ -11,7 +11,8 @@ IdealPid settings(ControllerKind controller, double a, double L) {
     return {.Kp = 1.2 / a, .Ti = 2 * L, .Td = 0.5 * L};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const ZieglerNicholsStepOptions& options) {
+Expected<TunedController> tune_ziegler_nichols_step(const TuningProblem& problem,
+                                                    const ZieglerNicholsStepOptions& options) {
     const auto model = rule_model(problem, options.reduction,
                                   {.preferred = ReductionMethod::tangent, .tangent_time = TangentTime::by_slope});
     if (!model) return model.error();
@@ -59,7 +60,7 @@ TuningMethod ziegler_nichols_step_method() {
         "tangent, as in the source, here with T = static gain over steepest slope; half_rule where there is no "
         "tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
-    method.serve(options, tune);
+    method.serve(options, tune_ziegler_nichols_step);
     return method;
 }
 

@@ -14,7 +14,7 @@ IdealPid settings(ControllerKind controller, double kappa, const UltimatePoint& 
             .Td = 0.15 * at.Pu * (1 - kappa) / (1 - 0.95 * kappa)};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const AmigoUltimateOptions& options) {
+Expected<TunedController> tune_amigo_ultimate(const TuningProblem& problem, const AmigoUltimateOptions& options) {
     const auto at = chosen_ultimate_point(problem, options.point);
     if (!at) return at.error();
     const LinearPlant& plant = problem.linear;
@@ -51,7 +51,7 @@ TuningMethod amigo_ultimate_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     options.embed(&AmigoUltimateOptions::point, ultimate_options());
     add_filter(options, "second order on the measurement, as in the source.");
-    method.serve(options, tune);
+    method.serve(options, tune_amigo_ultimate);
     return method;
 }
 

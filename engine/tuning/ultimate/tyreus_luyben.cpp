@@ -7,18 +7,18 @@
 namespace tunewright {
 namespace {
 
-constexpr double kDeadTimeDominated = 0.5;  // 1/(K Ku)
+constexpr double kSmallGainProduct = 0.5;  // 1/(K Ku)
 
 // With an integral time of 2.2 Pu a plant of much dead time creeps to its set point.
 std::vector<Warning> sluggishness(const TuningProblem& problem, const UltimatePoint& at) {
     const double kappa = std::abs(gain_ratio(problem.linear, at));
-    if (kappa <= kDeadTimeDominated) return {};
+    if (kappa <= kSmallGainProduct) return {};
     return {outside_validity("1/(K Ku) is " + text(kappa) +
                              ", above 0.5: much dead time, for which the rule's integral time is far too long. It was "
                              "made for lag-dominated and integrating plants; use simc or robust.")};
 }
 
-Expected<TunedController> tune(const TuningProblem& problem, const TyreusLuybenOptions& options) {
+Expected<TunedController> tune_tyreus_luyben(const TuningProblem& problem, const TyreusLuybenOptions& options) {
     const auto at = chosen_ultimate_point(problem, options.point);
     if (!at) return at.error();
     IdealPid answer = options.controller == ControllerKind::PI
@@ -46,7 +46,7 @@ TuningMethod tyreus_luyben_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     options.embed(&TyreusLuybenOptions::point, ultimate_options());
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune);
+    method.serve(options, tune_tyreus_luyben);
     return method;
 }
 

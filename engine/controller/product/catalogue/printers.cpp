@@ -4,11 +4,11 @@
 namespace tunewright::product {
 namespace {
 
-constexpr double kCounts = 255;
+constexpr double kPwmCounts = 255;
 
 std::vector<Parameter> gains(std::string_view P, std::string_view I, std::string_view D, std::string_view unit,
                              std::string_view unit_I, std::string_view unit_D) {
-    const auto in_counts = [](Term term) { return times(kCounts, of_output(term)); };
+    const auto in_counts = [](Term term) { return times(kPwmCounts, of_output(term)); };
     return {{.name = P, .label = P, .unit = unit, .role = Role::gain, .term = in_counts(kKp), .range = {0, kUnbounded}},
             {.name = I,
              .label = I,

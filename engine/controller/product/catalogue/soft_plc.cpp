@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kInMilliseconds = 1000;
 
-Parameter time_of(std::string_view name, std::string_view label, Role role, Term term) {
+Parameter ms_time_of(std::string_view name, std::string_view label, Role role, Term term) {
     return {.name = name,
             .label = label,
             .unit = "ms",
@@ -27,9 +27,9 @@ Product beckhoff() {
         .parameters =
             {
                 {.name = "fKp", .label = "fKp", .role = Role::gain, .term = kKp},
-                time_of("tTn_ms", "tTn", Role::integral, kTi),
-                time_of("tTv_ms", "tTv", Role::derivative, kTd),
-                time_of("tTd_ms", "tTd", Role::filter, kTf),
+                ms_time_of("tTn_ms", "tTn", Role::integral, kTi),
+                ms_time_of("tTv_ms", "tTv", Role::derivative, kTd),
+                ms_time_of("tTd_ms", "tTd", Role::filter, kTf),
                 {.name = "bPInTheFeedbackPath",
                  .label = "bPInTheFeedbackPath",
                  .role = Role::choice,

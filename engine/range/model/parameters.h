@@ -1,0 +1,28 @@
+// A plant between two plants of the same structure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/plant/plant.h"
+
+namespace tunewright::range {
+
+/// The numbers that make a plant of its type, in a fixed order: K, T, ... L, or the coefficients of num and den, then
+/// L. Sopdt's time constants in descending order. Empty for zeros and poles and for state spaces, whose entries mean
+/// nothing between two plants.
+std::vector<double> structure_numbers(const Plant& plant);
+
+/// The same type, with the same number of coefficients.
+bool same_structure(const Plant& one, const Plant& other);
+
+/// The plant whose numbers lie `share` (0 to 1) of the way from `left` to `right`: of the logarithms, of the numbers
+/// themselves where their signs differ or one is 0. The two are of the same structure.
+Plant plant_between(const Plant& left, const Plant& right, double share);
+
+/// `plant` with what `member` has of `nominal`: each number times their ratio, or plus their difference where the ratio
+/// would be none (one is 0, or the signs differ). All three are of the same structure.
+Plant moved_alike(const Plant& plant, const Plant& nominal, const Plant& member);
+
+}  // namespace tunewright::range

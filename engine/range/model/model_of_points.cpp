@@ -162,6 +162,8 @@ public:
 
     Expected<PlaceModel> at(double place) const override {
         const auto [left, share] = neighbours(points_, place);
+        if (share == 0) return models_[left];
+        if (share == 1) return models_[left + 1];
         FrequencyResponse response{
             .omega = omega_, .re = {}, .im = {}, .unstable_poles = models_[0].nominal->unstable_poles(),
             .integrators = models_[0].nominal->integrators()};

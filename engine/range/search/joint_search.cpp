@@ -100,8 +100,11 @@ public:
             if (won > kMuchWon * promised) radius = std::min(2 * radius, kMostRadius);
             add_gradients(next);
             learn_curvature(now, next, *step);
+            const bool slow = next.excess <= 0 && won < options_.hopeless * (next.price - options_.enough);
             now = std::move(next);
             if (report) report(answer(now, result));
+            slow_steps_ = slow ? slow_steps_ + 1 : 0;
+            if (slow_steps_ == 2) break;
         }
         return answer(now, result);
     }
@@ -311,6 +314,7 @@ private:
     const JointOptions& options_;
     Layout layout_;
     MatrixXd H_;
+    int slow_steps_ = 0;
 };
 
 }  // namespace

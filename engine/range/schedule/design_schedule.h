@@ -1,0 +1,35 @@
+// The schedule with the fewest rows that keeps the limits everywhere and costs no more than is allowed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/range/one_setting.h"
+#include "engine/range/schedule/own_optima.h"
+#include "engine/range/schedule/schedule.h"
+#include "engine/warning.h"
+
+namespace tunewright::range {
+
+struct ScheduleDesign {
+    Schedule schedule;
+    bool holds_limits = false;      ///< at every place that was looked at
+    bool within_allowance = false;  ///< IAE everywhere within the allowance of the place's own optimum
+    double worst_relative_IAE = 0;  ///< over all places that were looked at
+    bool partial = false;           ///< stopped early
+    std::vector<Warning> warnings;  ///< "schedule-over-allowance"
+};
+
+/// All rows are designed together: their settings and the inner rows' places are the unknowns of one search
+/// (search_jointly) for the least of the worst price over the range, the limits held at all places of it, and verified
+/// at 200 places and more between (in every part at least nine); the worst of these join the search until none exceeds
+/// a limit by more than 2e-5 or the allowance. Of `steps` each part is one setting that serves its places and half the
+/// hysteresis beyond; parts are made as long as they can be, from the low end.
+///
+/// Without `options.rows` the fewest rows, from 1 on; where even 20 do not stay within the allowance, those that come
+/// nearest, with a warning. `own` learns the places that are looked at.
+/// Errors: those of Places::at; cancelled where nothing was found before the stop.
+Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options);
+
+}  // namespace tunewright::range

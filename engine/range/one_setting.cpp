@@ -8,7 +8,6 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/range/search/joint_search.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
 
@@ -59,7 +58,9 @@ double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim
     return aim == Aim::worst ? worst : std::log(sum / double(points.size()));
 }
 
-JointProblem joint_problem(const std::vector<Place*>& points, const RangeOptions& options) {
+}  // namespace
+
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options) {
     JointProblem joint;
     joint.places.assign(points.begin(), points.end());
     joint.aim = options.aim;
@@ -81,6 +82,8 @@ JointProblem joint_problem(const std::vector<Place*>& points, const RangeOptions
     if (n > 2) joint.high[2] = std::log(robust::kMaxTd / slowest);
     return joint;
 }
+
+namespace {
 
 /// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
 /// be moved within the limits of all points. Cheapest first.
@@ -222,7 +225,7 @@ namespace {
 Expected<JointResult> verified_end(const std::vector<Place*>& points, const RangeOptions& options,
                                    const std::vector<DesignPoint>& from, const RunControl& control,
                                    Progressing& progress) {
-    const JointProblem joint = joint_problem(points, options);
+    const JointProblem joint = one_setting_problem(points, options);
     JointOptions search;
     search.stop = control.stop;
     JointResult end = best_end(joint, from, search, progress);

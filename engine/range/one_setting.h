@@ -8,6 +8,7 @@
 #include "engine/expected.h"
 #include "engine/figure.h"
 #include "engine/range/problem.h"
+#include "engine/range/search/joint_search.h"
 #include "engine/range/search/places.h"
 
 namespace tunewright::range {
@@ -40,6 +41,9 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
 
 /// The ideal controller at x with the options' set-point weight.
 IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
+
+/// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of PID.
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options);
 
 /// x as a setting at a place: simulated to 1e-6, peaks refined.
 PlacePrice price_at(const Place& place, const IdealPid& controller);

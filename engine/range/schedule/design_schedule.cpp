@@ -17,6 +17,7 @@ namespace {
 constexpr int kInsidePart = 3;            // places of a part that a search knows from the beginning
 constexpr double kInside = 3e-5;          // of ln of a limit: aimed at, so that places between hold it as well
 constexpr double kPriceRoom = 3e-3;       // of it: kept free for what lies between the search's places
+constexpr double kPriceDoubt = 1e-3;      // of it: what the interpolated own optima may be off by
 constexpr int kRounds = 8;                // of adding places that exceed
 constexpr double kHopelessLayout = 0.045;  // of the layout's error: fewer rows are not tried
 constexpr double kHopelessStep = 0.15;     // of what is left to the price allowed
@@ -49,7 +50,7 @@ public:
             if (!end.holds() || !std::isfinite(end.log_price)) break;
             if (!least_price && end.log_price > allowed_) break;
             const Schedule schedule = knots.schedule(v, places_.rules(), options_.b);
-            const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_);
+            const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_ - kPriceDoubt);
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= kAllowedLogExcess;
@@ -65,12 +66,12 @@ public:
     double allowed() const { return allowed_; }
 
 private:
-    /// Some places inside every part, so that no first search is blind there.
+    /// The rows' places, where the price is largest, and some inside every part, where the limits are nearest.
     std::optional<Error> know_parts(const std::vector<double>& rows) {
         for (std::size_t k = 1; k < rows.size(); ++k) {
             const double from = rows[k - 1], width = rows[k] - from;
-            for (int i = 1; i <= kInsidePart; ++i) {
-                const double at = from + width * i / (kInsidePart + 1), near = 0.3 * width / (kInsidePart + 1);
+            for (int i = 1; i <= kInsidePart + 1; ++i) {
+                const double at = from + width * i / (kInsidePart + 1), near = (i > kInsidePart ? 0.02 : 0.3) * width / (kInsidePart + 1);
                 const bool known = std::ranges::any_of(
                     own_.at(), [&](double other) { return std::abs(other - at) < near; });
                 if (known) continue;

@@ -122,8 +122,7 @@ Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsIn
 
 double largest_relative_IAE(const RangeCurve& curve) {
     double largest = 0;
-    for (const PlaceFigures& place : curve.places)
-        largest = std::max(largest, place.relative_IAE.value_or(kUnstable));
+    for (const PlaceFigures& place : curve.places) largest = std::max(largest, place.relative_IAE.value_or(kUnstable));
     for (const WorstPlace& worst : curve.worst)
         if (worst.quantity == Quantity::relative_IAE) largest = std::max(largest, worst.value.value_or(kUnstable));
     return largest;

@@ -10,7 +10,7 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kCurvePlaces = 61;
-constexpr int kMostPlacesAdded = 6;     // of one setting that must hold between its points
+constexpr int kMostPlacesAdded = 6;      // of one setting that must hold between its points
 constexpr double kAllowedExcess = 5e-5;  // of a limit between the points
 
 SettingsInUse always(const IdealPid& controller) {
@@ -21,7 +21,8 @@ const WorstPlace* worst_limit(const RangeCurve& curve) {
     const WorstPlace* worst = nullptr;
     const auto over = [](const WorstPlace& place) { return place.value.value_or(INFINITY) / place.limit; };
     for (const WorstPlace& place : curve.worst)
-        if (place.quantity != Quantity::relative_IAE && (worst == nullptr || over(place) > over(*worst))) worst = &place;
+        if (place.quantity != Quantity::relative_IAE && (worst == nullptr || over(place) > over(*worst)))
+            worst = &place;
     return worst;
 }
 
@@ -102,10 +103,10 @@ private:
         const WorstPlace* worst = worst_limit(design_.one_curve);
         const std::string what = worst->quantity == Quantity::Ms ? "Ms" : "Mt";
         design_.warnings.push_back(
-            {"limit-exceeded-between",
-             "With one setting " + what + (worst->value ? " is " + text(*worst->value) : " is infinite") + " at " +
-                 places_.named(worst->at) + ", between the points at which its limit of " + text(worst->limit) +
-                 " is held. Add a point there."});
+            {"limit-exceeded-between", "With one setting " + what +
+                                           (worst->value ? " is " + text(*worst->value) : " is infinite") + " at " +
+                                           places_.named(worst->at) + ", between the points at which its limit of " +
+                                           text(worst->limit) + " is held. Add a point there."});
     }
 
     bool one_is_enough() const {
@@ -161,8 +162,8 @@ private:
                               .worst_relative_IAE = largest_relative_IAE(design_.one_curve),
                               .partial = false,
                               .warnings = {}};
-        design.schedule.rows = {{.at = problem_.model->low(), .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td,
-                                 .Tf = pid.filter.Tf, .b = pid.b}};
+        design.schedule.rows = {
+            {.at = problem_.model->low(), .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = pid.b}};
         return design;
     }
 
@@ -175,7 +176,8 @@ private:
         }
         const double one = design_.one_curve.places.empty() ? design_.one->worst_relative_IAE
                                                             : largest_relative_IAE(design_.one_curve);
-        const std::string price = std::isfinite(one) ? "costs up to " + text(one, 3) + " times" : "has no finite part of";
+        const std::string price =
+            std::isfinite(one) ? "costs up to " + text(one, 3) + " times" : "has no finite part of";
         if (one <= 1 + options_.allowance) {
             design_.verdict = Verdict::one_setting;
             design_.because = "One setting is enough: its IAE is nowhere more than " + text(one, 3) +
@@ -183,12 +185,12 @@ private:
             return;
         }
         design_.verdict = one <= kWorthASchedule ? Verdict::optional : Verdict::schedule;
-        design_.because = "One setting " + price + " the IAE of a place's own optimum" +
-                          (design_.schedule ? ", a schedule of " +
-                                                  std::to_string(design_.schedule->schedule.rows.size()) + " rows up to " +
-                                                  text(design_.schedule->worst_relative_IAE, 3) + " times"
-                                            : std::string()) +
-                          rule;
+        design_.because =
+            "One setting " + price + " the IAE of a place's own optimum" +
+            (design_.schedule ? ", a schedule of " + std::to_string(design_.schedule->schedule.rows.size()) +
+                                    " rows up to " + text(design_.schedule->worst_relative_IAE, 3) + " times"
+                              : std::string()) +
+            rule;
     }
 
     const RangeProblem& problem_;
@@ -208,14 +210,20 @@ std::vector<Error> option_faults(const RangeOptions& options) {
         if (!good) faults.push_back({ErrorKind::invalid_argument, "options/" + field, message});
     };
     const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
-    check(options.controller != ControllerKind::P, "controller", "A P controller has no integral action; use PI or PID.");
-    check(options.limits.Ms > 1 && options.limits.Ms <= 4, "Ms", "Ms is " + text(options.limits.Ms) + "; must be above 1 and at most 4.");
-    check(options.limits.Mt > 1 && options.limits.Mt <= 4, "Mt", "Mt is " + text(options.limits.Mt) + "; must be above 1 and at most 4.");
+    check(options.controller != ControllerKind::P, "controller",
+          "A P controller has no integral action; use PI or PID.");
+    check(options.limits.Ms > 1 && options.limits.Ms <= 4, "Ms",
+          "Ms is " + text(options.limits.Ms) + "; must be above 1 and at most 4.");
+    check(options.limits.Mt > 1 && options.limits.Mt <= 4, "Mt",
+          "Mt is " + text(options.limits.Mt) + "; must be above 1 and at most 4.");
     check(!options.limits.m_circle, "constraint", "A range is designed under limits of Ms and Mt; leave m_circle out.");
-    check(options.allowance > 0 && options.allowance <= 1, "allowance", "allowance is " + text(options.allowance) + "; must be above 0 and at most 1.");
+    check(options.allowance > 0 && options.allowance <= 1, "allowance",
+          "allowance is " + text(options.allowance) + "; must be above 0 and at most 1.");
     check(within(options.b, 0, 1), "b", "b is " + text(options.b) + "; must be 0 to 1.");
-    check(within(options.hysteresis, 0, 0.2), "hysteresis", "hysteresis is " + text(options.hysteresis) + " of the range; must be 0 to 0.2.");
-    check(!options.rows || within(*options.rows, 1, kMostRows), "rows", "rows is " + std::to_string(options.rows.value_or(0)) + "; must be 1 to 20.");
+    check(within(options.hysteresis, 0, 0.2), "hysteresis",
+          "hysteresis is " + text(options.hysteresis) + " of the range; must be 0 to 0.2.");
+    check(!options.rows || within(*options.rows, 1, kMostRows), "rows",
+          "rows is " + std::to_string(options.rows.value_or(0)) + "; must be 1 to 20.");
     return faults;
 }
 

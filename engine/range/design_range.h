@@ -54,9 +54,9 @@ struct RangeDesign {
 /// allowance outside (0, 1], rows outside 1 to 20, b outside 0 to 1, hysteresis outside 0 to 0.2, P as a controller.
 std::vector<Error> option_faults(const RangeOptions& options);
 
-/// One setting, the schedule, their curves at 61 places, the worst places and the verdict. Where one setting stays within
-/// the allowance everywhere and no number of rows is asked for, the schedule has that one row. Progress: stages "tune",
-/// "schedule" and "evaluate", with the best so far.
+/// One setting, the schedule, their curves at 61 places, the worst places and the verdict. Where one setting stays
+/// within the allowance everywhere and no number of rows is asked for, the schedule has that one row. Progress: stages
+/// "tune", "schedule" and "evaluate", with the best so far.
 ///
 /// Warnings: the model's; "limit-exceeded-between" where one setting exceeds a limit between the points;
 /// "schedule-over-allowance". Errors: option_faults' first; those of Places::at; where neither a setting nor a schedule

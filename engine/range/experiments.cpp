@@ -21,11 +21,11 @@ std::optional<Error> fault_of(const SteadyBranch& branch, const ExperimentOption
     for (std::size_t k = 0; k < options.at.size(); ++k) {
         const double at = options.at[k];
         if (!(at >= branch.low() && at <= branch.high()))
-            return fault("experiment/at", "The place " + text(at) + " lies outside the range of " +
-                                              text(branch.low()) + " to " + text(branch.high()) + ".");
+            return fault("experiment/at", "The place " + text(at) + " lies outside the range of " + text(branch.low()) +
+                                              " to " + text(branch.high()) + ".");
         if (k > 0 && !(at > options.at[k - 1]))
-            return fault("experiment/at", "The places must ascend; " + text(at) + " follows " +
-                                              text(options.at[k - 1]) + ".");
+            return fault("experiment/at",
+                         "The places must ascend; " + text(at) + " follows " + text(options.at[k - 1]) + ".");
     }
     if (options.size && !(std::abs(*options.size) > 0 && std::isfinite(*options.size)))
         return fault("experiment/size", "The size of the input's change is " + text(*options.size) +
@@ -87,11 +87,11 @@ Expected<std::vector<PlaceTest>> test_places(const SteadyBranch& branch, const E
         if (!test) return at_place(test.error(), branch, at);
         tests.push_back(std::move(*test));
         if (control.progress)
-            control.progress(Progress{.fraction = double(tests.size()) / double(options.at.size()),
-                                      .stage = "experiment",
-                                      .message = std::to_string(tests.size()) + " of " +
-                                                 std::to_string(options.at.size()) + " tests done.",
-                                      .best = {}});
+            control.progress(Progress{
+                .fraction = double(tests.size()) / double(options.at.size()),
+                .stage = "experiment",
+                .message = std::to_string(tests.size()) + " of " + std::to_string(options.at.size()) + " tests done.",
+                .best = {}});
     }
     return tests;
 }

@@ -16,9 +16,10 @@ enum class ExperimentKind { step, relay };
 
 struct ExperimentOptions {
     ExperimentKind kind = ExperimentKind::step;
-    std::vector<double> at;          ///< places of the range, 1 to 20, ascending
-    std::optional<double> size = {};  ///< of the step of u, or half of the relay's swing; of either sign for a step, not 0
-    double y_part = 0.05;      ///< without `size`: such that y moves by about this part of what it moves over the range
+    std::vector<double> at;  ///< places of the range, 1 to 20, ascending
+    std::optional<double> size =
+        {};                ///< of the step of u, or half of the relay's swing; of either sign for a step, not 0
+    double y_part = 0.05;  ///< without `size`: such that y moves by about this part of what it moves over the range
     double hysteresis_part = 0;  ///< of the relay, as a part of that motion of y; a plant without dead time needs one
 };
 

@@ -137,8 +137,8 @@ public:
         ++steps_;
         Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
         progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
-        progress.best = BestSoFar{setting_at(rules_, point_of(result.v), 1), std::exp(result.log_price), limits_.Ms,
-                                  limits_.Mt};
+        progress.best =
+            BestSoFar{setting_at(rules_, point_of(result.v), 1), std::exp(result.log_price), limits_.Ms, limits_.Mt};
         control_.progress(progress);
     }
 
@@ -206,13 +206,17 @@ void add_peaks(const Place& place, const IdealPid& controller, PlacePrice& price
 }  // namespace
 
 PlacePrice price_at(const Place& place, const IdealPid& controller) {
-    const DesignRules rules{.pid = place.problem().pid, .filter = place.problem().filter, .limits = {},
-                            .sign = place.problem().sign};
-    PlacePrice price{.at = place.at(), .own = setting_at(rules, place.optimum(), controller.b),
-                     .own_IAE = std::exp(place.optimum_log_cost()), .IAE = {}, .relative_IAE = {}, .Ms = {}, .Mt = {}};
+    const DesignRules rules{
+        .pid = place.problem().pid, .filter = place.problem().filter, .limits = {}, .sign = place.problem().sign};
+    PlacePrice price{.at = place.at(),
+                     .own = setting_at(rules, place.optimum(), controller.b),
+                     .own_IAE = std::exp(place.optimum_log_cost()),
+                     .IAE = {},
+                     .relative_IAE = {},
+                     .Ms = {},
+                     .Mt = {}};
     add_peaks(place, controller, price);
-    const double log_price =
-        price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kInfinity;
+    const double log_price = price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kInfinity;
     const std::string why = price.Ms ? "The response does not settle." : "The loop is not stable here.";
     price.relative_IAE = finite_or(std::exp(log_price), why);
     price.IAE = finite_or(std::exp(log_price) * price.own_IAE, why);

@@ -17,11 +17,11 @@ namespace tunewright::range {
 /// response alone Ti/Kp (the integrated error), for both controllers.
 struct PlacePrice {
     double at = 0;
-    IdealPid own;            ///< the place's own optimum under the same limits
+    IdealPid own;  ///< the place's own optimum under the same limits
     double own_IAE = 0;
-    Figure IAE;              ///< of the setting; empty: the loop is not stable, or does not settle
-    Figure relative_IAE;     ///< over own_IAE, about 1 or more
-    Figure Ms, Mt;           ///< on the nominal plant; empty: not stable
+    Figure IAE;           ///< of the setting; empty: the loop is not stable, or does not settle
+    Figure relative_IAE;  ///< over own_IAE, about 1 or more
+    Figure Ms, Mt;        ///< on the nominal plant; empty: not stable
 };
 
 struct OneSetting {
@@ -42,7 +42,8 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
 /// The ideal controller at x with the options' set-point weight.
 IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
 
-/// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of PID.
+/// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of
+/// PID.
 JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options);
 
 /// x as a setting at a place: simulated to 1e-6, peaks refined.

@@ -31,9 +31,9 @@ enum class Between {
 
 /// How the user's controller moves between the rows of its schedule.
 enum class Interpolation {
-    steps,              ///< a row's settings from its place on, with hysteresis
-    linear_in_gains,    ///< Kp, 1/Ti and Td are linear between rows
-    linear_in_times,    ///< Kp, Ti and Td are linear between rows
+    steps,            ///< a row's settings from its place on, with hysteresis
+    linear_in_gains,  ///< Kp, 1/Ti and Td are linear between rows
+    linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
 
 /// What one setting for all points has the least of: IAE relative to each point's own optimum.
@@ -44,8 +44,8 @@ struct RangeOptions {
     robust::Limits limits = {};                       ///< held everywhere; no m_circle
     RobustFilterOptions filter = {};                  ///< empty: range_filter_rule
     Aim aim = Aim::worst;
-    double b = 1;              ///< set-point weight of every row, 0 to 1
-    double allowance = 0.05;   ///< of each place's own IAE, > 0: what the schedule may cost
+    double b = 1;                  ///< set-point weight of every row, 0 to 1
+    double allowance = 0.05;       ///< of each place's own IAE, > 0: what the schedule may cost
     std::optional<int> rows = {};  ///< of the schedule, 1 to 20; empty: the fewest
     Interpolation interpolation = Interpolation::linear_in_gains;
     double hysteresis = 0.02;  ///< of the range, 0 to 0.2: of `steps`

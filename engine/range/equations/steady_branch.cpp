@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kMostSteps = 2000;
 constexpr double kFirstLength = 0.02, kLeastLength = 1e-7, kMostLength = 0.2;  // of the unknowns' sizes
-constexpr double kMostTurn = 0.25;       // rad of the tangent in one step
-constexpr double kMostPlaceStep = 0.04;  // of the range, in one step
-constexpr int kQuickNewton = 4;          // iterations: after them the next step is longer
-constexpr double kFoldExact = 1e-10;     // of the unknowns' sizes: how closely a fold is bracketed
+constexpr double kMostTurn = 0.25;                                             // rad of the tangent in one step
+constexpr double kMostPlaceStep = 0.04;                                        // of the range, in one step
+constexpr int kQuickNewton = 4;       // iterations: after them the next step is longer
+constexpr double kFoldExact = 1e-10;  // of the unknowns' sizes: how closely a fold is bracketed
 constexpr int kFoldBisections = 40;
 
 std::string where_word(const EquationsRange& range) {
@@ -35,7 +35,7 @@ public:
         std::vector<SteadyState> states;  ///< from the start on
         std::vector<Fold> folds;          ///< of the scheduling variable
         std::vector<Fold> input_folds;
-        std::optional<Error> ended;       ///< before the end was reached
+        std::optional<Error> ended;  ///< before the end was reached
     };
 
     /// `up`: towards larger places at first. Ends where the place passes `end` on that side.
@@ -59,10 +59,10 @@ public:
                 return result;
             }
         }
-        result.ended = Error{ErrorKind::invalid_argument, "range",
-                             "The steady states were followed for " + std::to_string(kMostSteps) +
-                                 " steps without reaching " + text(end) + "; they end at " +
-                                 described(result.states.back()) + ". Give a shorter range."};
+        result.ended =
+            Error{ErrorKind::invalid_argument, "range",
+                  "The steady states were followed for " + std::to_string(kMostSteps) + " steps without reaching " +
+                      text(end) + "; they end at " + described(result.states.back()) + ". Give a shorter range."};
         return result;
     }
 

@@ -38,9 +38,9 @@ struct Fold {
 };
 
 /// z = (x, u, p) on F(z) = 0, one equation fewer than unknowns: f(x, u, p) = 0, with y or u held along a parameter.
-/// Pseudo-arclength continuation (Keller 1977; Allgower and Georg, Introduction to Numerical Continuation Methods, 2003,
-/// chapter 6): the tangent predicts, Newton's method corrects in the plane across it; exact Jacobians. Steps follow how
-/// far the tangent turns.
+/// Pseudo-arclength continuation (Keller 1977; Allgower and Georg, Introduction to Numerical Continuation Methods,
+/// 2003, chapter 6): the tangent predicts, Newton's method corrects in the plane across it; exact Jacobians. Steps
+/// follow how far the tangent turns.
 class SteadyBranch {
 public:
     /// Errors: those of NonlinearSystem::make; invalid_argument, `where` = "range/from", "range/to", "range/parameter",

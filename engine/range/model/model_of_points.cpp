@@ -44,9 +44,10 @@ std::optional<Error> fault_of_places(const std::vector<RangePoint>& points) {
         if (!std::isfinite(points[k].at)) return bad_point(k, "at", "at is not a finite number.");
         if (points[k].family.regions.empty()) return bad_point(k, "plant", "The point has no plant.");
         if (k > 0 && !(points[k].at > points[k - 1].at))
-            return bad_point(k, "at", "at is " + text(points[k].at) + " after " + text(points[k - 1].at) +
-                                          "; the points must ascend, each place once. Sort them, and keep one of "
-                                          "those at the same place.");
+            return bad_point(k, "at",
+                             "at is " + text(points[k].at) + " after " + text(points[k - 1].at) +
+                                 "; the points must ascend, each place once. Sort them, and keep one of "
+                                 "those at the same place.");
     }
     return std::nullopt;
 }
@@ -164,21 +165,22 @@ public:
         const auto [left, share] = neighbours(points_, place);
         if (share == 0) return models_[left];
         if (share == 1) return models_[left + 1];
-        FrequencyResponse response{
-            .omega = omega_, .re = {}, .im = {}, .unstable_poles = models_[0].nominal->unstable_poles(),
-            .integrators = models_[0].nominal->integrators()};
+        FrequencyResponse response{.omega = omega_,
+                                   .re = {},
+                                   .im = {},
+                                   .unstable_poles = models_[0].nominal->unstable_poles(),
+                                   .integrators = models_[0].nominal->integrators()};
         const ResponseCurve &one = curves_[left], &other = curves_[left + 1];
         for (std::size_t i = 0; i < omega_.size(); ++i) {
             const double phase = one.phase[i] + share * (other.phase[i] - one.phase[i]);
-            const auto value = std::polar(
-                std::exp(one.log_size[i] + share * (other.log_size[i] - one.log_size[i])), phase);
+            const auto value =
+                std::polar(std::exp(one.log_size[i] + share * (other.log_size[i] - one.log_size[i])), phase);
             response.re.push_back(value.real());
             response.im.push_back(value.imag());
         }
         auto measured = MeasuredPlant::make(response);
         if (!measured) return measured.error();
-        return PlaceModel{
-            .at = place, .nominal = {}, .members = {}, .measured = std::move(*measured)};
+        return PlaceModel{.at = place, .nominal = {}, .members = {}, .measured = std::move(*measured)};
     }
 
 private:

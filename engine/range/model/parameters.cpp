@@ -8,7 +8,6 @@
 namespace tunewright::range {
 namespace {
 
-
 /// Calls f with a reference to each number of the structure, in order.
 template <class PlantType, class F>
 void for_each_number(PlantType& plant, F f) {
@@ -72,7 +71,7 @@ Plant moved_alike(const Plant& plant, const Plant& nominal, const Plant& member)
     const auto from = structure_numbers(nominal), to = structure_numbers(member);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         numbers[i] = from[i] * to[i] > 0 && numbers[i] * from[i] > 0 ? numbers[i] * to[i] / from[i]
-                                                                    : numbers[i] + to[i] - from[i];
+                                                                     : numbers[i] + to[i] - from[i];
     // A dead time cut off at 0 stays there.
     numbers.back() = std::max(0.0, numbers.back());
     return with_numbers(in_order(plant), numbers);

@@ -1,4 +1,4 @@
-// A plant between two plants of the same structure.
+// A plant between two plants of the same structure: what the interpolation `parameters` means.
 #pragma once
 
 #include <string>
@@ -14,15 +14,18 @@ namespace tunewright::range {
 /// nothing between two plants.
 std::vector<double> structure_numbers(const Plant& plant);
 
-/// The same type, with the same number of coefficients.
+/// The same type, with the same number of coefficients; false for a type that has no structure numbers, so that a
+/// frequency response is what is interpolated there.
 bool same_structure(const Plant& one, const Plant& other);
 
 /// The plant whose numbers lie `share` (0 to 1) of the way from `left` to `right`: of the logarithms, of the numbers
-/// themselves where their signs differ or one is 0. The two are of the same structure.
+/// themselves where their signs differ or one is 0. The two are of the same structure. The plant between has no
+/// uncertainty of its own.
 Plant plant_between(const Plant& left, const Plant& right, double share);
 
 /// `plant` with what `member` has of `nominal`: each number times their ratio, or plus their difference where the ratio
-/// would be none (one is 0, or the signs differ). All three are of the same structure.
+/// would be none (one is 0, or the signs differ). All three are of the same structure; a dead time below 0 is cut off
+/// at 0.
 Plant moved_alike(const Plant& plant, const Plant& nominal, const Plant& member);
 
 }  // namespace tunewright::range

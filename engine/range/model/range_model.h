@@ -14,11 +14,13 @@
 
 namespace tunewright::range {
 
+class SteadyBranch;
+
 /// The plant at one place: a linear one with the members of its family, or points of its frequency response.
 struct PlaceModel {
     double at = 0;
-    std::optional<LinearPlant> nominal;    ///< empty: `measured` stands in its place
-    std::vector<LinearPlant> members;      ///< further plants on which the limits hold
+    std::optional<LinearPlant> nominal;  ///< empty: `measured` stands in its place
+    std::vector<LinearPlant> members;    ///< further plants on which the limits hold
     std::optional<MeasuredPlant> measured;
     std::optional<PlantFamily> family = {};  ///< at a given point with uncertainty: what the limits hold on inside
     std::optional<double> u = {}, y = {};    ///< from equations: the steady state, absolute
@@ -62,5 +64,11 @@ protected:
 /// of integrators or unstable poles with `frequency_response`; no_feasible_controller: the sign of the gain changes
 /// between two points.
 Expected<std::shared_ptr<const RangeModel>> model_of_points(const std::vector<RangePoint>& points, Between between);
+
+/// The model of equations on their branch of steady states (equations/steady_branch.h). Nothing is interpolated: every
+/// place has its own steady state and linearisation. Points: five places evenly over the range. Warnings: "input-folds"
+/// where the input turns back along the branch. Errors of `at`: those of SteadyBranch::at and LinearPlant::make, with
+/// the place in the sentence.
+Expected<std::shared_ptr<const RangeModel>> model_of_branch(std::shared_ptr<const SteadyBranch> branch);
 
 }  // namespace tunewright::range

@@ -18,12 +18,12 @@ namespace tunewright::range {
 namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kLeastShare = 1e-3;      // of what a state moves by over the range: the least size that errors refer to
-constexpr int kEchoes = 4;                // passages of a jump through the dead time that steps end at
-constexpr double kSettledShare = 0.01;    // of the profile's size
-constexpr double kMuchCoupling = 0.3;     // of the gain from y to u, added by the settings' motion
+constexpr double kLeastShare = 1e-3;    // of what a state moves by over the range: the least size that errors refer to
+constexpr int kEchoes = 4;              // passages of a jump through the dead time that steps end at
+constexpr double kSettledShare = 0.01;  // of the profile's size
+constexpr double kMuchCoupling = 0.3;   // of the gain from y to u, added by the settings' motion
 constexpr int kBisections = 50;
-constexpr double kEps = 1e-12;            // of the time: two times that are one
+constexpr double kEps = 1e-12;  // of the time: two times that are one
 
 /// Sizes of the plant's states, u and y over the range.
 struct Sizes {
@@ -58,10 +58,10 @@ public:
           options_(options),
           law_(schedule, branch.range().along),
           schedule_(schedule),
-          integrator_({.order = int(n_) + ScheduledLaw::kStates + 1,
-                       .rates = [this](double t, std::span<const double> z,
-                                       std::span<double> dz) { return rates(t, z, dz); }},
-                      options.tolerance),
+          integrator_(
+              {.order = int(n_) + ScheduledLaw::kStates + 1,
+               .rates = [this](double t, std::span<const double> z, std::span<double> dz) { return rates(t, z, dz); }},
+              options.tolerance),
           echoes_(kEchoes),
           x_(std::size_t(system_.order())) {
         const Sizes sizes = sizes_over(branch);

@@ -36,13 +36,13 @@ struct RunOptions {
 
 struct ScheduledRun {
     std::vector<double> t, target, y, u, at, Kp;  ///< samples; absolute; `target`: the set point; u after the limits
-    double IAE = 0;            ///< of the set point less y, over the run
-    double largest_error = 0;  ///< of abs(set point - y) at the samples
-    double largest_bump = 0;   ///< of u, where settings switch (0 but for rounding)
-    int switches = 0;          ///< of rows, with `steps`
-    bool limited = false;      ///< u met a limit
-    bool settled = false;      ///< at the end y is within 1 % of the profile's size of the set point
-    std::string ended;         ///< why it ended early; empty: it did not
+    double IAE = 0;                               ///< of the set point less y, over the run
+    double largest_error = 0;                     ///< of abs(set point - y) at the samples
+    double largest_bump = 0;                      ///< of u, where settings switch (0 but for rounding)
+    int switches = 0;                             ///< of rows, with `steps`
+    bool limited = false;                         ///< u met a limit
+    bool settled = false;                         ///< at the end y is within 1 % of the profile's size of the set point
+    std::string ended;                            ///< why it ended early; empty: it did not
     std::vector<Warning> warnings;  ///< "schedule-coupling": how much the settings' motion adds to the gain on the way
 };
 

@@ -8,17 +8,16 @@
 
 #include "engine/number_text.h"
 #include "engine/range/schedule/knots.h"
-#include "engine/range/schedule/steps.h"
-#include "engine/range/schedule/verify.h"
+#include "engine/range/schedule/look.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr int kInsidePart = 3;            // places of a part that a search knows from the beginning
-constexpr double kInside = 3e-5;          // of ln of a limit: aimed at, so that places between hold it as well
-constexpr double kPriceRoom = 3e-3;       // of it: kept free for what lies between the search's places
-constexpr double kPriceDoubt = 1e-3;      // of it: what the interpolated own optima may be off by
-constexpr int kRounds = 8;                // of adding places that exceed
+constexpr int kInsidePart = 3;             // places of a part that a search knows from the beginning
+constexpr double kInside = 3e-5;           // of ln of a limit: aimed at, so that places between hold it as well
+constexpr double kPriceRoom = 3e-3;        // of it: kept free for what lies between the search's places
+constexpr double kPriceDoubt = 1e-3;       // of it: what the interpolated own optima may be off by
+constexpr int kRounds = 8;                 // of adding places that exceed
 constexpr double kHopelessLayout = 0.045;  // of the layout's error: fewer rows are not tried
 constexpr double kHopelessStep = 0.15;     // of what is left to the price allowed
 constexpr int kIterations = 14;
@@ -50,7 +49,8 @@ public:
             if (!end.holds() || !std::isfinite(end.log_price)) break;
             if (!least_price && end.log_price > allowed_) break;
             const Schedule schedule = knots.schedule(v, places_.rules(), options_.b);
-            const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_ - kPriceDoubt);
+            const auto verified =
+                verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_ - kPriceDoubt);
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= kAllowedLogExcess;
@@ -71,9 +71,10 @@ private:
         for (std::size_t k = 1; k < rows.size(); ++k) {
             const double from = rows[k - 1], width = rows[k] - from;
             for (int i = 1; i <= kInsidePart + 1; ++i) {
-                const double at = from + width * i / (kInsidePart + 1), near = (i > kInsidePart ? 0.02 : 0.3) * width / (kInsidePart + 1);
-                const bool known = std::ranges::any_of(
-                    own_.at(), [&](double other) { return std::abs(other - at) < near; });
+                const double at = from + width * i / (kInsidePart + 1),
+                             near = (i > kInsidePart ? 0.02 : 0.3) * width / (kInsidePart + 1);
+                const bool known =
+                    std::ranges::any_of(own_.at(), [&](double other) { return std::abs(other - at) < near; });
                 if (known) continue;
                 if (const auto place = places_.at(at); !place) return place.error();
             }
@@ -90,9 +91,9 @@ private:
                               .worst_relative_IAE = std::exp(verified.log_price),
                               .partial = stopped,
                               .warnings = {}};
-        const bool better = !best || (design.holds_limits && !best->holds_limits) ||
-                            (design.holds_limits == best->holds_limits &&
-                             design.worst_relative_IAE < best->worst_relative_IAE);
+        const bool better =
+            !best || (design.holds_limits && !best->holds_limits) ||
+            (design.holds_limits == best->holds_limits && design.worst_relative_IAE < best->worst_relative_IAE);
         if (better) best = design;
     }
 
@@ -109,11 +110,11 @@ bool satisfies(const std::optional<ScheduleDesign>& design) {
 /// A warning where the schedule costs more than is allowed.
 void remark(ScheduleDesign& design, const RangeOptions& options) {
     if (design.within_allowance) return;
-    design.warnings.push_back(
-        {"schedule-over-allowance",
-         "With " + std::to_string(design.schedule.rows.size()) + " rows the schedule costs up to " +
-             text(100 * (design.worst_relative_IAE - 1), 3) + " % more IAE than a place's own optimum, and " +
-             text(100 * options.allowance, 3) + " % is allowed. Allow more rows, or a larger price."});
+    design.warnings.push_back({"schedule-over-allowance",
+                               "With " + std::to_string(design.schedule.rows.size()) +
+                                   " rows the schedule costs up to " + text(100 * (design.worst_relative_IAE - 1), 3) +
+                                   " % more IAE than a place's own optimum, and " + text(100 * options.allowance, 3) +
+                                   " % is allowed. Allow more rows, or a larger price."});
 }
 
 void tell(const Places& places, int rows) {

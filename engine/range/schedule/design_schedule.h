@@ -32,4 +32,9 @@ struct ScheduleDesign {
 /// Errors: those of Places::at; cancelled where nothing was found before the stop.
 Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options);
 
+/// Parts by OwnOptima::layout; each part's row is the one setting with the least worst price over the part and half the
+/// hysteresis beyond it. The fewest rows that stay within the allowance, or `options.rows`; where 20 do not, those 20.
+/// Errors: as design_schedule.
+Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options);
+
 }  // namespace tunewright::range

@@ -10,7 +10,7 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kFirstStep = 0.25;     // of a logarithm
+constexpr double kFirstStep = 0.25;      // of a logarithm
 constexpr double kFirstPlaceStep = 0.3;  // of the way to the bounds of a place
 constexpr double kUnbounded = 700;       // of a logarithm: what a double can hold
 
@@ -57,8 +57,7 @@ robust::DesignPoint Knots::settings(const Eigen::VectorXd& v, double at, Setting
     for (Index i = 0; i < dimension_; ++i) {
         // 1/Ti is what `linear_in_gains` mixes: its logarithm is the negative one of Ti.
         const double sign = i == 1 && interpolation_ == Interpolation::linear_in_gains ? -1 : 1;
-        const double a = std::exp(sign * v[dimension_ * left + i]),
-                     b = std::exp(sign * v[dimension_ * (left + 1) + i]);
+        const double a = std::exp(sign * v[dimension_ * left + i]), b = std::exp(sign * v[dimension_ * (left + 1) + i]);
         const double mixed = a + share * (b - a);
         x[std::size_t(i)] = sign * std::log(mixed);
         if (slope == nullptr) continue;

@@ -9,9 +9,9 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kAllPeaks = -5;          // of ln of a limit's ratio: every peak counts
-constexpr double kHighPeaks = -0.05;      // of it: only what may exceed the limit somewhere near
-constexpr double kLookTolerance = 3e-4;   // of the simulations
+constexpr double kAllPeaks = -5;         // of ln of a limit's ratio: every peak counts
+constexpr double kHighPeaks = -0.05;     // of it: only what may exceed the limit somewhere near
+constexpr double kLookTolerance = 3e-4;  // of the simulations
 constexpr double kWorst = std::numeric_limits<double>::infinity();
 
 void add_setting(Look& look, const Place& place, const robust::DesignPoint& x, double log_own_IAE, double above) {

@@ -7,7 +7,7 @@ namespace tunewright::range {
 namespace {
 
 constexpr std::size_t kFewestPlaces = 7, kMostPlaces = 48;
-constexpr double kCoarse = 0.3;         // of ln Kp, ln Ti, ln IAE between neighbours
+constexpr double kCoarse = 0.3;          // of ln Kp, ln Ti, ln IAE between neighbours
 constexpr int kGridPoints = 161;         // of a layout
 constexpr int kHalvings = 14;            // of its error
 constexpr double kShortest = 1.0 / 512;  // of the range: nothing is looked at between nearer neighbours

@@ -30,8 +30,8 @@ public:
     robust::DesignPoint optimum(double at) const;
 
     /// The best places for `rows` rows, ends included, judged by how far the settings that the controller interpolates
-    /// lie from the optima in ln Kp and ln(Kp/Ti): every part as long as one common error lets it be, and the least such
-    /// error. `error`: half the spread over a part.
+    /// lie from the optima in ln Kp and ln(Kp/Ti): every part as long as one common error lets it be, and the least
+    /// such error. `error`: half the spread over a part.
     struct Layout {
         std::vector<double> at;
         double error = 0;

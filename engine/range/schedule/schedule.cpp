@@ -24,13 +24,13 @@ IdealPid settings_at(const Schedule& schedule, double at) {
     if (after == rows.end() || schedule.interpolation == Interpolation::steps) return controller_of(left);
     const double share = (at - left.at) / (after->at - left.at);
     const bool by_rate = schedule.interpolation == Interpolation::linear_in_gains;
-    return controller_of({.at = at,
-                          .Kp = mixed(left.Kp, after->Kp, share),
-                          .Ti = by_rate ? 1 / mixed(1 / left.Ti, 1 / after->Ti, share)
-                                        : mixed(left.Ti, after->Ti, share),
-                          .Td = mixed(left.Td, after->Td, share),
-                          .Tf = mixed(left.Tf, after->Tf, share),
-                          .b = mixed(left.b, after->b, share)});
+    return controller_of(
+        {.at = at,
+         .Kp = mixed(left.Kp, after->Kp, share),
+         .Ti = by_rate ? 1 / mixed(1 / left.Ti, 1 / after->Ti, share) : mixed(left.Ti, after->Ti, share),
+         .Td = mixed(left.Td, after->Td, share),
+         .Tf = mixed(left.Tf, after->Tf, share),
+         .b = mixed(left.b, after->b, share)});
 }
 
 std::size_t row_after(const Schedule& schedule, std::size_t row, double at) {

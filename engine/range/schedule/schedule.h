@@ -18,7 +18,7 @@ struct ScheduleRow {
 /// Below the first row and above the last one their settings hold.
 struct Schedule {
     Interpolation interpolation = Interpolation::linear_in_gains;
-    double hysteresis = 0;  ///< in the unit of `at`, of `steps`: a row is left h/2 beyond its border
+    double hysteresis = 0;          ///< in the unit of `at`, of `steps`: a row is left h/2 beyond its border
     std::vector<ScheduleRow> rows;  ///< ascending, at least one
 };
 

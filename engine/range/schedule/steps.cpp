@@ -1,10 +1,9 @@
-#include "engine/range/schedule/steps.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "engine/range/schedule/verify.h"
+#include "engine/range/schedule/design_schedule.h"
+#include "engine/range/schedule/look.h"
 
 namespace tunewright::range {
 namespace {
@@ -27,8 +26,9 @@ public:
         auto layout = own_.layout(rows, Interpolation::steps).at;
         std::optional<ScheduleDesign> best;
         for (int round = 0; round < kStepsRounds; ++round) {
-            ScheduleDesign design{.schedule = {.interpolation = Interpolation::steps, .hysteresis = hysteresis_, .rows = {}},
-                                  .warnings = {}};
+            ScheduleDesign design{
+                .schedule = {.interpolation = Interpolation::steps, .hysteresis = hysteresis_, .rows = {}},
+                .warnings = {}};
             for (std::size_t k = 0; k < layout.size(); ++k) {
                 const auto row = serve(layout[k], k + 1 < layout.size() ? layout[k + 1] : high_);
                 if (!row) return row.error();
@@ -82,8 +82,8 @@ private:
         if (!best) return std::optional<ScheduleRow>();
         const IdealPid pid =
             setting_at(places_.rules(), {best->v[0], best->v[1], best->v.size() > 2 ? best->v[2] : 0}, options_.b);
-        return std::optional(ScheduleRow{
-            .at = from, .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = options_.b});
+        return std::optional(
+            ScheduleRow{.at = from, .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = options_.b});
     }
 
     Places& places_;

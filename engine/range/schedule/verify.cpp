@@ -1,5 +1,3 @@
-#include "engine/range/schedule/verify.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,12 +8,12 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kLooks = 48;                // places over the range at which a schedule is verified first
-constexpr int kLooksOfPart = 9;           // and between two rows
-constexpr double kSmallExcess = 5e-4;     // of it: all limits are tightened by it, rather than a place added
-constexpr double kNearLimit = -5e-3;      // of it: tops above it are looked at more closely
-constexpr double kNearPrice = 0.01;       // of ln of the price, below what is allowed: the same
-constexpr std::size_t kMostAdded = 6;     // places a round
+constexpr int kLooks = 48;             // places over the range at which a schedule is verified first
+constexpr int kLooksOfPart = 9;        // and between two rows
+constexpr double kSmallExcess = 5e-4;  // of it: all limits are tightened by it, rather than a place added
+constexpr double kNearLimit = -5e-3;   // of it: tops above it are looked at more closely
+constexpr double kNearPrice = 0.01;    // of ln of the price, below what is allowed: the same
+constexpr std::size_t kMostAdded = 6;  // places a round
 
 std::vector<double> looked_at(const Places& places, const Schedule& schedule) {
     const double low = places.model().low(), high = places.model().high();
@@ -48,7 +46,8 @@ public:
         std::vector<double> wanted;
         for (std::size_t i = 1; i + 1 < looks_.size(); ++i) {
             const Look &a = looks_[i - 1], &b = looks_[i], &c = looks_[i + 1];
-            if (!is_top(i, value) || !(b.*value > threshold) || !std::isfinite(a.*value + b.*value + c.*value)) continue;
+            if (!is_top(i, value) || !(b.*value > threshold) || !std::isfinite(a.*value + b.*value + c.*value))
+                continue;
             const double left = (b.*value - a.*value) / (b.at - a.at), right = (c.*value - b.*value) / (c.at - b.at);
             const double bend = (right - left) / (c.at - a.at);
             if (!(bend < 0)) continue;

@@ -30,7 +30,7 @@ constexpr double kFarCorrected = 3;       // radii: what a correction moved furt
 constexpr double kPowellDamping = 0.2;    // of p.H p, which p.y keeps at least (Powell 1978)
 constexpr double kSamePeak = 0.3;         // ln omega: a peak that moves further is another one
 constexpr double kEnoughWon = 0.05, kMuchWon = 0.7;  // of what the model promised: to be taken, for a longer step
-constexpr double kLeastRadius = 1e-4;     // of `step`
+constexpr double kLeastRadius = 1e-4;                // of `step`
 constexpr double kMostRadius = 4;
 
 /// The unknowns of a step: p, then t (the price) and s (the excess).
@@ -185,7 +185,8 @@ private:
             if (one.has_gradient && problem_.aim == Aim::mean)
                 g.head(layout_.n) += share(now, one) * gradient_of(one, one.price_gradient);
             for (std::size_t i = 0; i < std::min(one.peaks.size(), kPeaks); ++i)
-                add(gradient_of(one, as_vector(one.peaks[i].gradient)), 0, -1, -one.peaks[i].value - options_.margin - kAimBelow);
+                add(gradient_of(one, as_vector(one.peaks[i].gradient)), 0, -1,
+                    -one.peaks[i].value - options_.margin - kAimBelow);
         }
         add(none, 0, -1, 0);
         add(none, 0, 1, kSlackSize);
@@ -222,8 +223,7 @@ private:
     /// What the model says the merit will be.
     double model_merit(const State& now, const ProgramSolution& step, const VectorXd& g) const {
         const VectorXd p = step.z.head(layout_.n);
-        const double linear =
-            problem_.aim == Aim::worst ? step.z[layout_.price()] : double(g.head(layout_.n).dot(p));
+        const double linear = problem_.aim == Aim::worst ? step.z[layout_.price()] : double(g.head(layout_.n).dot(p));
         return now.price + linear + 0.5 * p.dot(H_ * p) + kPenalty * std::max(0.0, step.z[layout_.excess()]);
     }
 
@@ -255,7 +255,8 @@ private:
         };
         for (const PlaceState& one : state.places)
             for (std::size_t i = 0; i < std::min(one.peaks.size(), kPeaks); ++i)
-                add(gradient_of(one, as_vector(one.peaks[i].gradient)), 0, -1, -one.peaks[i].value - options_.margin - kAimBelow);
+                add(gradient_of(one, as_vector(one.peaks[i].gradient)), 0, -1,
+                    -one.peaks[i].value - options_.margin - kAimBelow);
         add(VectorXd::Zero(layout_.n), 0, -1, 0);
         add_box(state.v, radius, add);
         QuadraticProgram program{.H = MatrixXd::Zero(size, size), .g = VectorXd::Zero(size), .A = {}, .b = {}};
@@ -274,8 +275,7 @@ private:
         for (std::size_t k = 0; k < now.places.size(); ++k) {
             const PlaceState &old = now.places[k], &fresh = next.places[k];
             if (old.has_gradient) {
-                const double weight =
-                    problem_.aim == Aim::worst ? step.multipliers[row++] : share(now, old);
+                const double weight = problem_.aim == Aim::worst ? step.multipliers[row++] : share(now, old);
                 if (fresh.has_gradient)
                     y += weight * (gradient_of(fresh, fresh.price_gradient) - gradient_of(old, old.price_gradient));
             }

@@ -27,7 +27,7 @@ struct JointProblem {
 
 struct JointOptions {
     int most_iterations = 30;
-    double enough = -1;          ///< of ln of the price: the search ends where it is met with the limits held
+    double enough = -1;   ///< of ln of the price: the search ends where it is met with the limits held
     double hopeless = 0;  ///< ends after two steps that won less than this part of what is left to `enough`; 0: never
     double cost_tolerance = 1e-5;  ///< ends where the model promises less
     double margin = 0;             ///< of ln of a limit's ratio: held this far inside

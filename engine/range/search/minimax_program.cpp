@@ -30,9 +30,7 @@ struct InteriorPoint {
         residual = p.A * z + slack - p.b;
         gap = slack.dot(multiplier) / double(slack.size());
     }
-    double lack() const {
-        return std::max({dual_residual.cwiseAbs().maxCoeff(), residual.cwiseAbs().maxCoeff(), gap});
-    }
+    double lack() const { return std::max({dual_residual.cwiseAbs().maxCoeff(), residual.cwiseAbs().maxCoeff(), gap}); }
 };
 
 struct Direction {
@@ -43,8 +41,7 @@ struct Direction {
 Direction direction(const QuadraticProgram& p, const InteriorPoint& at, const Eigen::LLT<Eigen::MatrixXd>& factored,
                     const Eigen::VectorXd& complement) {
     Direction d;
-    const Eigen::VectorXd pulled =
-        (complement - at.multiplier.cwiseProduct(at.residual)).cwiseQuotient(at.slack);
+    const Eigen::VectorXd pulled = (complement - at.multiplier.cwiseProduct(at.residual)).cwiseQuotient(at.slack);
     d.z = factored.solve(p.A.transpose() * pulled - at.dual_residual);
     d.slack = -at.residual - p.A * d.z;
     d.multiplier = (-complement - at.multiplier.cwiseProduct(d.slack)).cwiseQuotient(at.slack);
@@ -68,10 +65,10 @@ std::optional<ProgramSolution> solve(const QuadraticProgram& p) {
         if (factored.info() != Eigen::Success) break;
         const Eigen::VectorXd product = at.slack.cwiseProduct(at.multiplier);
         const Direction predictor = direction(p, at, factored, product);
-        const double far = std::min(longest_step(at.slack, predictor.slack),
-                                    longest_step(at.multiplier, predictor.multiplier));
-        const double reached = (at.slack + far * predictor.slack).dot(at.multiplier + far * predictor.multiplier) /
-                               double(m);
+        const double far =
+            std::min(longest_step(at.slack, predictor.slack), longest_step(at.multiplier, predictor.multiplier));
+        const double reached =
+            (at.slack + far * predictor.slack).dot(at.multiplier + far * predictor.multiplier) / double(m);
         const double centring = std::pow(reached / at.gap, 3);
         const Eigen::VectorXd complement = product + predictor.slack.cwiseProduct(predictor.multiplier) -
                                            Eigen::VectorXd::Constant(m, centring * at.gap);

@@ -1,4 +1,5 @@
-// A convex quadratic program of some tens of unknowns and some hundreds of constraints.
+// A convex quadratic program of some tens of unknowns and some hundreds of constraints, as the joint search's steps
+// are. robust/quadratic_program.h tries active sets instead: exact and quicker for up to three unknowns.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +21,8 @@ struct ProgramSolution {
 
 /// The minimum of z'Hz/2 + g'z subject to A z <= b, by the predictor-corrector interior-point method (Mehrotra 1992,
 /// SIAM J. Optimization 2, 575-601). Constraints and optimality hold to 1e-9, entries being of the order of 1. Empty
-/// where there is no feasible point or the iteration does not converge. Cost: some 15 factorisations of n x n.
+/// where there is no feasible point or the iteration does not converge. Nothing is allocated beside the matrices of
+/// one iteration; the same program gives the same answer to the last bit. Cost: some 15 factorisations of n x n.
 std::optional<ProgramSolution> solve(const QuadraticProgram& program);
 
 }  // namespace tunewright::range

@@ -32,8 +32,8 @@ public:
     const robust::DesignProblem& problem() const { return problem_; }
     const robust::Sweep& sweep() const { return *sweep_; }
 
-    /// The design with the least IAE here within the limits, on every member. `before`: the optimum of a neighbour, from
-    /// which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
+    /// The design with the least IAE here within the limits, on every member. `before`: the optimum of a neighbour,
+    /// from which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
     std::optional<Error> find_optimum(const RunControl& control, const robust::DesignPoint* before);
 
     const robust::DesignPoint& optimum() const { return optimum_; }

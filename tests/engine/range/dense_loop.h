@@ -27,10 +27,10 @@ inline Complex pid_at(const IdealPid& pid, Complex s) {
     return pid.Kp * (1.0 + 1.0 / (s * pid.Ti) + s * pid.Td) / (1.0 + s * Tf + 0.5 * s * s * Tf * Tf);
 }
 
-/// Peaks over [low, high] on `points` logarithmic points. Stability of a plant with `unstable_poles`, no pole on the axis
-/// but `integrators` at 0, strictly proper: the turn of 1 + L from just above 0 to infinity, Nyquist's criterion: the
-/// origin's detour turns it by -90 degrees for each integrator, the controller's included, so
-/// arg(1 + L) must change by (unstable poles + (integrators + 1)/2) 180 degrees.
+/// Peaks over [low, high] on `points` logarithmic points. Stability of a plant with `unstable_poles`, no pole on the
+/// axis but `integrators` at 0, strictly proper: the turn of 1 + L from just above 0 to infinity, Nyquist's criterion:
+/// the origin's detour turns it by -90 degrees for each integrator, the controller's included, so arg(1 + L) must
+/// change by (unstable poles + (integrators + 1)/2) 180 degrees.
 inline DensePeaks dense_peaks(const PlantFunction& plant, const IdealPid& pid, double low, double high, int points,
                               int unstable_poles = 0, int integrators = 0) {
     DensePeaks result;

@@ -51,8 +51,8 @@ struct BruteForce {
             const auto loop = Loop::make(plants[k], gains);
             if (!loop || !count_unstable_poles(*loop).stable()) return 100;
             const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
-            excess = std::max({excess, std::log(peaks.S.value / options.limits.Ms),
-                               std::log(peaks.T.value / options.limits.Mt)});
+            excess = std::max(
+                {excess, std::log(peaks.S.value / options.limits.Ms), std::log(peaks.T.value / options.limits.Mt)});
             robust::DesignProblem alone = problem;
             alone.plant = &plants[k];
             const double relative = std::exp(std::min(50.0, robust::log_cost(alone, x, 1e-4))) / own_IAE[k];
@@ -137,8 +137,7 @@ TEST_P(OneSettingOfSet, IsWithinHalfAPercentOfWhatBruteForceFinds) {
     const IdealPid& answer = one->controller;
     starts.push_back({std::log(std::abs(answer.Kp)), std::log(answer.Ti), std::log(answer.Td)});
     const double least = std::exp(brute.least(starts));
-    const double mine =
-        set.options.aim == Aim::worst ? one->worst_relative_IAE : one->mean_relative_IAE;
+    const double mine = set.options.aim == Aim::worst ? one->worst_relative_IAE : one->mean_relative_IAE;
     EXPECT_LE(mine, 1.005 * least) << set.name;
     for (const auto& point : one->points) {
         EXPECT_LE(point.Ms.value_or(99), set.options.limits.Ms * (1 + 2e-5)) << set.name << " at " << point.at;

@@ -5,8 +5,8 @@
 
 namespace tunewright::range_tests {
 
-/// A conical tank with free outflow behind a pipe: dh/dt = (q - c sqrt(h))/(pi (R/H)^2 h^2), R = 18 cm at H = 60 cm. The
-/// gain of the steady level to the inflow is 2 sqrt(h)/c, that of its rate 1/(pi (R/H)^2 h^2).
+/// A conical tank with free outflow behind a pipe: dh/dt = (q - c sqrt(h))/(pi (R/H)^2 h^2), R = 18 cm at H = 60 cm.
+/// The gain of the steady level to the inflow is 2 sqrt(h)/c, that of its rate 1/(pi (R/H)^2 h^2).
 inline NonlinearPlant conical_tank(double h) {
     return {.states = {{"h", h}},
             .parameters = {{"c", 40.0}, {"a", 0.09 * 3.14159265358979323846}},
@@ -20,8 +20,16 @@ inline NonlinearPlant conical_tank(double h) {
 /// 1039-1057; q = 100 l/min. At rest CA = 0.1 mol/l, T = 438.5 K at qc = 103.4 l/min.
 inline NonlinearPlant coolant_reactor() {
     return {.states = {{"CA", 0.1}, {"T", 438.54}},
-            .parameters = {{"q", 100.0}, {"V", 100.0}, {"CA0", 1.0}, {"T0", 350.0}, {"Tc0", 350.0}, {"k0", 7.2e10},
-                           {"ER", 1e4}, {"H", 2e5}, {"rc", 1000.0}, {"hA", 7e5}},
+            .parameters = {{"q", 100.0},
+                           {"V", 100.0},
+                           {"CA0", 1.0},
+                           {"T0", 350.0},
+                           {"Tc0", 350.0},
+                           {"k0", 7.2e10},
+                           {"ER", 1e4},
+                           {"H", 2e5},
+                           {"rc", 1000.0},
+                           {"hA", 7e5}},
             .equations = {{"CA", "q/V*(CA0 - CA) - k0*exp(-ER/T)*CA"},
                           {"T", "q/V*(T0 - T) + H/rc*k0*exp(-ER/T)*CA + qc/V*(1 - exp(-hA/(qc*rc)))*(Tc0 - T)"}},
             .input = {.name = "qc", .nominal = 103.41, .min = 1.0, .max = 300.0},
@@ -33,8 +41,13 @@ inline NonlinearPlant coolant_reactor() {
 /// steady states at Tc = 298 K: T = 311.2, 339.1 and 368.1 K.
 inline NonlinearPlant jacketed_reactor() {
     return {.states = {{"CA", 8.564}, {"T", 311.2}},
-            .parameters = {{"k0", 34930800.0}, {"E", 11843.0}, {"Rg", 1.987}, {"CAf", 10.0}, {"Tf", 298.0},
-                           {"J", 11.92}, {"UA", 0.3}},
+            .parameters = {{"k0", 34930800.0},
+                           {"E", 11843.0},
+                           {"Rg", 1.987},
+                           {"CAf", 10.0},
+                           {"Tf", 298.0},
+                           {"J", 11.92},
+                           {"UA", 0.3}},
             .equations = {{"CA", "CAf - CA - k0*exp(-E/(Rg*T))*CA"},
                           {"T", "Tf - T + J*k0*exp(-E/(Rg*T))*CA + UA*(Tc - T)"}},
             .input = {.name = "Tc", .nominal = 298.0, .min = 200.0, .max = 400.0},

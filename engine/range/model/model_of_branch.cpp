@@ -1,8 +1,9 @@
-#include "engine/range/model/model_of_equations.h"
-
+#include <memory>
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/range/equations/steady_branch.h"
+#include "engine/range/model/range_model.h"
 
 namespace tunewright::range {
 namespace {
@@ -16,13 +17,13 @@ public:
         high_ = branch_->high();
         for (int k = 0; k < kPoints; ++k) points_.push_back(low_ + (high_ - low_) * k / (kPoints - 1));
         points_.back() = high_;
-        stated_ = "At every place the plant is the exact linearisation of the equations about their steady state there.";
+        stated_ =
+            "At every place the plant is the exact linearisation of the equations about their steady state there.";
         for (const Fold& fold : branch_->input_folds())
             warnings_.push_back(
                 {"input-folds",
                  "The input turns back along the steady states at " + branch_->scheduling_name() + " = " +
-                     text(fold.state.at, 6) + " (" + branch_->range().plant.input.name + " = " +
-                     text(fold.state.u, 6) +
+                     text(fold.state.at, 6) + " (" + branch_->range().plant.input.name + " = " + text(fold.state.u, 6) +
                      "): on one side of it the plant has a pole in the right half-plane and only the loop holds it."});
     }
 

@@ -26,19 +26,26 @@ const WorstPlace* worst_limit(const RangeCurve& curve) {
     return worst;
 }
 
+DesignRules with_integrated_error(DesignRules rules) {
+    rules.integrated = true;
+    return rules;
+}
+
 class RangeWork {
 public:
     RangeWork(const RangeProblem& problem, const DesignRules& rules, const RunControl& control)
         : problem_(problem),
           options_(problem.options),
-          places_(*problem.model, problem.scheduling, rules, control),
+          points_(*problem.model, problem.scheduling, rules, control),
+          integrated_(*problem.model, problem.scheduling, with_integrated_error(rules), control),
+          places_(problem.model->has_responses() ? points_ : integrated_),
           control_(control) {}
 
     Expected<RangeDesign> run() {
         design_.stated = problem_.model->stated();
         design_.warnings = problem_.model->warnings();
         for (const double at : problem_.model->points())
-            if (const auto place = places_.at_point(at); !place) return place.error();
+            if (const auto place = points_.at_point(at); !place) return place.error();
         if (auto error = find_one()) return *error;
         if (auto error = find_schedule()) return *error;
         judge();
@@ -67,7 +74,7 @@ private:
 
     std::optional<Error> find_one() {
         std::vector<double> points = problem_.model->points();
-        auto one = design_one_setting(places_, points, options_);
+        auto one = design_one_setting(points_, points, options_);
         auto own = OwnOptima::over(places_);
         if (one) design_.one = *one;
         if (!one && (one.error().kind == ErrorKind::cancelled || one.error().kind == ErrorKind::numerical_failure))
@@ -83,7 +90,7 @@ private:
             if (!problem_.hold_between || largest_excess(design_.one_curve) <= kAllowedExcess || one->partial) break;
             points.push_back(worst->at);
             std::ranges::sort(points);
-            one = design_one_setting(places_, points, options_);
+            one = design_one_setting(points_, points, options_);
         }
         if (!one) {
             design_.one.reset();
@@ -195,7 +202,8 @@ private:
 
     const RangeProblem& problem_;
     const RangeOptions& options_;
-    Places places_;
+    Places points_, integrated_;
+    Places& places_;  ///< of the schedule and the curves
     const RunControl& control_;
     OwnOptima own_;
     RangeDesign design_;

@@ -153,11 +153,12 @@ public:
                                      std::to_string(first.unstable_poles()) +
                                      ": no frequency response lies between them. Part the range where that changes.");
         }
+        has_responses_ = false;
         choose_frequencies();
         for (const PlaceModel& model : models_) curves_.push_back(curve(*model.nominal));
         stated_ =
             "Between the points the logarithm of |P| and the unwrapped phase are linear in the scheduling variable; "
-            "such a plant has no response over time, so there Ti/Kp stands for the IAE.";
+            "such a plant has no response over time, so over the range Ti/Kp stands for the IAE.";
         return std::nullopt;
     }
 

@@ -37,6 +37,8 @@ public:
     /// How the plant between the points is known, as a sentence.
     const std::string& stated() const { return stated_; }
     const std::vector<Warning>& warnings() const { return warnings_; }
+    /// False where plants between the points are known by their frequency response alone.
+    bool has_responses() const { return has_responses_; }
 
     /// `place` in [low, high].
     virtual Expected<PlaceModel> at(double place) const = 0;
@@ -45,6 +47,7 @@ protected:
     double low_ = 0, high_ = 0;
     std::vector<double> points_;
     std::string stated_;
+    bool has_responses_ = true;
     std::vector<Warning> warnings_;
 };
 
@@ -57,7 +60,8 @@ protected:
 /// neighbours.
 ///
 /// `frequency_response`: ln |P| and the unwrapped phase are linear in `at` between neighbours, at 160 frequencies; such
-/// a place has no response over time, so there Ti/Kp stands for the IAE. Integrators and unstable poles must be alike.
+/// a place has no response over time, so over the range Ti/Kp stands for the IAE, for schedule and own optimum alike.
+/// Integrators and unstable poles must be alike.
 ///
 /// Errors: invalid_argument, `where` = "points", "points/k/at": fewer than 2 or more than 20 points, places not
 /// ascending or not finite; "points/k/plant": as LinearPlant::make; unlike structures with `parameters`; other counts

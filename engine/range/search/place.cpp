@@ -22,12 +22,11 @@ Place::Place(PlaceModel model, const DesignRules& rules) : model_(std::move(mode
     problem_.filter = rules.filter;
     problem_.limits = rules.limits;
     problem_.sign = rules.sign;
-    if (model_.measured) {
+    if (rules.integrated || model_.measured) problem_.objective = robust::Objective::load_ie;
+    if (model_.measured)
         problem_.measured = &*model_.measured;
-        problem_.objective = robust::Objective::load_ie;
-    } else {
+    else
         problem_.plant = &*model_.nominal;
-    }
     pose();
 }
 

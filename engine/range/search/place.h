@@ -17,7 +17,8 @@ struct DesignRules {
     bool pid = true;
     robust::FilterRule filter;
     robust::Limits limits;
-    double sign = 1;  ///< of Kp
+    double sign = 1;          ///< of Kp
+    bool integrated = false;  ///< Ti/Kp in place of the IAE, also where a response could be computed
 };
 
 /// Neither copied nor moved: the design problem points into it.

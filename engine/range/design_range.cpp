@@ -10,8 +10,8 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kCurvePlaces = 61;
-constexpr int kMostPlacesAdded = 6;      // of one setting that must hold between its points
-constexpr double kAllowedExcess = 5e-5;  // of a limit between the points
+constexpr int kMostPlacesAdded = 6;       // of one setting that must hold between its points
+constexpr double kAllowedBetween = 5e-5;  // of a limit between the points
 
 SettingsInUse always(const IdealPid& controller) {
     return [controller](double) { return std::vector<IdealPid>{controller}; };
@@ -87,7 +87,7 @@ private:
             design_.one = *one;
             design_.one_curve = std::move(*curve);
             const WorstPlace* worst = worst_limit(design_.one_curve);
-            if (!problem_.hold_between || largest_excess(design_.one_curve) <= kAllowedExcess || one->partial) break;
+            if (!problem_.hold_between || largest_excess(design_.one_curve) <= kAllowedBetween || one->partial) break;
             points.push_back(worst->at);
             std::ranges::sort(points);
             one = design_one_setting(points_, points, options_);
@@ -106,7 +106,7 @@ private:
     void warn_between() {
         if (!design_.one || design_.one_curve.places.empty()) return;
         const double excess = largest_excess(design_.one_curve);
-        if (excess <= kAllowedExcess) return;
+        if (excess <= kAllowedBetween) return;
         const WorstPlace* worst = worst_limit(design_.one_curve);
         const std::string what = worst->quantity == Quantity::Ms ? "Ms" : "Mt";
         design_.warnings.push_back(
@@ -119,7 +119,7 @@ private:
     bool one_is_enough() const {
         return design_.one && !design_.one_curve.places.empty() && !options_.rows &&
                largest_relative_IAE(design_.one_curve) <= 1 + options_.allowance &&
-               largest_excess(design_.one_curve) <= kAllowedExcess;
+               largest_excess(design_.one_curve) <= kAllowedBetween;
     }
 
     std::optional<Error> find_schedule() {

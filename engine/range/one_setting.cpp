@@ -8,6 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
+#include "engine/range/schedule/look.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
 
@@ -16,10 +17,10 @@ namespace {
 
 using robust::DesignPoint;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr double kCompareTolerance = 1e-3;  // of simulations that only compare starts
 constexpr double kPriceTolerance = 1e-5;    // of those that are reported
-constexpr double kAllowedExcess = 2e-5;     // of a limit, relative, on the independent grid
+constexpr double kAllowedOnGrid = 2e-5;     // of a limit, relative, on the independent grid
 constexpr double kSameDesign = 0.03;        // of each logarithm: another start that leads nowhere else
 constexpr double kFirstStep = 0.4;          // of a logarithm
 constexpr int kRounds = 4;                  // of searches under tighter limits
@@ -48,9 +49,9 @@ double middle_reference(const std::vector<Place*>& points) {
 }
 
 double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim aim, double tolerance) {
-    double worst = -kInfinity, sum = 0;
+    double worst = -kNowhere, sum = 0;
     for (const Place* place : points) {
-        if (!robust::is_stable(place->problem(), x)) return kInfinity;
+        if (!robust::is_stable(place->problem(), x)) return kNowhere;
         const double price = place->log_price(x, tolerance);
         worst = std::max(worst, price);
         sum += std::exp(price);
@@ -69,7 +70,7 @@ JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeO
         if (slope != nullptr) slope->setIdentity(3, n);
         return DesignPoint{v[0], v[1], n > 2 ? v[2] : 0};
     };
-    double fastest = 0, slowest = kInfinity;
+    double fastest = 0, slowest = kNowhere;
     for (const Place* place : points) {
         fastest = std::max(fastest, place->sweep().reference());
         slowest = std::min(slowest, place->sweep().reference());
@@ -117,7 +118,7 @@ Eigen::VectorXd unknowns(const DesignPoint& x, Eigen::Index n) {
     return v;
 }
 
-DesignPoint point_of(const Eigen::VectorXd& v) { return {v[0], v[1], v.size() > 2 ? v[2] : 0}; }
+DesignPoint point_of_unknowns(const Eigen::VectorXd& v) { return {v[0], v[1], v.size() > 2 ? v[2] : 0}; }
 
 double largest_excess(const std::vector<Place*>& points, const DesignPoint& x) {
     double worst = -1;
@@ -137,8 +138,8 @@ public:
         ++steps_;
         Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
         progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
-        progress.best =
-            BestSoFar{setting_at(rules_, point_of(result.v), 1), std::exp(result.log_price), limits_.Ms, limits_.Mt};
+        progress.best = BestSoFar{setting_at(rules_, point_of_unknowns(result.v), 1), std::exp(result.log_price),
+                                  limits_.Ms, limits_.Mt};
         control_.progress(progress);
     }
 
@@ -183,10 +184,6 @@ IdealPid setting_at(const DesignRules& rules, const DesignPoint& x, double b) {
 
 namespace {
 
-DesignPoint point_of(const IdealPid& pid) {
-    return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), pid.Td > 0 ? std::log(pid.Td) : -kInfinity};
-}
-
 void add_peaks(const Place& place, const IdealPid& controller, PlacePrice& price) {
     const std::string unstable = "The loop is not stable here.";
     const auto take = [&](const Peaks& peaks) {
@@ -216,7 +213,7 @@ PlacePrice price_at(const Place& place, const IdealPid& controller) {
                      .Ms = {},
                      .Mt = {}};
     add_peaks(place, controller, price);
-    const double log_price = price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kInfinity;
+    const double log_price = price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kNowhere;
     const std::string why = price.Ms ? "The response does not settle." : "The loop is not stable here.";
     price.relative_IAE = finite_or(std::exp(log_price), why);
     price.IAE = finite_or(std::exp(log_price) * price.own_IAE, why);
@@ -234,8 +231,8 @@ Expected<JointResult> verified_end(const std::vector<Place*>& points, const Rang
     search.stop = control.stop;
     JointResult end = best_end(joint, from, search, progress);
     for (int round = 0; round < kRounds; ++round) {
-        const double excess = largest_excess(points, point_of(end.v));
-        if (excess <= 0.5 * kAllowedExcess) return end;
+        const double excess = largest_excess(points, point_of_unknowns(end.v));
+        if (excess <= 0.5 * kAllowedOnGrid) return end;
         if (!std::isfinite(excess)) break;
         search.margin += 1.5 * excess + 1e-6;
         end = search_jointly(joint, end.v, search, {});
@@ -249,7 +246,7 @@ OneSetting described(const std::vector<Place*>& points, const DesignRules& rules
     OneSetting one{.controller = setting_at(rules, x, b), .points = {}};
     for (const Place* place : points) {
         one.points.push_back(price_at(*place, one.controller));
-        const double relative = one.points.back().relative_IAE.value_or(kInfinity);
+        const double relative = one.points.back().relative_IAE.value_or(kNowhere);
         one.mean_relative_IAE += relative / double(points.size());
         if (relative <= one.worst_relative_IAE) continue;
         one.worst_relative_IAE = relative;
@@ -273,7 +270,7 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
     for (int round = 0;; ++round) {
         const auto end = verified_end(points, options, *from, places.control(), progress);
         if (!end) return end.error();
-        const DesignPoint x = point_of(end->v);
+        const DesignPoint x = point_of_unknowns(end->v);
         bool added = false;
         for (Place* place : points) added = place->add_worst_inside(x, places.control().stop) || added;
         if (!added || end->stopped || round == kRegionRounds) {

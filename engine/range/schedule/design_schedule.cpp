@@ -13,13 +13,13 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kInsidePart = 3;             // places of a part that a search knows from the beginning
-constexpr double kInside = 3e-5;           // of ln of a limit: aimed at, so that places between hold it as well
-constexpr double kPriceRoom = 3e-3;        // of it: kept free for what lies between the search's places
-constexpr double kPriceDoubt = 1e-3;       // of it: what the interpolated own optima may be off by
-constexpr int kRounds = 8;                 // of adding places that exceed
-constexpr double kHopelessLayout = 0.045;  // of the layout's error: fewer rows are not tried
-constexpr double kHopelessStep = 0.15;     // of what is left to the price allowed
+constexpr int kInsidePart = 3;           // places of a part that a search knows from the beginning
+constexpr double kInside = 3e-5;         // of ln of a limit: aimed at, so that places between hold it as well
+constexpr double kPriceRoom = 1e-3;      // of ln of the price: kept free for what lies between the search's places
+constexpr int kRounds = 8;               // of adding places that exceed
+constexpr double kHopelessLayout = 0.6;  // of ln of the price allowed, of the layout's error: fewer rows are not tried
+constexpr double kHopelessStep = 0.15;   // of what is left to the price allowed
+constexpr double kNearby = 0.3;          // of the distance of a search's places inside a part
 constexpr int kIterations = 14;
 
 class LinearDesign {
@@ -32,7 +32,9 @@ public:
         const auto layout = own_.layout(rows, options_.interpolation);
         const Knots knots(places_, options_.interpolation, layout.at);
         JointProblem joint = knots.problem();
-        if (auto error = know_parts(layout.at)) return *error;
+        const auto known = places_of(layout.at);
+        if (!known) return known.error();
+        joint.places.assign(known->begin(), known->end());
         JointOptions search;
         search.most_iterations = kIterations;
         search.hopeless = least_price ? 0 : kHopelessStep;
@@ -42,44 +44,52 @@ public:
         Eigen::VectorXd v = knots.start(own_);
         std::optional<ScheduleDesign> best;
         for (int round = 0; round < kRounds; ++round) {
-            const auto known = places_.known();
-            joint.places.assign(known.begin(), known.end());
             const auto end = search_jointly(joint, v, search, {});
             v = end.v;
             if (!end.holds() || !std::isfinite(end.log_price)) break;
             if (!least_price && end.log_price > allowed_) break;
             const Schedule schedule = knots.schedule(v, places_.rules(), options_.b);
-            const auto verified =
-                verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_ - kPriceDoubt);
+            const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_);
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= kAllowedLogExcess;
             if ((held && verified->worst.empty()) || end.stopped) return best;
             if (!held && verified->worst.empty()) search.margin += 1.2 * verified->excess;
-            for (const double at : verified->worst)
-                if (const auto place = places_.at(at); !place) return place.error();
+            for (const double at : verified->worst) {
+                const auto place = places_.at(at);
+                if (!place) return place.error();
+                if (std::ranges::find(joint.places, *place) == joint.places.end()) joint.places.push_back(*place);
+            }
             own_.renew(places_);
         }
         return best;
     }
 
-    double allowed() const { return allowed_; }
-
 private:
-    /// The rows' places, where the price is largest, and some inside every part, where the limits are nearest.
-    std::optional<Error> know_parts(const std::vector<double>& rows) {
-        for (std::size_t k = 1; k < rows.size(); ++k) {
-            const double from = rows[k - 1], width = rows[k] - from;
-            for (int i = 1; i <= kInsidePart + 1; ++i) {
-                const double at = from + width * i / (kInsidePart + 1),
-                             near = (i > kInsidePart ? 0.02 : 0.3) * width / (kInsidePart + 1);
-                const bool known =
-                    std::ranges::any_of(own_.at(), [&](double other) { return std::abs(other - at) < near; });
-                if (known) continue;
-                if (const auto place = places_.at(at); !place) return place.error();
+    /// The rows' places, where the price is largest, and some inside every part, where the limits are nearest; inside,
+    /// what is known nearby serves.
+    Expected<std::vector<Place*>> places_of(const std::vector<double>& rows) {
+        std::vector<Place*> result;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const auto row = places_.at(rows[k]);
+            if (!row) return row.error();
+            result.push_back(*row);
+            if (k + 1 == rows.size()) break;
+            const double width = (rows[k + 1] - rows[k]) / (kInsidePart + 1);
+            for (int i = 1; i <= kInsidePart; ++i) {
+                const double at = rows[k] + width * i;
+                const auto inside = places_.at(near(at, kNearby * width).value_or(at));
+                if (!inside) return inside.error();
+                result.push_back(*inside);
             }
         }
         own_.renew(places_);
+        return result;
+    }
+
+    std::optional<double> near(double at, double reach) const {
+        for (const double known : own_.at())
+            if (std::abs(known - at) < reach) return known;
         return std::nullopt;
     }
 
@@ -129,9 +139,10 @@ void tell(const Places& places, int rows) {
 Expected<ScheduleDesign> linear_schedule(Places& places, OwnOptima& own, const RangeOptions& options) {
     LinearDesign linear(places, own, options);
     std::optional<ScheduleDesign> best;
+    const double hopeless = kHopelessLayout * std::log1p(options.allowance);
     const int first = options.rows.value_or(2), last = options.rows.value_or(kMostRows);
     for (int rows = std::max(2, first); rows <= std::max(2, last); ++rows) {
-        if (!options.rows && own.layout(rows, options.interpolation).error > kHopelessLayout) continue;
+        if (!options.rows && own.layout(rows, options.interpolation).error > hopeless) continue;
         tell(places, rows);
         auto design = linear.with(rows, options.rows.has_value());
         if (!design) return design.error();

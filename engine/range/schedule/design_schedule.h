@@ -21,11 +21,11 @@ struct ScheduleDesign {
     std::vector<Warning> warnings;  ///< "schedule-over-allowance"
 };
 
-/// All rows are designed together: their settings and the inner rows' places are the unknowns of one search
-/// (search_jointly) for the least of the worst price over the range, the limits held at all places of it, and verified
-/// at 200 places and more between (in every part at least nine); the worst of these join the search until none exceeds
-/// a limit by more than 2e-5 or the allowance. Of `steps` each part is one setting that serves its places and half the
-/// hysteresis beyond; parts are made as long as they can be, from the low end.
+/// The rows' places are those of OwnOptima::layout. Their settings are designed together: all are unknowns of one
+/// search (search_jointly) for the least of the worst price over the range, the limits held at the rows and at three
+/// places of every part, and verified between (verify()); the worst of the places met join the search, or the limits
+/// are tightened by what is exceeded, until nothing exceeds a limit by more than 2e-5, or the allowance. Of `steps`
+/// each part is one setting that serves its places and half the hysteresis beyond (steps_schedule).
 ///
 /// Without `options.rows` the fewest rows, from 1 on; where even 20 do not stay within the allowance, those that come
 /// nearest, with a warning. `own` learns the places that are looked at.

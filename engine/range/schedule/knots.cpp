@@ -10,9 +10,8 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kFirstStep = 0.25;      // of a logarithm
-constexpr double kFirstPlaceStep = 0.3;  // of the way to the bounds of a place
-constexpr double kUnbounded = 700;       // of a logarithm: what a double can hold
+constexpr double kFirstStep = 0.25;  // of a logarithm
+constexpr double kUnbounded = 700;   // of a logarithm: what a double can hold
 
 }  // namespace
 
@@ -21,8 +20,6 @@ using Eigen::Index;
 Knots::Knots(const Places& places, Interpolation interpolation, std::vector<double> at)
     : interpolation_(interpolation),
       at_(std::move(at)),
-      low_(places.model().low()),
-      span_(places.model().high() - places.model().low()),
       slowest_(std::numeric_limits<double>::infinity()),
       dimension_(places.rules().pid ? 3 : 2) {
     for (const Place* place : places.known()) {
@@ -31,26 +28,19 @@ Knots::Knots(const Places& places, Interpolation interpolation, std::vector<doub
     }
 }
 
-double Knots::place(const Eigen::VectorXd& v, Index row) const {
-    if (row == 0) return at_.front();
-    if (row + 1 == rows()) return at_.back();
-    return low_ + span_ * v[dimension_ * rows() + row - 1];
-}
-
 Eigen::VectorXd Knots::start(const OwnOptima& own) const {
     Eigen::VectorXd v(unknowns());
     for (Index row = 0; row < rows(); ++row) {
         const auto x = own.optimum(at_[std::size_t(row)]);
         for (Index i = 0; i < dimension_; ++i) v[dimension_ * row + i] = x[std::size_t(i)];
-        if (row > 0 && row + 1 < rows()) v[dimension_ * rows() + row - 1] = (at_[std::size_t(row)] - low_) / span_;
     }
     return v;
 }
 
 robust::DesignPoint Knots::settings(const Eigen::VectorXd& v, double at, SettingsSlope* slope) const {
     Index left = 0;
-    while (left + 2 < rows() && at >= place(v, left + 1)) ++left;
-    const double from = place(v, left), width = place(v, left + 1) - from;
+    while (left + 2 < rows() && at >= at_[std::size_t(left + 1)]) ++left;
+    const double from = at_[std::size_t(left)], width = at_[std::size_t(left + 1)] - from;
     const double share = std::clamp((at - from) / width, 0.0, 1.0);
     if (slope != nullptr) slope->setZero(3, unknowns());
     robust::DesignPoint x{};
@@ -63,10 +53,6 @@ robust::DesignPoint Knots::settings(const Eigen::VectorXd& v, double at, Setting
         if (slope == nullptr) continue;
         (*slope)(i, dimension_ * left + i) = (1 - share) * a / mixed;
         (*slope)(i, dimension_ * (left + 1) + i) = share * b / mixed;
-        const double by_place = -sign * (b - a) / (mixed * width) * span_;
-        const Index first = dimension_ * rows() - 1;
-        if (left > 0) (*slope)(i, first + left) = (1 - share) * by_place;
-        if (left + 2 < rows()) (*slope)(i, first + left + 1) = share * by_place;
     }
     return x;
 }
@@ -80,12 +66,6 @@ JointProblem Knots::problem() const {
         joint.low[dimension_ * row + 1] = std::log(robust::kMinTi / fastest_);
         if (dimension_ > 2) joint.low[dimension_ * row + 2] = std::log(robust::kMinTd / fastest_);
         if (dimension_ > 2) joint.high[dimension_ * row + 2] = std::log(robust::kMaxTd / slowest_);
-        if (row == 0 || row + 1 == rows()) continue;
-        const Index k = dimension_ * rows() + row - 1;
-        const auto part = [&](Index of) { return (at_[std::size_t(of)] - low_) / span_; };
-        joint.low[k] = 0.5 * (part(row - 1) + part(row));
-        joint.high[k] = 0.5 * (part(row + 1) + part(row));
-        joint.step[k] = kFirstPlaceStep * std::min(part(row) - joint.low[k], joint.high[k] - part(row));
     }
     joint.settings = [this](const Eigen::VectorXd& v, double at, SettingsSlope* slope) {
         return settings(v, at, slope);
@@ -99,7 +79,7 @@ Schedule Knots::schedule(const Eigen::VectorXd& v, const DesignRules& rules, dou
         const Index k = dimension_ * row;
         const IdealPid pid = setting_at(rules, {v[k], v[k + 1], dimension_ > 2 ? v[k + 2] : 0}, b);
         schedule.rows.push_back(
-            {.at = place(v, row), .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = b});
+            {.at = at_[std::size_t(row)], .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = b});
     }
     return schedule;
 }

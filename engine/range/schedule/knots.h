@@ -1,4 +1,4 @@
-// A schedule's rows and the places of its inner ones as the unknowns of a search.
+// The settings of a schedule's rows as the unknowns of a search.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 
 namespace tunewright::range {
 
-/// Unknowns: ln Kp, ln Ti (and ln Td) of each row in turn, then the places of the inner rows in parts of the range. The
-/// kinds that are linear between rows.
+/// Unknowns: ln Kp, ln Ti (and ln Td) of each row in turn, for the kinds that are linear between rows. The rows' places
+/// stay where they are: moved, they would pass the search's own places, where prices have kinks.
 class Knots {
 public:
     Knots(const Places& places, Interpolation interpolation, std::vector<double> at);
@@ -19,19 +19,17 @@ public:
     /// The own optima of the rows' places.
     Eigen::VectorXd start(const OwnOptima& own) const;
     robust::DesignPoint settings(const Eigen::VectorXd& v, double at, SettingsSlope* slope) const;
-    /// Bounds and steps; settings. The places are left empty. An inner row moves no further than halfway to its
-    /// neighbours.
+    /// Bounds and steps; settings. The places are left empty.
     JointProblem problem() const;
     Schedule schedule(const Eigen::VectorXd& v, const DesignRules& rules, double b) const;
 
 private:
     Eigen::Index rows() const { return Eigen::Index(at_.size()); }
-    Eigen::Index unknowns() const { return dimension_ * rows() + std::max<Eigen::Index>(0, rows() - 2); }
-    double place(const Eigen::VectorXd& v, Eigen::Index row) const;
+    Eigen::Index unknowns() const { return dimension_ * rows(); }
 
     Interpolation interpolation_;
     std::vector<double> at_;
-    double low_, span_, fastest_ = 0, slowest_ = 0;
+    double fastest_ = 0, slowest_ = 0;
     Eigen::Index dimension_;
 };
 

@@ -12,6 +12,7 @@ namespace {
 constexpr double kAllPeaks = -5;         // of ln of a limit's ratio: every peak counts
 constexpr double kHighPeaks = -0.05;     // of it: only what may exceed the limit somewhere near
 constexpr double kLookTolerance = 3e-4;  // of the simulations
+constexpr double kFineTolerance = 1e-5;
 constexpr double kWorst = std::numeric_limits<double>::infinity();
 
 void add_setting(Look& look, const Place& place, const robust::DesignPoint& x, double log_own_IAE, double above) {
@@ -22,7 +23,9 @@ void add_setting(Look& look, const Place& place, const robust::DesignPoint& x, d
         if (peak.kind == robust::ConstraintKind::T) look.Mt = std::max(look.Mt, limits.Mt * std::exp(peak.value));
     }
     look.stable = look.stable && robust::is_stable(place.problem(), x);
-    const double log_IAE = look.stable ? robust::log_cost(place.problem(), x, kLookTolerance) : kWorst;
+    double log_IAE = look.stable ? robust::log_cost(place.problem(), x, kLookTolerance) : kWorst;
+    // A run that is coarse may miss that a slow tail has settled.
+    if (look.stable && !std::isfinite(log_IAE)) log_IAE = robust::log_cost(place.problem(), x, kFineTolerance);
     look.log_price = std::max(look.log_price, log_IAE - log_own_IAE);
 }
 

@@ -94,6 +94,35 @@ protected:
     std::vector<PlaceModel> models_;
 };
 
+using LogRatios = std::vector<double>;
+
+/// The cosine between two ways off the nominal plants.
+double alike(const LogRatios& a, const LogRatios& b) {
+    double ab = 0, aa = 1e-300, bb = 1e-300;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        ab += a[i] * b[i];
+        aa += a[i] * a[i];
+        bb += b[i] * b[i];
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+/// Each member of one family with that of the other that lies off its nominal plant most alike; of a family without
+/// members the nominal plant.
+std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>& left,
+                                                    const std::vector<LogRatios>& right, std::size_t size) {
+    std::vector<std::pair<LogRatios, LogRatios>> pairs;
+    const auto most_alike = [&](const std::vector<LogRatios>& others, const LogRatios& member) {
+        if (others.empty()) return LogRatios(size, 0.0);
+        return *std::ranges::max_element(others, {}, [&](const LogRatios& other) { return alike(other, member); });
+    };
+    for (const LogRatios& member : left) pairs.emplace_back(member, most_alike(right, member));
+    for (const LogRatios& member : right) pairs.emplace_back(most_alike(left, member), member);
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
 class ParametersModel : public PointsModel {
 public:
     std::optional<Error> make(const std::vector<RangePoint>& points) {
@@ -105,6 +134,9 @@ public:
                                      " differ in structure, so their parameters say nothing about the plants between. "
                                      "Give both in one structure of named parameters or coefficients, or interpolate "
                                      "the frequency responses.");
+        for (std::size_t k = 0; k + 1 < points.size(); ++k)
+            pairs_.push_back(paired(ratios(points[k].family), ratios(points[k + 1].family),
+                                    structure_numbers(points[k].family.nominal()).size()));
         stated_ =
             "Between the points the logarithms of the parameters (gain, time constants, dead time) are linear in the "
             "scheduling variable; a parameter of either sign, or 0 at one end, is linear itself.";
@@ -120,14 +152,25 @@ public:
         auto nominal = LinearPlant::make(plant);
         if (!nominal) return nominal.error();
         PlaceModel model{.at = place, .nominal = std::move(*nominal), .members = {}, .measured = {}};
-        for (const PlantFamily* family : {&one, &other})
-            for (const Plant& member : members_beside_nominal(*family)) {
-                if (!same_structure(member, plant)) continue;
-                auto linear = LinearPlant::make(moved_alike(plant, family->nominal(), member));
-                if (linear) model.members.push_back(std::move(*linear));
-            }
+        for (const auto& [a, b] : pairs_[left]) {
+            LogRatios between(a.size());
+            for (std::size_t i = 0; i < a.size(); ++i) between[i] = a[i] + share * (b[i] - a[i]);
+            auto linear = LinearPlant::make(moved_by(plant, between));
+            if (linear) model.members.push_back(std::move(*linear));
+        }
         return model;
     }
+
+private:
+    /// Of the members of the nominal plant's structure: others say nothing about plants between.
+    static std::vector<LogRatios> ratios(const PlantFamily& family) {
+        std::vector<LogRatios> result;
+        for (const Plant& member : members_beside_nominal(family))
+            if (same_structure(member, family.nominal())) result.push_back(log_ratios(family.nominal(), member));
+        return result;
+    }
+
+    std::vector<std::vector<std::pair<LogRatios, LogRatios>>> pairs_;  // of each two neighbours
 };
 
 /// ln |P| and the unwrapped phase at the model's frequencies.

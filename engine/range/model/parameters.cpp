@@ -66,13 +66,17 @@ Plant plant_between(const Plant& left, const Plant& right, double share) {
     return plant;
 }
 
-Plant moved_alike(const Plant& plant, const Plant& nominal, const Plant& member) {
+std::vector<double> log_ratios(const Plant& nominal, const Plant& member) {
+    auto ratios = structure_numbers(member);
+    const auto from = structure_numbers(nominal);
+    for (std::size_t i = 0; i < ratios.size(); ++i)
+        ratios[i] = ratios[i] * from[i] > 0 ? std::log(ratios[i] / from[i]) : 0;
+    return ratios;
+}
+
+Plant moved_by(const Plant& plant, const std::vector<double>& log_ratios) {
     auto numbers = structure_numbers(plant);
-    const auto from = structure_numbers(nominal), to = structure_numbers(member);
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        numbers[i] = from[i] * to[i] > 0 && numbers[i] * from[i] > 0 ? numbers[i] * to[i] / from[i]
-                                                                     : numbers[i] + to[i] - from[i];
-    // A dead time cut off at 0 stays there.
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] *= std::exp(log_ratios[i]);
     numbers.back() = std::max(0.0, numbers.back());
     return with_numbers(in_order(plant), numbers);
 }

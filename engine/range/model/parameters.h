@@ -23,9 +23,11 @@ bool same_structure(const Plant& one, const Plant& other);
 /// uncertainty of its own.
 Plant plant_between(const Plant& left, const Plant& right, double share);
 
-/// `plant` with what `member` has of `nominal`: each number times their ratio, or plus their difference where the ratio
-/// would be none (one is 0, or the signs differ). All three are of the same structure; a dead time below 0 is cut off
-/// at 0.
-Plant moved_alike(const Plant& plant, const Plant& nominal, const Plant& member);
+/// How a member of a family lies off its nominal plant: ln of the ratio of each number, 0 where there is none.
+std::vector<double> log_ratios(const Plant& nominal, const Plant& member);
+
+/// `plant` with each number times the ratio of these logarithms: what a member of a family has of its nominal plant.
+/// A dead time below 0 is cut off at 0.
+Plant moved_by(const Plant& plant, const std::vector<double>& log_ratios);
 
 }  // namespace tunewright::range

@@ -55,9 +55,9 @@ protected:
 ///
 /// `parameters`: ln of K, T, T1, T2, zeta, L and of a transfer function's coefficients is linear in `at` between
 /// neighbours, the parameter itself where its values differ in sign or one is 0. Sopdt's time constants go in
-/// descending order. Uncertainty: what each member of a neighbour's family has of its nominal parameters (a factor, or
-/// a difference where the parameter is interpolated linearly) is applied to the plant between: the members of both
-/// neighbours.
+/// descending order. Uncertainty: each member of a neighbour's family, as ratios to its nominal parameters, is taken
+/// together with the member of the other neighbour's that lies off most alike; the logarithms of the ratios are linear
+/// in `at` too.
 ///
 /// `frequency_response`: ln |P| and the unwrapped phase are linear in `at` between neighbours, at 160 frequencies; such
 /// a place has no response over time, so over the range Ti/Kp stands for the IAE, for schedule and own optimum alike.

@@ -53,7 +53,9 @@ public:
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= kAllowedLogExcess;
-            if ((held && verified->worst.empty()) || end.stopped) return best;
+            const bool good = held && verified->worst.empty();
+            if (end.stopped || (good && !add_worst_inside(schedule))) return best;
+            if (good) best.reset();  // plants inside a region have joined, on which it does not hold
             if (!held && verified->worst.empty()) search.margin += 1.2 * verified->excess;
             for (const double at : verified->worst) {
                 const auto place = places_.at(at);
@@ -85,6 +87,17 @@ private:
         }
         own_.renew(places_);
         return result;
+    }
+
+    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit?
+    bool add_worst_inside(const Schedule& schedule) {
+        bool added = false;
+        for (Place* place : places_.known()) {
+            if (!place->model().family) continue;
+            const auto x = point_of(settings_at(schedule, place->at()));
+            added = place->add_worst_inside(x, places_.control().stop) || added;
+        }
+        return added;
     }
 
     std::optional<double> near(double at, double reach) const {

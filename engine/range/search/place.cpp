@@ -13,6 +13,8 @@ namespace {
 using robust::DesignPoint;
 
 constexpr int kMostRounds = 10;           // of adding the worst plant found inside a region
+constexpr std::size_t kFewMembers = 4;    // all of them are kept
+constexpr double kFarFromLimits = -0.02;  // of ln of a limit's ratio: a member below it is not active
 constexpr double kJustAboveLeast = 1.01;  // times the least Td: where a PI stands in for a PID
 
 }  // namespace
@@ -52,7 +54,22 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
         last = optimum_;
         before = &last;
     }
+    keep_active_members();
     return std::nullopt;
+}
+
+/// The searches that follow move the settings by a few percent: members far from every limit at the optimum would only
+/// cost time. Looks over the range form their places anew, with all members.
+void Place::keep_active_members() {
+    if (model_.members.size() <= kFewMembers) return;
+    std::vector<double> nearest(model_.members.size(), kFarFromLimits);
+    for (const auto& peak : sweep_->peaks(optimum_, kFarFromLimits))
+        if (peak.plant > 0) nearest[peak.plant - 1] = std::max(nearest[peak.plant - 1], peak.value);
+    std::vector<LinearPlant> kept;
+    for (std::size_t i = 0; i < nearest.size(); ++i)
+        if (nearest[i] > kFarFromLimits) kept.push_back(std::move(model_.members[i]));
+    model_.members = std::move(kept);
+    pose();
 }
 
 double Place::log_price(const DesignPoint& x, double tolerance) const {

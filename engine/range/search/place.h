@@ -52,6 +52,7 @@ public:
 
 private:
     void pose();
+    void keep_active_members();
 
     PlaceModel model_;
     robust::DesignProblem problem_;

@@ -37,7 +37,7 @@ TEST(RangeModel, InterpolatesLinearlyWhereASignOrAZeroForbidsLogarithms) {
                 LinearPlant::make(TransferFunction{{0.5, 1}, {1, 2, 1}, 1})->at({0, 2}).imag(), 1e-12);
 }
 
-TEST(RangeModel, CarriesTheMembersOfBothNeighboursBetween) {
+TEST(RangeModel, InterpolatesWhatIsUncertainOfBothNeighbours) {
     Fopdt uncertain{1, 10, 2};
     uncertain.uncertainty.K = FactorRange{0.5, 2};
     const auto model = model_of_points(two(uncertain, Fopdt{4, 10, 2}), Between::parameters);
@@ -48,8 +48,17 @@ TEST(RangeModel, CarriesTheMembersOfBothNeighboursBetween) {
         least = std::min(least, member.low_frequency_gain());
         largest = std::max(largest, member.low_frequency_gain());
     }
-    EXPECT_NEAR(least, 1, 1e-12);    // half of the 2 between
-    EXPECT_NEAR(largest, 4, 1e-12);  // and twice it
+    // Nothing is uncertain at the right: halfway the factors 0.5 and 2 have become their roots, of the 2 between.
+    EXPECT_NEAR(least, 2 / std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(largest, 2 * std::sqrt(2.0), 1e-12);
+    Fopdt surer{4, 10, 2};
+    surer.uncertainty.K = FactorRange{0.9, 1.1};
+    const auto both = model_of_points(two(uncertain, surer), Between::parameters);
+    largest = 0;
+    const auto middle_of_both = (*both)->at(2);
+    ASSERT_TRUE(middle_of_both);
+    for (const auto& member : middle_of_both->members) largest = std::max(largest, member.low_frequency_gain());
+    EXPECT_NEAR(largest, 2 * std::sqrt(2 * 1.1), 1e-12);
 }
 
 TEST(RangeModel, InterpolatesFrequencyResponsesOfUnlikeStructures) {

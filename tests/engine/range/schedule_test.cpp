@@ -220,6 +220,31 @@ TEST(Schedule, BetweenPointsHoldsItsLimitsOnThePlantsThatTheInterpolationStates)
     }
 }
 
+TEST(Schedule, HoldsItsLimitsOnTheUncertainPlantsOfEveryPoint) {
+    auto points = five_points();
+    for (RangePoint& point : points) {
+        Fopdt plant = std::get<Fopdt>(point.family.nominal());
+        plant.uncertainty.K = FactorRange{0.85, 1.2};
+        plant.uncertainty.L = FactorRange{0.9, 1.2};
+        point.family = family_of(plant);
+    }
+    const auto model = model_of_points(points, Between::parameters);
+    const auto design = design_range({.scheduling = {}, .model = *model, .options = {}}, {});
+    ASSERT_TRUE(design) << design.error().message;
+    ASSERT_TRUE(design->schedule) << design->why_no_schedule;
+    EXPECT_TRUE(design->schedule->holds_limits);
+    for (int i = 0; i <= 40; ++i)
+        for (const double k : {0.85, 1.0, 1.2})
+            for (const double l : {0.9, 1.2}) {
+                const double share = i / 40.0, K = k * std::pow(3, share), T = 10 * std::pow(0.5, share), L = 2 * l;
+                const auto peaks =
+                    range_tests::dense_peaks([&](Complex s) { return K * std::exp(-s * L) / (T * s + 1.0); },
+                                             settings_at(design->schedule->schedule, 10 + 80 * share), 1e-3, 1e3, 3000);
+                EXPECT_TRUE(peaks.stable);
+                EXPECT_LE(std::max(peaks.Ms, peaks.Mt), 1.4 * (1 + 1e-4)) << share << " " << k << " " << l;
+            }
+}
+
 TEST(Schedule, OfAGivenNumberOfRowsHasThem) {
     const auto model = model_of_points(five_points(), Between::parameters);
     for (const int rows : {1, 3, 6}) {

@@ -54,7 +54,7 @@ public:
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= kAllowedLogExcess;
             const bool good = held && verified->worst.empty();
-            if (end.stopped || (good && !add_worst_inside(schedule))) return best;
+            if (end.stopped || (good && !add_worst_inside(schedule, joint.places))) return best;
             if (good) best.reset();  // plants inside a region have joined, on which it does not hold
             if (!held && verified->worst.empty()) search.margin += 1.2 * verified->excess;
             for (const double at : verified->worst) {
@@ -89,13 +89,16 @@ private:
         return result;
     }
 
-    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit?
-    bool add_worst_inside(const Schedule& schedule) {
+    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit? The
+    /// place then joins the search.
+    bool add_worst_inside(const Schedule& schedule, std::vector<const Place*>& searched) {
         bool added = false;
         for (Place* place : places_.known()) {
             if (!place->model().family) continue;
             const auto x = point_of(settings_at(schedule, place->at()));
-            added = place->add_worst_inside(x, places_.control().stop) || added;
+            if (!place->add_worst_inside(x, places_.control().stop)) continue;
+            added = true;
+            if (std::ranges::find(searched, place) == searched.end()) searched.push_back(place);
         }
         return added;
     }

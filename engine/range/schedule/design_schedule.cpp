@@ -89,8 +89,8 @@ private:
         return result;
     }
 
-    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit? The
-    /// place then joins the search.
+    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit?
+    /// The place then joins the search.
     bool add_worst_inside(const Schedule& schedule, std::vector<const Place*>& searched) {
         bool added = false;
         for (Place* place : places_.known()) {

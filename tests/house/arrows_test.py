@@ -21,8 +21,9 @@ ROOMS = {
     "identification": {"simulation", "loop", "plant", "numerics"},
     "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
     "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
-    "request": {"evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant", "controller",
-                "numerics"},
+    "range": {"tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},
+    "request": {"range", "evaluation", "tuning", "identification", "reduction", "simulation", "loop", "plant",
+                "controller", "numerics"},
 }
 # What stands at the engine's top is for all rooms and uses none, but for the controller that progress shows.
 TOP_MAY_USE = {"controller"}

@@ -104,7 +104,13 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     if (plant.dead_time() > 0) curve.resolved_to = kTurnsResolved * 2 * std::numbers::pi / plant.dead_time();
     curve.omega = frequencies(problem_, plant, reference_, curve.resolved_to);
     // On an undamped pole P is infinite; its neighbours show the same.
-    std::erase_if(curve.omega, [&](double w) { return !std::isfinite(std::abs(plant.at({0, w}))); });
+    std::erase_if(curve.omega, [&](double w) {
+        const Complex P = plant.at({0, w});
+        if (!std::isfinite(P.real()) || !std::isfinite(P.imag())) return true;
+        curve.P_re.push_back(P.real());
+        curve.P_im.push_back(P.imag());
+        return false;
+    });
     return curve;
 }
 
@@ -121,6 +127,11 @@ Sweep::Curve Sweep::measured_curve() const {
             curve.omega.push_back(before * std::pow(measured / before, double(k) / parts));
         curve.omega.push_back(measured);
     }
+    for (const double w : curve.omega) {
+        const Complex P = plant_at(curve, w);
+        curve.P_re.push_back(P.real());
+        curve.P_im.push_back(P.imag());
+    }
     return curve;
 }
 
@@ -129,11 +140,6 @@ Complex Sweep::plant_at(const Curve& curve, double omega) const {
 }
 
 void Sweep::complete(Curve& curve) const {
-    for (const double w : curve.omega) {
-        const Complex P = plant_at(curve, w);
-        curve.P_re.push_back(P.real());
-        curve.P_im.push_back(P.imag());
-    }
     const auto first = std::lower_bound(curve.omega.begin(), curve.omega.end(), curve.resolved_to);
     curve.resolved = static_cast<std::size_t>(first - curve.omega.begin());
     for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());

@@ -1,0 +1,139 @@
+#include "engine/range/curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/range/one_setting.h"
+
+namespace tunewright::range {
+namespace {
+
+constexpr double kUnstable = std::numeric_limits<double>::infinity();
+constexpr int kRefinements = 2;  // looks at the top of a parabola, for the worst place of a quantity
+
+double value_of(const Look& look, Quantity quantity) {
+    if (!look.stable) return kUnstable;
+    if (quantity == Quantity::Ms) return look.Ms;
+    if (quantity == Quantity::Mt) return look.Mt;
+    return std::exp(look.log_price);
+}
+
+PlaceFigures figures(const Look& look) {
+    const std::string why = look.stable ? "The response does not settle." : "The loop is not stable here.";
+    PlaceFigures result{.at = look.at, .Ms = no_figure(why), .Mt = no_figure(why), .relative_IAE = no_figure(why)};
+    if (!look.stable) return result;
+    result.Ms = look.Ms;
+    result.Mt = look.Mt;
+    result.relative_IAE = finite_or(std::exp(look.log_price), why);
+    return result;
+}
+
+/// The looks of a curve, ascending, and the search for the worst between them.
+class CurveLooks {
+public:
+    CurveLooks(Places& places, OwnOptima& own, const SettingsInUse& settings)
+        : places_(places), own_(own), settings_(settings) {}
+
+    std::optional<Error> take(double at) {
+        const auto look = look_between(places_, own_, settings_(at), at, true);
+        if (!look) return look.error();
+        looks_.insert(std::ranges::upper_bound(looks_, at, {}, &Look::at), *look);
+        return std::nullopt;
+    }
+
+    std::optional<Error> refine(Quantity quantity) {
+        for (int k = 0; k < kRefinements; ++k) {
+            const std::size_t i = largest(quantity);
+            if (i == 0 || i + 1 == looks_.size()) return std::nullopt;
+            const auto value = [&](std::size_t j) { return value_of(looks_[j], quantity); };
+            const double x = looks_[i].at, left = (value(i) - value(i - 1)) / (x - looks_[i - 1].at),
+                         right = (value(i + 1) - value(i)) / (looks_[i + 1].at - x),
+                         bend = (right - left) / (looks_[i + 1].at - looks_[i - 1].at);
+            if (!std::isfinite(bend) || !(bend < 0)) return std::nullopt;
+            const double top = 0.5 * (x + looks_[i - 1].at) - 0.5 * left / bend;
+            if (!(top > looks_[i - 1].at && top < looks_[i + 1].at) || top == x) return std::nullopt;
+            if (auto error = take(top)) return error;
+        }
+        return std::nullopt;
+    }
+
+    std::size_t largest(Quantity quantity) const {
+        std::size_t worst = 0;
+        for (std::size_t i = 1; i < looks_.size(); ++i)
+            if (value_of(looks_[i], quantity) > value_of(looks_[worst], quantity)) worst = i;
+        return worst;
+    }
+
+    const std::vector<Look>& all() const { return looks_; }
+
+private:
+    Places& places_;
+    OwnOptima& own_;
+    const SettingsInUse& settings_;
+    std::vector<Look> looks_;
+};
+
+/// The worst place again, against its own optimum and on the grid that no search sees.
+Expected<WorstPlace> checked(Places& places, const SettingsInUse& settings, double at, Quantity quantity,
+                             double allowance) {
+    const auto place = places.at(at);
+    if (!place) return place.error();
+    const robust::Limits& limits = places.rules().limits;
+    WorstPlace worst{.quantity = quantity, .at = at, .value = {}, .limit = 1 + allowance};
+    if (quantity != Quantity::relative_IAE) worst.limit = quantity == Quantity::Ms ? limits.Ms : limits.Mt;
+    for (const IdealPid& pid : settings(at)) {
+        const PlacePrice price = price_at(**place, pid);
+        const Figure& value = quantity == Quantity::Ms   ? price.Ms
+                              : quantity == Quantity::Mt ? price.Mt
+                                                         : price.relative_IAE;
+        if (!value) {
+            worst.value = value;
+            return worst;
+        }
+        if (!worst.value || *worst.value < *value) worst.value = value;
+    }
+    return worst;
+}
+
+}  // namespace
+
+Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,
+                                const std::vector<double>& extra, double allowance) {
+    const double low = places.model().low(), high = places.model().high();
+    std::vector<double> wanted = extra;
+    for (int i = 0; i < count; ++i) wanted.push_back(i + 1 == count ? high : low + (high - low) * i / (count - 1));
+    std::ranges::sort(wanted);
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    CurveLooks looks(places, own, settings);
+    for (const double at : wanted)
+        if (auto error = looks.take(at)) return *error;
+    RangeCurve curve;
+    for (const Look& look : looks.all()) curve.places.push_back(figures(look));
+    for (const Quantity quantity : {Quantity::Ms, Quantity::Mt, Quantity::relative_IAE}) {
+        if (auto error = looks.refine(quantity)) return *error;
+        const auto worst = checked(places, settings, looks.all()[looks.largest(quantity)].at, quantity, allowance);
+        if (!worst) return worst.error();
+        curve.worst.push_back(*worst);
+    }
+    own.renew(places);
+    return curve;
+}
+
+double largest_relative_IAE(const RangeCurve& curve) {
+    double largest = 0;
+    for (const PlaceFigures& place : curve.places) largest = std::max(largest, place.relative_IAE.value_or(kUnstable));
+    for (const WorstPlace& worst : curve.worst)
+        if (worst.quantity == Quantity::relative_IAE) largest = std::max(largest, worst.value.value_or(kUnstable));
+    return largest;
+}
+
+double largest_excess(const RangeCurve& curve) {
+    double largest = -1;
+    for (const WorstPlace& worst : curve.worst)
+        if (worst.quantity != Quantity::relative_IAE)
+            largest = std::max(largest, worst.value.value_or(kUnstable) / worst.limit - 1);
+    return largest;
+}
+
+}  // namespace tunewright::range

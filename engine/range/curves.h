@@ -1,0 +1,50 @@
+// What settings do over a whole range: curves of Ms, Mt and IAE over the own optimum's, and the worst place.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/figure.h"
+#include "engine/range/schedule/look.h"
+
+namespace tunewright::range {
+
+/// At one place the worst of the settings that may be in use there, on the worst of the place's plants; IAE on the
+/// nominal plant.
+struct PlaceFigures {
+    double at = 0;
+    Figure Ms, Mt, relative_IAE;  ///< empty: the loop is not stable there, or does not settle
+};
+
+enum class Quantity { Ms, Mt, relative_IAE };
+
+/// Where a range comes nearest to a limit, or beyond it farthest.
+struct WorstPlace {
+    Quantity quantity = Quantity::Ms;
+    double at = 0;
+    Figure value;      ///< checked: on an independent grid, against the place's own optimum; empty: not stable there
+    double limit = 0;  ///< of Ms or Mt; 1 + allowance for the relative IAE
+};
+
+struct RangeCurve {
+    std::vector<PlaceFigures> places;  ///< ascending; both ends and every `extra` place included
+    std::vector<WorstPlace> worst;     ///< one for each quantity, searched between the curve's places too
+};
+
+/// The settings in use at a place.
+using SettingsInUse = std::function<std::vector<IdealPid>(double at)>;
+
+/// At `count` places evenly over the range and at `extra` ones. The worst places join those of `places`, with their own
+/// optima. Errors: those of Places::at.
+Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,
+                                const std::vector<double>& extra, double allowance);
+
+/// The largest relative IAE over a curve, infinite where some loop is not stable.
+double largest_relative_IAE(const RangeCurve& curve);
+/// The largest of Ms and Mt over its limit, less 1; infinite where some loop is not stable.
+double largest_excess(const RangeCurve& curve);
+
+}  // namespace tunewright::range

@@ -1,0 +1,246 @@
+#include "engine/range/design_range.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/number_text.h"
+
+namespace tunewright::range {
+namespace {
+
+constexpr int kCurvePlaces = 61;
+constexpr int kMostPlacesAdded = 6;       // of one setting that must hold between its points
+constexpr double kAllowedBetween = 5e-5;  // of a limit between the points
+
+SettingsInUse always(const IdealPid& controller) {
+    return [controller](double) { return std::vector<IdealPid>{controller}; };
+}
+
+const WorstPlace* worst_limit(const RangeCurve& curve) {
+    const WorstPlace* worst = nullptr;
+    const auto over = [](const WorstPlace& place) { return place.value.value_or(INFINITY) / place.limit; };
+    for (const WorstPlace& place : curve.worst)
+        if (place.quantity != Quantity::relative_IAE && (worst == nullptr || over(place) > over(*worst)))
+            worst = &place;
+    return worst;
+}
+
+DesignRules with_integrated_error(DesignRules rules) {
+    rules.integrated = true;
+    return rules;
+}
+
+class RangeWork {
+public:
+    RangeWork(const RangeProblem& problem, const DesignRules& rules, const RunControl& control)
+        : problem_(problem),
+          options_(problem.options),
+          points_(*problem.model, problem.scheduling, rules, control),
+          integrated_(*problem.model, problem.scheduling, with_integrated_error(rules), control),
+          places_(problem.model->has_responses() ? points_ : integrated_),
+          control_(control) {}
+
+    Expected<RangeDesign> run() {
+        design_.stated = problem_.model->stated();
+        design_.warnings = problem_.model->warnings();
+        for (const double at : problem_.model->points())
+            if (const auto place = points_.at_point(at); !place) return place.error();
+        if (auto error = find_one()) return *error;
+        if (auto error = find_schedule()) return *error;
+        judge();
+        tell(1, "evaluate", "the range is designed.");
+        return std::move(design_);
+    }
+
+private:
+    bool stopped() const { return control_.stop.stop_requested(); }
+
+    void tell(double fraction, const char* stage, std::string message) const {
+        if (!control_.progress) return;
+        Progress progress{.fraction = fraction, .stage = stage, .message = std::move(message), .best = {}};
+        if (design_.one)
+            progress.best = BestSoFar{design_.one->controller, design_.one->worst_relative_IAE, options_.limits.Ms,
+                                      options_.limits.Mt};
+        control_.progress(progress);
+    }
+
+    /// A stop keeps what was found; another error ends the work.
+    std::optional<Error> unless_stopped(const Error& error) {
+        if (error.kind != ErrorKind::cancelled || !design_.one) return error;
+        design_.partial = true;
+        return std::nullopt;
+    }
+
+    std::optional<Error> find_one() {
+        std::vector<double> points = problem_.model->points();
+        auto one = design_one_setting(points_, points, options_);
+        auto own = OwnOptima::over(places_);
+        if (one) design_.one = *one;
+        if (!one && (one.error().kind == ErrorKind::cancelled || one.error().kind == ErrorKind::numerical_failure))
+            return one.error();
+        if (!own) return unless_stopped(own.error());
+        own_ = *own;
+        for (int round = 0; one && round <= kMostPlacesAdded; ++round) {
+            auto curve = curve_over(places_, own_, always(one->controller), kCurvePlaces, points, options_.allowance);
+            if (!curve) return unless_stopped(curve.error());
+            design_.one = *one;
+            design_.one_curve = std::move(*curve);
+            const WorstPlace* worst = worst_limit(design_.one_curve);
+            if (!problem_.hold_between || largest_excess(design_.one_curve) <= kAllowedBetween || one->partial) break;
+            points.push_back(worst->at);
+            std::ranges::sort(points);
+            one = design_one_setting(points_, points, options_);
+        }
+        if (!one) {
+            design_.one.reset();
+            design_.one_curve = {};
+            design_.why_no_one = one.error().message;
+            no_one_ = one.error();
+        }
+        tell(0.4, "tune", "one setting for the range.");
+        warn_between();
+        return std::nullopt;
+    }
+
+    void warn_between() {
+        if (!design_.one || design_.one_curve.places.empty()) return;
+        const double excess = largest_excess(design_.one_curve);
+        if (excess <= kAllowedBetween) return;
+        const WorstPlace* worst = worst_limit(design_.one_curve);
+        const std::string what = worst->quantity == Quantity::Ms ? "Ms" : "Mt";
+        design_.warnings.push_back(
+            {"limit-exceeded-between", "With one setting " + what +
+                                           (worst->value ? " is " + text(*worst->value) : " is infinite") + " at " +
+                                           places_.named(worst->at) + ", between the points at which its limit of " +
+                                           text(worst->limit) + " is held. Add a point there."});
+    }
+
+    bool one_is_enough() const {
+        return design_.one && !design_.one_curve.places.empty() && !options_.rows &&
+               largest_relative_IAE(design_.one_curve) <= 1 + options_.allowance &&
+               largest_excess(design_.one_curve) <= kAllowedBetween;
+    }
+
+    std::optional<Error> find_schedule() {
+        if (design_.partial || (stopped() && design_.one)) {
+            design_.partial = true;
+            design_.why_no_schedule = "The design was stopped before a schedule was looked for.";
+            return std::nullopt;
+        }
+        if (one_is_enough()) {
+            design_.schedule = of_one_row();
+            design_.schedule_curve = design_.one_curve;
+            return std::nullopt;
+        }
+        auto schedule = design_schedule(places_, own_, options_);
+        if (!schedule) {
+            if (!design_.one) return no_one_;
+            design_.partial = schedule.error().kind == ErrorKind::cancelled;
+            design_.why_no_schedule = schedule.error().message;
+            return std::nullopt;
+        }
+        tell(0.9, "schedule", "a schedule of " + std::to_string(schedule->schedule.rows.size()) + " rows.");
+        return take(std::move(*schedule));
+    }
+
+    std::optional<Error> take(ScheduleDesign schedule) {
+        const auto in_use_at = [&](double at) { return in_use(schedule.schedule, at); };
+        std::vector<double> rows;
+        for (const ScheduleRow& row : schedule.schedule.rows) rows.push_back(row.at);
+        auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, rows, options_.allowance);
+        design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());
+        design_.partial = design_.partial || schedule.partial;
+        if (!curve) {
+            design_.schedule = std::move(schedule);
+            return unless_stopped(curve.error());
+        }
+        schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
+        design_.schedule_curve = std::move(*curve);
+        design_.schedule = std::move(schedule);
+        return std::nullopt;
+    }
+
+    ScheduleDesign of_one_row() const {
+        const IdealPid& pid = design_.one->controller;
+        ScheduleDesign design{.schedule = {.interpolation = options_.interpolation, .hysteresis = 0, .rows = {}},
+                              .holds_limits = true,
+                              .within_allowance = true,
+                              .worst_relative_IAE = largest_relative_IAE(design_.one_curve),
+                              .partial = false,
+                              .warnings = {}};
+        design.schedule.rows = {
+            {.at = problem_.model->low(), .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = pid.b}};
+        return design;
+    }
+
+    void judge() {
+        const std::string rule = " (a schedule is worth it above " + text(kWorthASchedule) + " times).";
+        if (!design_.one) {
+            design_.verdict = Verdict::schedule;
+            design_.because = "No one setting keeps the limits over the range: it needs a schedule.";
+            return;
+        }
+        const double one = design_.one_curve.places.empty() ? design_.one->worst_relative_IAE
+                                                            : largest_relative_IAE(design_.one_curve);
+        const std::string price =
+            std::isfinite(one) ? "costs up to " + text(one, 3) + " times" : "has no finite part of";
+        if (one <= 1 + options_.allowance) {
+            design_.verdict = Verdict::one_setting;
+            design_.because = "One setting is enough: its IAE is nowhere more than " + text(one, 3) +
+                              " times that of the place's own optimum" + rule;
+            return;
+        }
+        design_.verdict = one <= kWorthASchedule ? Verdict::optional : Verdict::schedule;
+        design_.because =
+            "One setting " + price + " the IAE of a place's own optimum" +
+            (design_.schedule ? ", a schedule of " + std::to_string(design_.schedule->schedule.rows.size()) +
+                                    " rows up to " + text(design_.schedule->worst_relative_IAE, 3) + " times"
+                              : std::string()) +
+            rule;
+    }
+
+    const RangeProblem& problem_;
+    const RangeOptions& options_;
+    Places points_, integrated_;
+    Places& places_;  ///< of the schedule and the curves
+    const RunControl& control_;
+    OwnOptima own_;
+    RangeDesign design_;
+    Error no_one_;
+};
+
+}  // namespace
+
+std::vector<Error> option_faults(const RangeOptions& options) {
+    std::vector<Error> faults;
+    const auto check = [&](bool good, const std::string& field, const std::string& message) {
+        if (!good) faults.push_back({ErrorKind::invalid_argument, "options/" + field, message});
+    };
+    const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
+    check(options.controller != ControllerKind::P, "controller",
+          "A P controller has no integral action; use PI or PID.");
+    check(options.limits.Ms > 1 && options.limits.Ms <= 4, "Ms",
+          "Ms is " + text(options.limits.Ms) + "; must be above 1 and at most 4.");
+    check(options.limits.Mt > 1 && options.limits.Mt <= 4, "Mt",
+          "Mt is " + text(options.limits.Mt) + "; must be above 1 and at most 4.");
+    check(!options.limits.m_circle, "constraint", "A range is designed under limits of Ms and Mt; leave m_circle out.");
+    check(options.allowance > 0 && options.allowance <= 1, "allowance",
+          "allowance is " + text(options.allowance) + "; must be above 0 and at most 1.");
+    check(within(options.b, 0, 1), "b", "b is " + text(options.b) + "; must be 0 to 1.");
+    check(within(options.hysteresis, 0, 0.2), "hysteresis",
+          "hysteresis is " + text(options.hysteresis) + " of the range; must be 0 to 0.2.");
+    check(!options.rows || within(*options.rows, 1, kMostRows), "rows",
+          "rows is " + std::to_string(options.rows.value_or(0)) + "; must be 1 to 20.");
+    return faults;
+}
+
+Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control) {
+    const auto faults = option_faults(problem.options);
+    if (!faults.empty()) return faults.front();
+    const auto rules = design_rules(*problem.model, problem.options);
+    if (!rules) return rules.error();
+    return RangeWork(problem, *rules, control).run();
+}
+
+}  // namespace tunewright::range

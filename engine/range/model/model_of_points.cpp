@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "engine/number_text.h"
+#include "engine/range/model/parameters.h"
+#include "engine/range/model/range_model.h"
+
+namespace tunewright::range {
+namespace {
+
+constexpr int kResponsePoints = 160;
+constexpr double kBelowCorners = 1e-2;  // times the slowest corner: where the static gain shows
+constexpr double kMostTurns = 4;        // of a dead time, in turns: what lies above forbids no gain any more
+
+struct Neighbours {
+    std::size_t left = 0;
+    double share = 0;  ///< 0 at the left one, 1 at the right one
+};
+
+Neighbours neighbours(const std::vector<double>& places, double place) {
+    const auto after = std::upper_bound(places.begin() + 1, places.end() - 1, place);
+    const auto left = std::size_t(after - places.begin()) - 1;
+    return {left, std::clamp((place - places[left]) / (places[left + 1] - places[left]), 0.0, 1.0)};
+}
+
+std::string point_name(std::size_t k) { return "points/" + std::to_string(k); }
+
+Error at_point(std::size_t k, const std::string& field, std::string message, ErrorKind kind) {
+    return {kind, point_name(k) + "/" + field, std::move(message)};
+}
+
+Error bad_point(std::size_t k, const std::string& field, std::string message) {
+    return at_point(k, field, std::move(message), ErrorKind::invalid_argument);
+}
+
+std::optional<Error> fault_of_places(const std::vector<RangePoint>& points) {
+    if (points.size() < std::size_t(kFewestPoints) || points.size() > std::size_t(kMostPoints))
+        return Error{ErrorKind::invalid_argument, "points",
+                     "There are " + std::to_string(points.size()) + " points; give 2 to 20."};
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        if (!std::isfinite(points[k].at)) return bad_point(k, "at", "at is not a finite number.");
+        if (points[k].family.regions.empty()) return bad_point(k, "plant", "The point has no plant.");
+        if (k > 0 && !(points[k].at > points[k - 1].at))
+            return bad_point(k, "at",
+                             "at is " + text(points[k].at) + " after " + text(points[k - 1].at) +
+                                 "; the points must ascend, each place once. Sort them, and keep one of "
+                                 "those at the same place.");
+    }
+    return std::nullopt;
+}
+
+/// What all models of points share: the points themselves, checked and factored.
+class PointsModel : public RangeModel {
+protected:
+    std::optional<Error> take(const std::vector<RangePoint>& points) {
+        if (auto fault = fault_of_places(points)) return fault;
+        given_ = points;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            auto made = model_at_point(k);
+            if (!made) return at_point(k, "plant", made.error().message, made.error().kind);
+            if (k > 0 && robust::first_sign(*made->nominal) != robust::first_sign(*models_.back().nominal))
+                return at_point(k, "plant",
+                                "The gain changes its sign between " + text(points[k - 1].at) + " and " +
+                                    text(points[k].at) +
+                                    ": somewhere between the input does not move the output, and no controller of one "
+                                    "sign serves both. Part the range there.",
+                                ErrorKind::no_feasible_controller);
+            models_.push_back(std::move(*made));
+            points_.push_back(points[k].at);
+        }
+        low_ = points_.front();
+        high_ = points_.back();
+        return std::nullopt;
+    }
+
+    Expected<PlaceModel> model_at_point(std::size_t k) const {
+        const PlantFamily& family = given_[k].family;
+        auto nominal = LinearPlant::make(family.nominal());
+        if (!nominal) return nominal.error();
+        PlaceModel model{.at = given_[k].at, .nominal = std::move(*nominal), .members = {}, .measured = {}};
+        for (const Plant& member : members_beside_nominal(family)) {
+            auto linear = LinearPlant::make(member);
+            if (!linear) return linear.error();
+            model.members.push_back(std::move(*linear));
+        }
+        if (!family.single()) model.family = family;
+        return model;
+    }
+
+    std::vector<RangePoint> given_;
+    std::vector<PlaceModel> models_;
+};
+
+using LogRatios = std::vector<double>;
+
+/// The cosine between two ways off the nominal plants.
+double alike(const LogRatios& a, const LogRatios& b) {
+    double ab = 0, aa = 1e-300, bb = 1e-300;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        ab += a[i] * b[i];
+        aa += a[i] * a[i];
+        bb += b[i] * b[i];
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+/// Each member of one family with that of the other that lies off its nominal plant most alike; of a family without
+/// members the nominal plant.
+std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>& left,
+                                                    const std::vector<LogRatios>& right, std::size_t size) {
+    std::vector<std::pair<LogRatios, LogRatios>> pairs;
+    const auto most_alike = [&](const std::vector<LogRatios>& others, const LogRatios& member) {
+        if (others.empty()) return LogRatios(size, 0.0);
+        return *std::ranges::max_element(others, {}, [&](const LogRatios& other) { return alike(other, member); });
+    };
+    for (const LogRatios& member : left) pairs.emplace_back(member, most_alike(right, member));
+    for (const LogRatios& member : right) pairs.emplace_back(most_alike(left, member), member);
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+class ParametersModel : public PointsModel {
+public:
+    std::optional<Error> make(const std::vector<RangePoint>& points) {
+        if (auto fault = take(points)) return fault;
+        for (std::size_t k = 1; k < points.size(); ++k)
+            if (!same_structure(points[k - 1].family.nominal(), points[k].family.nominal()))
+                return bad_point(k, "plant",
+                                 "The plants at " + text(points[k - 1].at) + " and " + text(points[k].at) +
+                                     " differ in structure, so their parameters say nothing about the plants between. "
+                                     "Give both in one structure of named parameters or coefficients, or interpolate "
+                                     "the frequency responses.");
+        for (std::size_t k = 0; k + 1 < points.size(); ++k)
+            pairs_.push_back(paired(ratios(points[k].family), ratios(points[k + 1].family),
+                                    structure_numbers(points[k].family.nominal()).size()));
+        stated_ =
+            "Between the points the logarithms of the parameters (gain, time constants, dead time) are linear in the "
+            "scheduling variable; a parameter of either sign, or 0 at one end, is linear itself.";
+        return std::nullopt;
+    }
+
+    Expected<PlaceModel> at(double place) const override {
+        const auto [left, share] = neighbours(points_, place);
+        if (share == 0) return models_[left];
+        if (share == 1) return models_[left + 1];
+        const PlantFamily &one = given_[left].family, &other = given_[left + 1].family;
+        const Plant plant = plant_between(one.nominal(), other.nominal(), share);
+        auto nominal = LinearPlant::make(plant);
+        if (!nominal) return nominal.error();
+        PlaceModel model{.at = place, .nominal = std::move(*nominal), .members = {}, .measured = {}};
+        for (const auto& [a, b] : pairs_[left]) {
+            LogRatios between(a.size());
+            for (std::size_t i = 0; i < a.size(); ++i) between[i] = a[i] + share * (b[i] - a[i]);
+            auto linear = LinearPlant::make(moved_by(plant, between));
+            if (linear) model.members.push_back(std::move(*linear));
+        }
+        return model;
+    }
+
+private:
+    /// Of the members of the nominal plant's structure: others say nothing about plants between.
+    static std::vector<LogRatios> ratios(const PlantFamily& family) {
+        std::vector<LogRatios> result;
+        for (const Plant& member : members_beside_nominal(family))
+            if (same_structure(member, family.nominal())) result.push_back(log_ratios(family.nominal(), member));
+        return result;
+    }
+
+    std::vector<std::vector<std::pair<LogRatios, LogRatios>>> pairs_;  // of each two neighbours
+};
+
+/// ln |P| and the unwrapped phase at the model's frequencies.
+struct ResponseCurve {
+    std::vector<double> log_size, phase;
+};
+
+class ResponsesModel : public PointsModel {
+public:
+    std::optional<Error> make(const std::vector<RangePoint>& points) {
+        if (auto fault = take(points)) return fault;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const LinearPlant &plant = *models_[k].nominal, &first = *models_[0].nominal;
+            if (!points[k].family.single())
+                return bad_point(k, "plant",
+                                 "Frequency responses carry no uncertain parameters: between points nothing would hold "
+                                 "them. Interpolate the parameters, or leave the uncertainty out.");
+            if (plant.integrators() != first.integrators() || plant.unstable_poles() != first.unstable_poles())
+                return bad_point(k, "plant",
+                                 "The plant has " + std::to_string(plant.integrators()) + " integrators and " +
+                                     std::to_string(plant.unstable_poles()) + " unstable poles, the first one " +
+                                     std::to_string(first.integrators()) + " and " +
+                                     std::to_string(first.unstable_poles()) +
+                                     ": no frequency response lies between them. Part the range where that changes.");
+        }
+        has_responses_ = false;
+        choose_frequencies();
+        for (const PlaceModel& model : models_) curves_.push_back(curve(*model.nominal));
+        stated_ =
+            "Between the points the logarithm of |P| and the unwrapped phase are linear in the scheduling variable; "
+            "such a plant has no response over time, so over the range Ti/Kp stands for the IAE.";
+        return std::nullopt;
+    }
+
+    Expected<PlaceModel> at(double place) const override {
+        const auto [left, share] = neighbours(points_, place);
+        if (share == 0) return models_[left];
+        if (share == 1) return models_[left + 1];
+        FrequencyResponse response{.omega = omega_,
+                                   .re = {},
+                                   .im = {},
+                                   .unstable_poles = models_[0].nominal->unstable_poles(),
+                                   .integrators = models_[0].nominal->integrators()};
+        const ResponseCurve &one = curves_[left], &other = curves_[left + 1];
+        for (std::size_t i = 0; i < omega_.size(); ++i) {
+            const double phase = one.phase[i] + share * (other.phase[i] - one.phase[i]);
+            const auto value =
+                std::polar(std::exp(one.log_size[i] + share * (other.log_size[i] - one.log_size[i])), phase);
+            response.re.push_back(value.real());
+            response.im.push_back(value.imag());
+        }
+        auto measured = MeasuredPlant::make(response);
+        if (!measured) return measured.error();
+        return PlaceModel{.at = place, .nominal = {}, .members = {}, .measured = std::move(*measured)};
+    }
+
+private:
+    void choose_frequencies() {
+        double slowest = INFINITY, fastest = 0, longest = 0;
+        const auto note = [&](double corner) {
+            if (!(corner > 0)) return;
+            slowest = std::min(slowest, corner);
+            fastest = std::max(fastest, corner);
+        };
+        for (const PlaceModel& model : models_) {
+            for (const auto pole : model.nominal->poles()) note(std::abs(pole));
+            for (const auto zero : model.nominal->zeros()) note(std::abs(zero));
+            const double L = model.nominal->dead_time();
+            if (L > 0) note(1 / L);
+            longest = std::max(longest, L);
+        }
+        if (!(fastest > 0)) slowest = fastest = 1;
+        const double low = kBelowCorners * slowest;
+        double high = 100 * fastest;
+        if (longest > 0) high = std::max(10 * slowest, std::min(high, kMostTurns * 2 * std::numbers::pi / longest));
+        for (int i = 0; i < kResponsePoints; ++i)
+            omega_.push_back(low * std::pow(high / low, double(i) / (kResponsePoints - 1)));
+    }
+
+    ResponseCurve curve(const LinearPlant& plant) const {
+        ResponseCurve result;
+        double before = 0;
+        for (const double omega : omega_) {
+            const std::complex<double> value = plant.rational({0, omega});
+            const double wrapped = std::arg(value);
+            // The first one near that of the static gain; the dead time's share is known without unwrapping.
+            const double unwrapped =
+                result.phase.empty() ? wrapped : before + std::remainder(wrapped - before, 2 * std::numbers::pi);
+            before = unwrapped;
+            result.log_size.push_back(std::log(std::abs(value)));
+            result.phase.push_back(unwrapped - omega * plant.dead_time());
+        }
+        return result;
+    }
+
+    std::vector<double> omega_;
+    std::vector<ResponseCurve> curves_;
+};
+
+template <class Model>
+Expected<std::shared_ptr<const RangeModel>> made(const std::vector<RangePoint>& points) {
+    auto model = std::make_shared<Model>();
+    if (auto fault = model->make(points)) return *fault;
+    return std::shared_ptr<const RangeModel>(std::move(model));
+}
+
+}  // namespace
+
+Expected<std::shared_ptr<const RangeModel>> model_of_points(const std::vector<RangePoint>& points, Between between) {
+    return between == Between::parameters ? made<ParametersModel>(points) : made<ResponsesModel>(points);
+}
+
+}  // namespace tunewright::range

@@ -1,0 +1,285 @@
+#include "engine/range/one_setting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/loop/measured_loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/number_text.h"
+#include "engine/range/schedule/look.h"
+#include "engine/tuning/robust/sqp.h"
+#include "engine/tuning/robust/verified_search.h"
+
+namespace tunewright::range {
+namespace {
+
+using robust::DesignPoint;
+
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+constexpr double kCompareTolerance = 1e-3;  // of simulations that only compare starts
+constexpr double kPriceTolerance = 1e-5;    // of those that are reported
+constexpr double kAllowedOnGrid = 2e-5;     // of a limit, relative, on the independent grid
+constexpr double kSameDesign = 0.03;        // of each logarithm: another start that leads nowhere else
+constexpr double kFirstStep = 0.4;          // of a logarithm
+constexpr int kRounds = 4;                  // of searches under tighter limits
+constexpr int kRegionRounds = 10;           // of adding the worst plants inside regions
+
+/// All plants of all points as one problem; nominal is the first point's.
+struct Together {
+    std::vector<LinearPlant> others;
+    robust::DesignProblem problem;
+
+    explicit Together(const std::vector<Place*>& points) : problem(points.front()->problem()) {
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const auto& model = points[k]->model();
+            if (k > 0) others.push_back(*model.nominal);
+            others.insert(others.end(), model.members.begin(), model.members.end());
+        }
+        problem.others = others;
+        problem.objective = robust::Objective::load_ie;
+    }
+};
+
+double middle_reference(const std::vector<Place*>& points) {
+    double sum = 0;
+    for (const Place* place : points) sum += std::log(place->sweep().reference());
+    return std::exp(sum / double(points.size()));
+}
+
+double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim aim, double tolerance) {
+    double worst = -kNowhere, sum = 0;
+    for (const Place* place : points) {
+        if (!robust::is_stable(place->problem(), x)) return kNowhere;
+        const double price = place->log_price(x, tolerance);
+        worst = std::max(worst, price);
+        sum += std::exp(price);
+    }
+    return aim == Aim::worst ? worst : std::log(sum / double(points.size()));
+}
+
+}  // namespace
+
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options) {
+    JointProblem joint;
+    joint.places.assign(points.begin(), points.end());
+    joint.aim = options.aim;
+    const Eigen::Index n = points.front()->problem().dimension();
+    joint.settings = [n](const Eigen::VectorXd& v, double, SettingsSlope* slope) {
+        if (slope != nullptr) slope->setIdentity(3, n);
+        return DesignPoint{v[0], v[1], n > 2 ? v[2] : 0};
+    };
+    double fastest = 0, slowest = kNowhere;
+    for (const Place* place : points) {
+        fastest = std::max(fastest, place->sweep().reference());
+        slowest = std::min(slowest, place->sweep().reference());
+    }
+    joint.low = Eigen::VectorXd::Constant(n, -700);
+    joint.high = Eigen::VectorXd::Constant(n, 700);
+    joint.step = Eigen::VectorXd::Constant(n, kFirstStep);
+    joint.low[1] = std::log(robust::kMinTi / fastest);
+    if (n > 2) joint.low[2] = std::log(robust::kMinTd / fastest);
+    if (n > 2) joint.high[2] = std::log(robust::kMaxTd / slowest);
+    return joint;
+}
+
+namespace {
+
+/// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
+/// be moved within the limits of all points. Cheapest first.
+Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, const RangeOptions& options,
+                                          const RunControl& control) {
+    Together together(points);
+    robust::DesignProblem problem = together.problem;
+    const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
+    const auto integrated =
+        robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet, nullptr);
+    if (!integrated) return integrated.error();
+    std::vector<std::pair<double, DesignPoint>> found;
+    const auto consider = [&](DesignPoint x) {
+        const double least = 1.01 * robust::kMinTd / middle_reference(points);
+        if (problem.pid) x[2] = std::max(x[2], std::log(least));
+        found.emplace_back(log_price_of(points, x, options.aim, kCompareTolerance), x);
+    };
+    consider(integrated->x);
+    const robust::Sweep sweep(together.problem, middle_reference(points));
+    for (const Place* place : points)
+        if (const auto inside = robust::feasible_near(sweep, place->optimum())) consider(*inside);
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<DesignPoint> result;
+    for (const auto& [price, x] : found) result.push_back(x);
+    return result;
+}
+
+Eigen::VectorXd unknowns(const DesignPoint& x, Eigen::Index n) {
+    Eigen::VectorXd v(n);
+    for (Eigen::Index i = 0; i < n; ++i) v[i] = x[std::size_t(i)];
+    return v;
+}
+
+DesignPoint point_of_unknowns(const Eigen::VectorXd& v) { return {v[0], v[1], v.size() > 2 ? v[2] : 0}; }
+
+double largest_excess(const std::vector<Place*>& points, const DesignPoint& x) {
+    double worst = -1;
+    for (const Place* place : points) worst = std::max(worst, place->excess(x));
+    return worst;
+}
+
+bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff() < kSameDesign; }
+
+class Progressing {
+public:
+    Progressing(const DesignRules& rules, const RunControl& control, const robust::Limits& limits)
+        : rules_(rules), control_(control), limits_(limits) {}
+
+    void operator()(const JointResult& result) {
+        if (!control_.progress || !result.holds()) return;
+        ++steps_;
+        Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
+        progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
+        progress.best = BestSoFar{setting_at(rules_, point_of_unknowns(result.v), 1), std::exp(result.log_price),
+                                  limits_.Ms, limits_.Mt};
+        control_.progress(progress);
+    }
+
+private:
+    const DesignRules& rules_;
+    const RunControl& control_;
+    const robust::Limits& limits_;
+    int steps_ = 0;
+};
+
+/// The best end of searches from the starts; the limits hold as far as the searches' grids see.
+JointResult best_end(const JointProblem& joint, const std::vector<DesignPoint>& starts, const JointOptions& search,
+                     Progressing& progress) {
+    std::optional<JointResult> best;
+    int runs = 0;
+    const Eigen::Index n = joint.low.size();
+    std::vector<Eigen::VectorXd> begun;
+    for (const DesignPoint& start : starts) {
+        const Eigen::VectorXd v = unknowns(start, n);
+        if (std::ranges::any_of(begun, [&](const auto& other) { return same(other, v); })) continue;
+        begun.push_back(v);
+        auto end = search_jointly(joint, v, search, [&](const JointResult& so_far) { progress(so_far); });
+        const bool better = !best || (end.holds() && (!best->holds() || end.log_price < best->log_price));
+        const bool stopped = end.stopped;
+        if (better) best = std::move(end);
+        if (stopped || ++runs == 2) break;
+    }
+    return *best;
+}
+
+}  // namespace
+
+IdealPid setting_at(const DesignRules& rules, const DesignPoint& x, double b) {
+    robust::DesignProblem problem;
+    problem.pid = rules.pid;
+    problem.filter = rules.filter;
+    problem.sign = rules.sign;
+    IdealPid pid = robust::controller_at(problem, x);
+    pid.b = b;
+    return pid;
+}
+
+namespace {
+
+void add_peaks(const Place& place, const IdealPid& controller, PlacePrice& price) {
+    const std::string unstable = "The loop is not stable here.";
+    const auto take = [&](const Peaks& peaks) {
+        price.Ms = finite_or(peaks.S.value, unstable);
+        price.Mt = finite_or(peaks.T.value, unstable);
+    };
+    if (const auto& measured = place.model().measured) {
+        const auto loop = MeasuredLoop::make(*measured, to_parallel(controller));
+        if (loop && !loop->band_too_short() && loop->count_unstable_poles().stable()) return take(loop->peaks());
+    } else {
+        const auto loop = Loop::make(*place.model().nominal, to_parallel(controller));
+        if (loop && count_unstable_poles(*loop).stable()) return take(find_peaks(*loop, make_loop_grid(*loop)));
+    }
+    price.Ms = price.Mt = no_figure(unstable);
+}
+
+}  // namespace
+
+PlacePrice price_at(const Place& place, const IdealPid& controller) {
+    const DesignRules rules{
+        .pid = place.problem().pid, .filter = place.problem().filter, .limits = {}, .sign = place.problem().sign};
+    PlacePrice price{.at = place.at(),
+                     .own = setting_at(rules, place.optimum(), controller.b),
+                     .own_IAE = std::exp(place.optimum_log_cost()),
+                     .IAE = {},
+                     .relative_IAE = {},
+                     .Ms = {},
+                     .Mt = {}};
+    add_peaks(place, controller, price);
+    const double log_price = price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kNowhere;
+    const std::string why = price.Ms ? "The response does not settle." : "The loop is not stable here.";
+    price.relative_IAE = finite_or(std::exp(log_price), why);
+    price.IAE = finite_or(std::exp(log_price) * price.own_IAE, why);
+    return price;
+}
+
+namespace {
+
+/// The best end that holds the limits on the independent grid as well, searched again inside them where it does not.
+Expected<JointResult> verified_end(const std::vector<Place*>& points, const RangeOptions& options,
+                                   const std::vector<DesignPoint>& from, const RunControl& control,
+                                   Progressing& progress) {
+    const JointProblem joint = one_setting_problem(points, options);
+    JointOptions search;
+    search.stop = control.stop;
+    JointResult end = best_end(joint, from, search, progress);
+    for (int round = 0; round < kRounds; ++round) {
+        const double excess = largest_excess(points, point_of_unknowns(end.v));
+        if (excess <= 0.5 * kAllowedOnGrid) return end;
+        if (!std::isfinite(excess)) break;
+        search.margin += 1.5 * excess + 1e-6;
+        end = search_jointly(joint, end.v, search, {});
+    }
+    return Error{ErrorKind::numerical_failure, "",
+                 "The one setting found does not hold its limits on the independent frequency grid, so it is not "
+                 "returned. Give a filter with a longer Tf, or raise the limits a little."};
+}
+
+OneSetting described(const std::vector<Place*>& points, const DesignRules& rules, const DesignPoint& x, double b) {
+    OneSetting one{.controller = setting_at(rules, x, b), .points = {}};
+    for (const Place* place : points) {
+        one.points.push_back(price_at(*place, one.controller));
+        const double relative = one.points.back().relative_IAE.value_or(kNowhere);
+        one.mean_relative_IAE += relative / double(points.size());
+        if (relative <= one.worst_relative_IAE) continue;
+        one.worst_relative_IAE = relative;
+        one.worst_at = place->at();
+    }
+    return one;
+}
+
+}  // namespace
+
+Expected<OneSetting> design_one_setting(Places& places, const std::vector<double>& at, const RangeOptions& options) {
+    std::vector<Place*> points;
+    for (const double place : at) {
+        const auto found = places.at_point(place);
+        if (!found) return found.error();
+        points.push_back(*found);
+    }
+    Progressing progress(places.rules(), places.control(), options.limits);
+    auto from = starts(points, options, places.control());
+    if (!from) return from.error();
+    for (int round = 0;; ++round) {
+        const auto end = verified_end(points, options, *from, places.control(), progress);
+        if (!end) return end.error();
+        const DesignPoint x = point_of_unknowns(end->v);
+        bool added = false;
+        for (Place* place : points) added = place->add_worst_inside(x, places.control().stop) || added;
+        if (!added || end->stopped || round == kRegionRounds) {
+            OneSetting one = described(points, places.rules(), x, options.b);
+            one.partial = end->stopped;
+            return one;
+        }
+        *from = {x};
+    }
+}
+
+}  // namespace tunewright::range

@@ -1,0 +1,52 @@
+// One robust setting for a whole range, and what it costs at each point.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/expected.h"
+#include "engine/figure.h"
+#include "engine/range/problem.h"
+#include "engine/range/search/joint_search.h"
+#include "engine/range/search/places.h"
+
+namespace tunewright::range {
+
+/// A setting at a place of the range. IAE: of a unit load step, in y time per u; of a place known by its frequency
+/// response alone Ti/Kp (the integrated error), for both controllers.
+struct PlacePrice {
+    double at = 0;
+    IdealPid own;  ///< the place's own optimum under the same limits
+    double own_IAE = 0;
+    Figure IAE;           ///< of the setting; empty: the loop is not stable, or does not settle
+    Figure relative_IAE;  ///< over own_IAE, about 1 or more
+    Figure Ms, Mt;        ///< on the nominal plant; empty: not stable
+};
+
+struct OneSetting {
+    IdealPid controller;
+    double worst_relative_IAE = 0;  ///< the largest at a point
+    double mean_relative_IAE = 0;   ///< over the points
+    double worst_at = 0;            ///< the point of the largest
+    std::vector<PlacePrice> points;
+    bool partial = false;  ///< stopped early: the best so far that holds the limits
+};
+
+/// The setting that keeps the limits at every point, with the least worst or mean IAE over that of each point's own
+/// optimum (problem.h). Searched by search_jointly from the least integrated error and from the best of the own optima.
+/// Errors: those of Places::at, of robust::verified_search for all plants together (no_feasible_controller names the
+/// smallest limit that works); numerical_failure where no end of a search holds the limits on an independent grid.
+Expected<OneSetting> design_one_setting(Places& places, const std::vector<double>& points, const RangeOptions& options);
+
+/// The ideal controller at x with the options' set-point weight.
+IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
+
+/// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of
+/// PID.
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options);
+
+/// x as a setting at a place: simulated to 1e-6, peaks refined.
+PlacePrice price_at(const Place& place, const IdealPid& controller);
+
+}  // namespace tunewright::range

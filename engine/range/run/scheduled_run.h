@@ -1,0 +1,69 @@
+// The equations with a schedule running: steps and ramps across the range, settings changing on the way.
+//
+//   u = I + Kp(s) (r - y_f) - Kd(s) y_f',   I' = Ki(s) (r - y_f) - (1 - b) Kp(s) r' + (u_limited - u)/Tt
+//
+// s is the scheduling variable: y, the integral part I (along the input), or the parameter. The integral is that of
+// Ki(s) e, not Ki(s) times one of e, so it keeps what it has learnt when Ki changes; with steps between rows I takes up
+// what the other two parts lose at a switch. u therefore never jumps because settings change (bumpless), and at rest,
+// where e = 0, the loop is the one that was designed: no hidden coupling (Rugh and Shamma, Automatica 36 (2000)
+// 1401-1425, section 4). While e is not 0, a schedule over y adds Kp'(s) e to the gain from y to u.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "engine/range/equations/steady_branch.h"
+#include "engine/range/schedule/schedule.h"
+#include "engine/warning.h"
+
+namespace tunewright::range {
+
+/// What moves: the set point of y, or along a parameter that. Linear between points; a jump where two have one time.
+struct ProfilePoint {
+    double t = 0, value = 0;  ///< absolute
+};
+using Profile = std::vector<ProfilePoint>;
+
+struct RunOptions {
+    double horizon = 0;       ///< > 0
+    int samples = 401;        ///< evenly over the horizon, at least 2
+    double tolerance = 1e-7;  ///< of each step, relative to how far a state moves over the range
+    int max_steps = 100000;
+    std::stop_token stop = {};
+};
+
+struct ScheduledRun {
+    std::vector<double> t, target, y, u, at, Kp;  ///< samples; absolute; `target`: the set point; u after the limits
+    double IAE = 0;                               ///< of the set point less y, over the run
+    double largest_error = 0;                     ///< of abs(set point - y) at the samples
+    double largest_bump = 0;                      ///< of u, where settings switch (0 but for rounding)
+    int switches = 0;                             ///< of rows, with `steps`
+    bool limited = false;                         ///< u met a limit
+    bool settled = false;                         ///< at the end y is within 1 % of the profile's size of the set point
+    std::string ended;                            ///< why it ended early; empty: it did not
+    std::vector<Warning> warnings;  ///< "schedule-coupling": how much the settings' motion adds to the gain on the way
+};
+
+/// From rest at the profile's first value. Steps end at the profile's points and their echoes after a dead time.
+/// Errors: those of SteadyBranch::at; invalid_argument, `where` = "profile": empty, not ascending in t, its first value
+/// outside the range.
+Expected<ScheduledRun> run_schedule(const SteadyBranch& branch, const Schedule& schedule, const Profile& profile,
+                                    const RunOptions& options);
+
+/// A named passage over the whole range.
+struct Passage {
+    std::string name;  ///< "step up", "step down", "stairs", "ramp"
+    Profile profile;
+    double horizon = 0;
+};
+
+/// One step from end to end either way, stairs of four steps, and a slow ramp there and back, with times from the rows'
+/// slowest integral time and the dead time.
+Expected<std::vector<Passage>> standard_passages(const SteadyBranch& branch, const Schedule& schedule);
+
+/// The schedule of one row that is this controller.
+Schedule one_row(const IdealPid& controller, double at);
+
+}  // namespace tunewright::range

@@ -1,0 +1,36 @@
+// The settings of a schedule's rows as the unknowns of a search.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/range/schedule/own_optima.h"
+#include "engine/range/schedule/schedule.h"
+#include "engine/range/search/joint_search.h"
+
+namespace tunewright::range {
+
+/// Unknowns: ln Kp, ln Ti (and ln Td) of each row in turn, for the kinds that are linear between rows. The rows' places
+/// stay where they are: moved, they would pass the search's own places, where prices have kinks.
+class Knots {
+public:
+    Knots(const Places& places, Interpolation interpolation, std::vector<double> at);
+
+    /// The own optima of the rows' places.
+    Eigen::VectorXd start(const OwnOptima& own) const;
+    robust::DesignPoint settings(const Eigen::VectorXd& v, double at, SettingsSlope* slope) const;
+    /// Bounds and steps; settings. The places are left empty.
+    JointProblem problem() const;
+    Schedule schedule(const Eigen::VectorXd& v, const DesignRules& rules, double b) const;
+
+private:
+    Eigen::Index rows() const { return Eigen::Index(at_.size()); }
+    Eigen::Index unknowns() const { return dimension_ * rows(); }
+
+    Interpolation interpolation_;
+    std::vector<double> at_;
+    double fastest_ = 0, slowest_ = 0;
+    Eigen::Index dimension_;
+};
+
+}  // namespace tunewright::range

@@ -1,0 +1,36 @@
+// A table of settings over the scheduling variable, and the settings that a controller makes of it between its rows.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/controller/pid.h"
+#include "engine/range/problem.h"
+
+namespace tunewright::range {
+
+/// The contract's ideal form (controller/pid.h). Tf = 0: no filter.
+struct ScheduleRow {
+    double at = 0;
+    double Kp = 0, Ti = 0, Td = 0, Tf = 0, b = 1;
+};
+
+/// Below the first row and above the last one their settings hold.
+struct Schedule {
+    Interpolation interpolation = Interpolation::linear_in_gains;
+    double hysteresis = 0;          ///< in the unit of `at`, of `steps`: a row is left h/2 beyond its border
+    std::vector<ScheduleRow> rows;  ///< ascending, at least one
+};
+
+/// The controller of one row, filter of the measurement of second order.
+IdealPid controller_of(const ScheduleRow& row);
+
+/// What the controller computes with at a place. Linear kinds: b and Tf are linear too. `steps`: the row whose border
+/// was passed last without hysteresis.
+IdealPid settings_at(const Schedule& schedule, double at);
+
+/// The row of `steps` that is in use at a place, when `row` was before: it is left where `at` is half the hysteresis
+/// beyond its borders.
+std::size_t row_after(const Schedule& schedule, std::size_t row, double at);
+
+}  // namespace tunewright::range

@@ -1,0 +1,102 @@
+#include "engine/range/search/place.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/verified_search.h"
+
+namespace tunewright::range {
+namespace {
+
+using robust::DesignPoint;
+
+constexpr int kMostRounds = 10;           // of adding the worst plant found inside a region
+constexpr std::size_t kFewMembers = 4;    // all of them are kept
+constexpr double kFarFromLimits = -0.02;  // of ln of a limit's ratio: a member below it is not active
+constexpr double kJustAboveLeast = 1.01;  // times the least Td: where a PI stands in for a PID
+
+}  // namespace
+
+Place::Place(PlaceModel model, const DesignRules& rules) : model_(std::move(model)) {
+    problem_.pid = rules.pid;
+    problem_.filter = rules.filter;
+    problem_.limits = rules.limits;
+    problem_.sign = rules.sign;
+    if (rules.integrated || model_.measured) problem_.objective = robust::Objective::load_ie;
+    if (model_.measured)
+        problem_.measured = &*model_.measured;
+    else
+        problem_.plant = &*model_.nominal;
+    pose();
+}
+
+void Place::pose() {
+    problem_.others = model_.members;
+    sweep_.emplace(problem_, robust::reference_frequency(problem_));
+}
+
+std::optional<Error> Place::find_optimum(const RunControl& control, const DesignPoint* before) {
+    const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
+    DesignPoint last{};
+    for (int round = 0; round < kMostRounds; ++round) {
+        robust::DesignProblem problem = problem_;
+        const auto found =
+            robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet, before);
+        if (!found) return found.error();
+        optimum_ = found->x;
+        optimum_log_cost_ = found->log_cost;
+        // A PI that does better than any PID has ln Td = -infinity, which no search over logarithms can start from.
+        const double least = std::log(kJustAboveLeast * robust::kMinTd / sweep_->reference());
+        if (problem_.pid) optimum_[2] = std::max(optimum_[2], least);
+        if (found->stopped || !add_worst_inside(optimum_, control.stop)) break;
+        last = optimum_;
+        before = &last;
+    }
+    keep_active_members();
+    return std::nullopt;
+}
+
+/// The searches that follow move the settings by a few percent: members far from every limit at the optimum would only
+/// cost time. Looks over the range form their places anew, with all members.
+void Place::keep_active_members() {
+    if (model_.members.size() <= kFewMembers) return;
+    std::vector<double> nearest(model_.members.size(), kFarFromLimits);
+    for (const auto& peak : sweep_->peaks(optimum_, kFarFromLimits))
+        if (peak.plant > 0) nearest[peak.plant - 1] = std::max(nearest[peak.plant - 1], peak.value);
+    std::vector<LinearPlant> kept;
+    for (std::size_t i = 0; i < nearest.size(); ++i)
+        if (nearest[i] > kFarFromLimits) kept.push_back(std::move(model_.members[i]));
+    model_.members = std::move(kept);
+    pose();
+}
+
+double Place::log_price(const DesignPoint& x, double tolerance) const {
+    return robust::log_cost(problem_, x, tolerance) - optimum_log_cost_;
+}
+
+robust::CostWithGradient Place::log_price_with_gradient(const DesignPoint& x, double tolerance) const {
+    auto cost = robust::log_cost_with_gradient(problem_, x, tolerance);
+    cost.value -= optimum_log_cost_;
+    return cost;
+}
+
+double Place::excess(const DesignPoint& x) const {
+    if (model_.measured) return robust::excess_on_points(problem_, x);
+    double worst = -1;
+    for (std::size_t i = 0; i < problem_.plants(); ++i)
+        worst = std::max(worst, robust::excess_on(problem_.plant_at(i), problem_, x, {.step = 0.06, .density = 53}));
+    return worst;
+}
+
+bool Place::add_worst_inside(const DesignPoint& x, const std::stop_token& stop) {
+    if (!model_.family) return false;
+    auto added = robust::worst_inside(*model_.family, problem_, x, stop);
+    if (added.empty()) return false;
+    model_.members.insert(model_.members.end(), added.begin(), added.end());
+    pose();
+    return true;
+}
+
+}  // namespace tunewright::range

@@ -1,0 +1,64 @@
+// One place of a range as the searches see it: its plants, the limits over frequency, and its own optimum.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/range/model/range_model.h"
+#include "engine/range/problem.h"
+#include "engine/tuning/robust/cost.h"
+#include "engine/tuning/robust/sweep.h"
+
+namespace tunewright::range {
+
+/// What all places share.
+struct DesignRules {
+    bool pid = true;
+    robust::FilterRule filter;
+    robust::Limits limits;
+    double sign = 1;          ///< of Kp
+    bool integrated = false;  ///< Ti/Kp in place of the IAE, also where a response could be computed
+};
+
+/// Neither copied nor moved: the design problem points into it.
+class Place {
+public:
+    Place(PlaceModel model, const DesignRules& rules);
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    double at() const { return model_.at; }
+    const PlaceModel& model() const { return model_; }
+    const robust::DesignProblem& problem() const { return problem_; }
+    const robust::Sweep& sweep() const { return *sweep_; }
+
+    /// The design with the least IAE here within the limits, on every member. `before`: the optimum of a neighbour,
+    /// from which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
+    std::optional<Error> find_optimum(const RunControl& control, const robust::DesignPoint* before);
+
+    const robust::DesignPoint& optimum() const { return optimum_; }
+    double optimum_log_cost() const { return optimum_log_cost_; }
+
+    /// ln of IAE over that of the own optimum; infinite where it does not settle. The loop must be stable.
+    double log_price(const robust::DesignPoint& x, double tolerance) const;
+    robust::CostWithGradient log_price_with_gradient(const robust::DesignPoint& x, double tolerance) const;
+
+    /// The largest relative excess over a limit, on grids that no search sees; infinite where the loop is unstable.
+    double excess(const robust::DesignPoint& x) const;
+
+    /// The plants inside the region of uncertainty on which x exceeds a limit join the members: true if there are any.
+    bool add_worst_inside(const robust::DesignPoint& x, const std::stop_token& stop);
+
+private:
+    void pose();
+    void keep_active_members();
+
+    PlaceModel model_;
+    robust::DesignProblem problem_;
+    std::optional<robust::Sweep> sweep_;
+    robust::DesignPoint optimum_{};
+    double optimum_log_cost_ = 0;
+};
+
+}  // namespace tunewright::range

@@ -120,6 +120,18 @@ Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsIn
     return curve;
 }
 
+std::optional<Error> add_places(RangeCurve& curve, const Places& places, const OwnOptima& own,
+                                const SettingsInUse& settings, const std::vector<double>& at) {
+    for (const double place : at) {
+        const auto after = std::ranges::lower_bound(curve.places, place, {}, &PlaceFigures::at);
+        if (after != curve.places.end() && after->at == place) continue;
+        const auto look = look_between(places, own, settings(place), place, true);
+        if (!look) return look.error();
+        curve.places.insert(after, figures(*look));
+    }
+    return std::nullopt;
+}
+
 double largest_relative_IAE(const RangeCurve& curve) {
     double largest = 0;
     for (const PlaceFigures& place : curve.places) largest = std::max(largest, place.relative_IAE.value_or(kUnstable));

@@ -42,6 +42,11 @@ using SettingsInUse = std::function<std::vector<IdealPid>(double at)>;
 Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,
                                 const std::vector<double>& extra, double allowance);
 
+/// Takes further places into a curve that has some; those that it has already are passed over. Its worst places stay.
+/// Errors: the model's.
+std::optional<Error> add_places(RangeCurve& curve, const Places& places, const OwnOptima& own,
+                                const SettingsInUse& settings, const std::vector<double>& at);
+
 /// The largest relative IAE over a curve, infinite where some loop is not stable.
 double largest_relative_IAE(const RangeCurve& curve);
 /// The largest of Ms and Mt over its limit, less 1; infinite where some loop is not stable.

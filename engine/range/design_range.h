@@ -54,7 +54,8 @@ struct RangeDesign {
 /// allowance outside (0, 1], rows outside 1 to 20, b outside 0 to 1, hysteresis outside 0 to 0.2, P as a controller.
 std::vector<Error> option_faults(const RangeOptions& options);
 
-/// One setting, the schedule, their curves at 61 places, the worst places and the verdict. Where one setting stays
+/// One setting, the schedule, their curves at 61 places and at points and rows, the same for both, the worst places and
+/// the verdict. Where one setting stays
 /// within the allowance everywhere and no number of rows is asked for, the schedule has that one row. Progress: stages
 /// "tune", "schedule" and "evaluate", with the best so far.
 ///
@@ -62,5 +63,12 @@ std::vector<Error> option_faults(const RangeOptions& options);
 /// "schedule-over-allowance". Errors: option_faults' first; those of Places::at; where neither a setting nor a schedule
 /// exists, that of the setting; cancelled before anything was found.
 Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control);
+
+/// What a schedule does over the range, without a design: quick, so that it can follow a hand. Its price is measured
+/// against optima that are searched at a few places and interpolated between; the worst places against their own.
+/// `one` is empty and the verdict says nothing. Rows ascend; hysteresis is in the unit of `at`.
+///
+/// Errors: option_faults' first; those of Places::at.
+Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control);
 
 }  // namespace tunewright::range

@@ -36,19 +36,12 @@ Error bad_point(std::size_t k, const std::string& field, std::string message) {
     return at_point(k, field, std::move(message), ErrorKind::invalid_argument);
 }
 
-std::optional<Error> fault_of_places(const std::vector<RangePoint>& points) {
-    if (points.size() < std::size_t(kFewestPoints) || points.size() > std::size_t(kMostPoints))
-        return Error{ErrorKind::invalid_argument, "points",
-                     "There are " + std::to_string(points.size()) + " points; give 2 to 20."};
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        if (!std::isfinite(points[k].at)) return bad_point(k, "at", "at is not a finite number.");
+std::optional<Error> fault_of_points(const std::vector<RangePoint>& points) {
+    std::vector<double> places;
+    for (const RangePoint& point : points) places.push_back(point.at);
+    if (auto faults = place_faults(places); !faults.empty()) return faults.front();
+    for (std::size_t k = 0; k < points.size(); ++k)
         if (points[k].family.regions.empty()) return bad_point(k, "plant", "The point has no plant.");
-        if (k > 0 && !(points[k].at > points[k - 1].at))
-            return bad_point(k, "at",
-                             "at is " + text(points[k].at) + " after " + text(points[k - 1].at) +
-                                 "; the points must ascend, each place once. Sort them, and keep one of "
-                                 "those at the same place.");
-    }
     return std::nullopt;
 }
 
@@ -56,7 +49,7 @@ std::optional<Error> fault_of_places(const std::vector<RangePoint>& points) {
 class PointsModel : public RangeModel {
 protected:
     std::optional<Error> take(const std::vector<RangePoint>& points) {
-        if (auto fault = fault_of_places(points)) return fault;
+        if (auto fault = fault_of_points(points)) return fault;
         given_ = points;
         for (std::size_t k = 0; k < points.size(); ++k) {
             auto made = model_at_point(k);
@@ -278,6 +271,24 @@ Expected<std::shared_ptr<const RangeModel>> made(const std::vector<RangePoint>& 
 }
 
 }  // namespace
+
+std::vector<Error> place_faults(const std::vector<double>& places) {
+    if (places.size() < std::size_t(kFewestPoints) || places.size() > std::size_t(kMostPoints))
+        return {{ErrorKind::invalid_argument, "points",
+                 "There are " + std::to_string(places.size()) + " points; give 2 to 20."}};
+    std::vector<Error> faults;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (!std::isfinite(places[k])) {
+            faults.push_back(bad_point(k, "at", "at is not a finite number."));
+        } else if (k > 0 && !(places[k] > places[k - 1])) {
+            faults.push_back(bad_point(k, "at",
+                                       "at is " + text(places[k]) + " after " + text(places[k - 1]) +
+                                           "; the points must ascend, each place once. Sort them, and keep one of "
+                                           "those at the same place."));
+        }
+    }
+    return faults;
+}
 
 Expected<std::shared_ptr<const RangeModel>> model_of_points(const std::vector<RangePoint>& points, Between between) {
     return between == Between::parameters ? made<ParametersModel>(points) : made<ResponsesModel>(points);

@@ -51,6 +51,10 @@ protected:
     std::vector<Warning> warnings_;
 };
 
+/// Every fault of the points' places, `where` = "points" or "points/k/at": fewer than 2 or more than 20, not finite, not
+/// ascending strictly.
+std::vector<Error> place_faults(const std::vector<double>& places);
+
 /// Models between given points. Points ascend strictly in `at`.
 ///
 /// `parameters`: ln of K, T, T1, T2, zeta, L and of a transfer function's coefficients is linear in `at` between

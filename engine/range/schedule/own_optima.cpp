@@ -6,7 +6,7 @@
 namespace tunewright::range {
 namespace {
 
-constexpr std::size_t kFewestPlaces = 7, kMostPlaces = 48;
+constexpr std::size_t kFewestPlaces = 7;
 constexpr double kCoarse = 0.3;          // of ln Kp, ln Ti, ln IAE between neighbours
 constexpr int kGridPoints = 161;         // of a layout
 constexpr int kHalvings = 14;            // of its error
@@ -27,12 +27,12 @@ double parabola_slope(const std::vector<double>& x, const std::vector<double>& f
 
 }  // namespace
 
-Expected<OwnOptima> OwnOptima::over(Places& places) {
+Expected<OwnOptima> OwnOptima::over(Places& places, std::size_t most_places) {
     const RangeModel& model = places.model();
     for (const double at : model.points())
         if (const auto place = places.at(at); !place) return place.error();
     const double least = kShortest * (model.high() - model.low());
-    for (std::size_t count = places.known().size(); count < kMostPlaces; ++count) {
+    for (std::size_t count = places.known().size(); count < most_places; ++count) {
         // Between the neighbours that differ most; the widest gap while there are few.
         const auto known = places.known();
         double most = 0, middle = 0;

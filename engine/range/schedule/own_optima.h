@@ -13,9 +13,12 @@ namespace tunewright::range {
 
 class OwnOptima {
 public:
+    static constexpr std::size_t kMostPlaces = 48;
+
     /// Looks at the points of the model, and between them until neighbours differ by no more than 30 % or so in Kp,
-    /// Ti and IAE, at most 48 places. Errors: those of Places::at.
-    static Expected<OwnOptima> over(Places& places);
+    /// Ti and IAE, at most `most` places (3 or more; points beyond it are looked at all the same). Errors: those of
+    /// Places::at.
+    static Expected<OwnOptima> over(Places& places, std::size_t most = kMostPlaces);
 
     /// The table from all places that are known by now.
     void renew(const Places& places);

@@ -1,0 +1,44 @@
+#include <algorithm>
+#include <utility>
+
+#include "engine/range/design_range.h"
+
+namespace tunewright::range {
+namespace {
+
+constexpr int kCurvePlaces = 61;
+constexpr std::size_t kOwnPlaces = 9;    // with optima of their own; the worst places join them
+constexpr double kAllowedExcess = 5e-5;  // of a limit, before it counts as exceeded
+
+}  // namespace
+
+Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control) {
+    if (const auto faults = option_faults(problem.options); !faults.empty()) return faults.front();
+    const RangeModel& model = *problem.model;
+    auto rules = design_rules(model, problem.options);
+    if (!rules) return rules.error();
+    rules->integrated = !model.has_responses();
+    Places places(model, problem.scheduling, *rules, control);
+    auto own = OwnOptima::over(places, kOwnPlaces);
+    if (!own) return own.error();
+
+    std::vector<double> extra = model.points();
+    for (const ScheduleRow& row : schedule.rows)
+        if (row.at >= model.low() && row.at <= model.high()) extra.push_back(row.at);
+    const auto settings = [&schedule](double at) { return in_use(schedule, at); };
+    auto curve = curve_over(places, *own, settings, kCurvePlaces, extra, problem.options.allowance);
+    if (!curve) return curve.error();
+
+    RangeDesign design;
+    design.stated = model.stated();
+    design.warnings = model.warnings();
+    ScheduleDesign& given = design.schedule.emplace();
+    given.schedule = schedule;
+    given.holds_limits = largest_excess(*curve) <= kAllowedExcess;
+    given.worst_relative_IAE = largest_relative_IAE(*curve);
+    given.within_allowance = given.worst_relative_IAE <= 1 + problem.options.allowance;
+    design.schedule_curve = std::move(*curve);
+    return design;
+}
+
+}  // namespace tunewright::range

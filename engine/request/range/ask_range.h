@@ -1,0 +1,83 @@
+// A loop over its whole operating range: points with their plants or records, or equations, in; one setting, a schedule,
+// their curves and their runs out.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/identification/identify.h"
+#include "engine/plant/plant_family.h"
+#include "engine/range/design_range.h"
+#include "engine/range/equations/steady_branch.h"
+#include "engine/range/run/scheduled_run.h"
+#include "engine/request/verdict/finding.h"
+
+namespace tunewright {
+
+/// What is asked of a range: exactly one of `points` and `branch`.
+struct RangeQuestion {
+    struct Point {
+        double at = 0;
+        std::variant<PlantFamily, Record> content;
+    };
+    range::Scheduling scheduling;
+    std::vector<Point> points;
+    std::shared_ptr<const range::SteadyBranch> branch;
+    IdentifyOptions identify;  ///< of every record
+    bool over_region = false;  ///< limits hold over each record's 95 % confidence region
+    range::RangeOptions options;
+    std::vector<range::ScheduleRow> given;  ///< a schedule to judge in place of a design, ascending; empty: none
+    bool runs = true;                       ///< of equations: simulate passages across the range
+};
+
+/// The plant at a point of the range, and how it is known.
+struct RangePointPlant {
+    double at = 0;
+    Plant plant;
+    std::optional<IdentifiedModel> model;  ///< of a record
+    std::optional<double> u, y;            ///< of equations: the steady state, absolute
+};
+
+/// What varies over the range. K: static gain, the slope of an integrating plant; T: sum of the lags less the leads;
+/// L: dead time; empty where only the frequency response is known.
+struct RangePlace {
+    double at = 0;
+    std::optional<double> K, T, L, u, y;
+};
+
+/// One passage across the range, by each of the two that exist.
+struct RangePassage {
+    range::Passage passage;
+    std::optional<range::ScheduledRun> one, schedule;
+};
+
+struct RangeResult {
+    range::Scheduling scheduling;
+    double low = 0, high = 0;
+    std::vector<RangePointPlant> points;
+    range::RangeDesign design;
+    bool given = false;              ///< the schedule was given: no one setting, no verdict
+    std::vector<RangePlace> places;  ///< those of the curves
+    std::vector<RangePassage> runs;
+    std::optional<verdict::Finding> verdict;
+    double compute_ms = 0;
+};
+
+/// Errors: those of identification, with the point in `where` ("points/2/record"); of model_of_points and
+/// model_of_branch; of design_range and judge_schedule, whose "options/..." become "schedule/..."; cancelled where
+/// nothing was found before the stop. Progress: "identify", "tune", "schedule", "evaluate".
+Expected<RangeResult> ask_range(const RangeQuestion& question, const RunControl& control);
+
+/// Records find their plants, and all of them one structure where their records allow it: of structures that differ,
+/// the one in which all together lose least. `warnings` says which.
+Expected<std::vector<RangePointPlant>> plants_of(const RangeQuestion& question, const RunControl& control,
+                                                 std::vector<range::RangePoint>& points,
+                                                 std::vector<Warning>& warnings);
+
+/// Where a range's plants lie in the request that a fault is about.
+Error in_range_request(Error error, const RangeQuestion& question);
+
+}  // namespace tunewright

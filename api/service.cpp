@@ -15,6 +15,7 @@
 #include "api/json/digest.h"
 #include "api/json/json.h"
 #include "api/outline.h"
+#include "api/reading.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 
@@ -24,40 +25,6 @@ namespace {
 Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
-
-/// Seconds that nothing names, and a plant that takes more than a day: the times may be milliseconds.
-void ask_for_unit(IdentifiedModel& model) {
-    constexpr double kDay = 86400;
-    const auto plant = LinearPlant::make(model.plant);
-    if (!plant || plant->time_scale() <= kDay) return;
-    model.warnings.insert(
-        model.warnings.begin(),
-        {"time-unit-doubtful", "The plant comes out slower than a day: its lags and dead time add up to " +
-                                   tunewright::text(plant->time_scale() / kDay, 3) +
-                                   " days, because the times were taken as seconds; nothing in the "
-                                   "file names their unit. If they are milliseconds, choose ms as "
-                                   "the unit of the times."});
-}
-
-// What reading the CSV has found belongs to the data's quality too.
-void add_reading(const ReadRecord& read, IdentifiedModel& model) {
-    DataQuality& quality = model.data_quality;
-    if (!read.time_unit_known) ask_for_unit(model);
-    if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
-    quality.samples_dropped += read.dropped;
-    quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
-    if (read.dropped > 0)
-        quality.notes.push_back(std::to_string(read.dropped) +
-                                " line(s) of the csv that cannot be read, or without a time, or with neither u nor y, "
-                                "were left out.");
-}
-
-// What is answered only where it was asked for.
-void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model) {
-    if (question.traces) return;
-    model.fit = {};
-    for (Candidate& candidate : model.candidates) candidate.y_model.clear();
-}
 
 Answer identified(const ReadRecord& read, const IdentifyQuestion& question, const RunControl& control) {
     auto model = identify(read.record, question, control);

@@ -12,6 +12,29 @@
 #include "api/contract/result/identified_model.h"
 
 namespace tunewright::api {
+
+const Description<verdict::Finding>& finding_contract() {
+    static const auto description = [] {
+        using F = verdict::Finding;
+        using enum verdict::Level;
+        Description<F> d("Finding",
+                         "A conclusion from the figures of this answer, as an engineer would say it: a code for "
+                         "programs, a sentence for people. docs/verdicts.md lists them.");
+        d.field("code", &F::code, words(), "Stable, in kebab-case.")
+            .field("level", &F::level,
+                   only_answered(
+                       choice<verdict::Level>({{"good", good}, {"note", note}, {"warning", warning}, {"bad", bad}})),
+                   "bad: what it belongs to is not to be used as it stands.")
+            .field("text", &F::text, words(),
+                   "One or two sentences in the request's units; numbers with three significant digits.")
+            .field("figures", &F::figures,
+                   numbers_by_name("Every number of the text under its name, in full precision."),
+                   "The numbers that the sentence is about.");
+        return d;
+    }();
+    return description;
+}
+
 namespace {
 
 // Reads a member of the entry's evaluation; left out where there is none.
@@ -183,28 +206,6 @@ void add_as_built(Description<TuningEntry>& d) {
             [](const TuningEntry& entry, Writer& out) { implemented_contract().write(*entry.as_built, out); },
             [](SchemaBook& book) { return implemented_contract().schema(book); },
             "With implement: the loop as the user's controller computes it.", {}, none);
-}
-
-const Description<verdict::Finding>& finding_contract() {
-    static const auto description = [] {
-        using F = verdict::Finding;
-        using enum verdict::Level;
-        Description<F> d("Finding",
-                         "A conclusion from the figures of this answer, as an engineer would say it: a code for "
-                         "programs, a sentence for people. docs/verdicts.md lists them.");
-        d.field("code", &F::code, words(), "Stable, in kebab-case.")
-            .field("level", &F::level,
-                   only_answered(
-                       choice<verdict::Level>({{"good", good}, {"note", note}, {"warning", warning}, {"bad", bad}})),
-                   "bad: what it belongs to is not to be used as it stands.")
-            .field("text", &F::text, words(),
-                   "One or two sentences in the request's units; numbers with three significant digits.")
-            .field("figures", &F::figures,
-                   numbers_by_name("Every number of the text under its name, in full precision."),
-                   "The numbers that the sentence is about.");
-        return d;
-    }();
-    return description;
 }
 
 Codec<std::vector<verdict::Finding>> findings() { return list_of(answer(finding_contract())); }

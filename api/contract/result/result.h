@@ -10,6 +10,9 @@
 
 namespace tunewright::api {
 
+/// A conclusion of a verdict.
+const Description<verdict::Finding>& finding_contract();
+
 /// A tuning result with what only the request knew. Its times, gains and figures are in the units of the request:
 /// `units` holds their labels and nothing is converted.
 struct ResultAnswer {

@@ -1,0 +1,91 @@
+// Requests about a whole operating range: points or equations, and how the user's controller can follow.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/contract/request.h"
+#include "engine/request/range/ask_range.h"
+
+namespace tunewright::api {
+
+struct GivenScheduling {
+    std::optional<std::string> name, unit;
+};
+
+/// One point as sent: a plant or a record.
+struct GivenRangePoint {
+    double at = 0;
+    std::optional<PlantModel> plant;
+    std::optional<GivenRecord> record;
+};
+
+/// The way of equations through their steady states.
+struct GivenWay {
+    range::Along along = range::Along::output;
+    std::optional<std::string> parameter;
+    double from = 0, to = 0;
+    bool hold_output = true;
+};
+
+/// A row as sent; without a Tf it is 0.1 Td.
+struct GivenRow {
+    double at = 0, Kp = 0, Ti = 0, Td = 0;
+    std::optional<double> Tf;
+    double b = 1;
+};
+
+struct ScheduleWish {
+    ControllerKind controller = ControllerKind::PID;
+    double Ms = 1.4, Mt = 1.4;
+    RobustFilterOptions filter;
+    range::Aim aim = range::Aim::worst;
+    double allowance = 0.05;
+    std::optional<int> rows;
+    range::Interpolation interpolation = range::Interpolation::linear_in_gains;
+    double hysteresis = 0.02;
+    range::Between between = range::Between::parameters;
+    double b = 1;
+    std::optional<std::vector<GivenRow>> given;
+};
+
+/// What every request about a range says of the range itself.
+struct RangeSubject {
+    std::optional<std::string> name;
+    std::optional<Units> units;
+    std::optional<PlantModel> plant;  ///< equations
+    std::optional<GivenWay> way;      ///< `range` of the request
+    std::shared_ptr<const range::SteadyBranch> branch;
+};
+
+struct RangeRequest : RangeSubject {
+    std::optional<GivenScheduling> scheduling;
+    std::optional<std::vector<GivenRangePoint>> points;
+    IdentifyQuestion identify;
+    bool over_region = false;
+    ScheduleWish schedule;
+    bool runs = true;
+    double timeout_s = 60;
+    std::optional<Notify> notify;
+    bool low_priority = false;
+    RangeQuestion question;         ///< the whole of it for the engine
+    std::vector<ReadRecord> reads;  ///< of the points, in their order; the records themselves are in the question
+};
+
+/// A request about a range as a job has it, with the terms on which it is run; its checks include what the engine says
+/// of points and equations at once.
+const Description<RangeRequest>& range_request_contract();
+
+/// Whether a request of POST /v1/jobs is about a range.
+bool is_range_request(const Json& request);
+
+/// Follows the steady states of `plant` along `way`; the reader has the faults.
+void follow_way(RangeSubject& subject, Reader& reader);
+
+const Description<GivenWay>& way_contract();
+/// The word that a schedule is written with too.
+Codec<range::Interpolation> interpolation_word();
+
+}  // namespace tunewright::api

@@ -1,0 +1,268 @@
+#include "api/contract/range/range_result.h"
+
+#include <utility>
+
+#include "api/contract/controller.h"
+#include "api/contract/plant/plant.h"
+#include "api/contract/range/range_curves.h"
+#include "api/contract/range/range_request.h"
+#include "api/contract/result/evaluation.h"
+#include "api/contract/result/identified_model.h"
+#include "api/contract/result/result.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr const char* kNothingDesigned = "A schedule was given: nothing was designed.";
+
+/// A controller of the ideal form as the contract shows any other.
+template <class Owner>
+void pid_field(Description<Owner>& d, const char* name, IdealPid Owner::*member, const char* sentence) {
+    d.field(
+        name, {}, [member](const Owner& owner, Writer& out) { controller_contract().write(owner.*member, out); },
+        one_of(controller_contract()).schema, sentence);
+}
+
+const Description<range::PlacePrice>& place_price_contract() {
+    static const auto description = [] {
+        using P = range::PlacePrice;
+        Description<P> d("PlacePrice", "What one setting costs at a point.");
+        d.field("at", &P::at, only_answered(number()), "The point.");
+        pid_field(d, "own", &P::own, "The point's own optimum under the same limits.");
+        d.field("own_IAE", &P::own_IAE, only_answered(number()), "IAE of a unit load step with it.",
+                {.unit = "y time/u"})
+            .field("IAE", &P::IAE, figure(), "The same with the one setting.", {.unit = "y time/u"})
+            .field("relative_IAE", &P::relative_IAE, figure(), "IAE over own_IAE.")
+            .field("Ms", &P::Ms, figure(), "On the nominal plant.")
+            .field("Mt", &P::Mt, figure(), "On the nominal plant.")
+            .why_null("The loop is not stable here, or does not settle.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<range::OneSetting>& one_setting_contract() {
+    static const auto description = [] {
+        using O = range::OneSetting;
+        Description<O> d("OneSetting", "The setting that keeps the limits over the range, and what it costs.");
+        pid_field(d, "controller", &O::controller, "The controller.");
+        d.field("worst_relative_IAE", &O::worst_relative_IAE, only_answered(number()), "The largest at a point.")
+            .field("mean_relative_IAE", &O::mean_relative_IAE, only_answered(number()), "The mean over the points.")
+            .field("worst_at", &O::worst_at, only_answered(number()), "The point of the largest.")
+            .field("points", &O::points, list_of(answer(place_price_contract())), "Its price at each point.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<range::ScheduleRow>& schedule_row_contract() {
+    static const auto description = [] {
+        using R = range::ScheduleRow;
+        Description<R> d("ScheduleRow", "Settings in the ideal form, with a second-order measurement filter.");
+        d.field("at", &R::at, only_answered(number()), "Its place.")
+            .field("Kp", &R::Kp, only_answered(number()), "Gain.", {.unit = "u/y"})
+            .field("Ti", &R::Ti, only_answered(number()), "Integral time.", {.unit = "time"})
+            .field("Td", &R::Td, only_answered(number()), "Derivative time.", {.unit = "time"})
+            .field("Tf", &R::Tf, only_answered(number()), "Filter time constant; 0: none.", {.unit = "time"})
+            .field("b", &R::b, only_answered(number()), "Set-point weight.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<range::ScheduleDesign>& schedule_contract() {
+    static const auto description = [] {
+        using S = range::ScheduleDesign;
+        Description<S> d("Schedule",
+                         "Rows of settings. Below the first and above the last their settings hold; between, the "
+                         "controller interpolates.");
+        d.field(
+             "interpolation", {},
+             [](const S& s, Writer& out) { interpolation_word().write(s.schedule.interpolation, out); },
+             interpolation_word().schema, "How.")
+            .field(
+                "hysteresis", {}, [](const S& s, Writer& out) { out.number(s.schedule.hysteresis); }, number().schema,
+                "Of steps, in the unit of `at`: a row is left half of it beyond its border.")
+            .field(
+                "rows", {},
+                [](const S& s, Writer& out) { list_of(answer(schedule_row_contract())).write(s.schedule.rows, out); },
+                list_of(answer(schedule_row_contract())).schema, "Ascending in `at`.")
+            .field("holds_limits", &S::holds_limits, only_answered(boolean()), "At every place that was looked at.")
+            .field("within_allowance", &S::within_allowance, only_answered(boolean()),
+                   "The IAE lies everywhere within the allowance of the place's own optimum.")
+            .field(
+                "worst_relative_IAE", {},
+                [](const S& s, Writer& out) { out.number(s.worst_relative_IAE); },
+                [](SchemaBook&) {
+                    return Json{{"type", {"number", "null"}}};
+                },
+                "The largest that was met; null where some loop is not stable.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<range::WorstPlace>& worst_place_contract() {
+    static const auto description = [] {
+        using W = range::WorstPlace;
+        using enum range::Quantity;
+        Description<W> d("WorstPlace", "Where a quantity is largest over the range, computed again by itself.");
+        d.field("quantity", &W::quantity,
+                only_answered(
+                    choice<range::Quantity>({{"Ms", Ms}, {"Mt", Mt}, {"relative_IAE", range::Quantity::relative_IAE}})),
+                "Which.")
+            .field("at", &W::at, only_answered(number()), "The place.")
+            .field("value", &W::value, figure(), "There.")
+            .field("limit", &W::limit, only_answered(number()), "Of Ms or Mt; 1 and the allowance of the relative IAE.")
+            .why_null("The loop is not stable there, or does not settle.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<RangeWorst>& worst_contract() {
+    static const auto description = [] {
+        const auto places = unless<std::vector<range::WorstPlace>>(list_of(answer(worst_place_contract())),
+                                                                   [](const auto& list) { return list.empty(); });
+        Description<RangeWorst> d("RangeWorst", "The worst places of each.");
+        d.field("one", &RangeWorst::one, places, "With one setting.")
+            .field("schedule", &RangeWorst::schedule, places, "With the schedule.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<RangePointPlant>& range_plant_contract() {
+    static const auto description = [] {
+        using P = RangePointPlant;
+        Description<P> d("RangePoint", "The plant at a point, and how it is known.");
+        d.field("at", &P::at, only_answered(number()), "The point.")
+            .field("plant", &P::plant, only_answered(one_of(plant_contract())),
+                   "As given, found in the record, or the equations' linearisation.")
+            .field("model", &P::model, maybe(answer(model_contract())), "Of a record.")
+            .field("u", &P::u, only_answered(maybe(number())), "Of equations: the steady input, absolute.",
+                   {.unit = "u"})
+            .field("y", &P::y, only_answered(maybe(number())), "Of equations: the steady output, absolute.",
+                   {.unit = "y"});
+        return d;
+    }();
+    return description;
+}
+
+Json scheduling_schema(SchemaBook&) {
+    const Json number{{"type", "number"}}, text{{"type", "string"}};
+    return {{"type", "object"},
+            {"properties", {{"name", text}, {"unit", text}, {"from", number}, {"to", number}}},
+            {"required", {"name", "from", "to"}}};
+}
+
+void write_scheduling(const RangeContent& content, Writer& out) {
+    out.begin_object();
+    out.key("name");
+    out.text(content.result.scheduling.name);
+    if (!content.result.scheduling.unit.empty()) {
+        out.key("unit");
+        out.text(content.result.scheduling.unit);
+    }
+    out.key("from");
+    out.number(content.result.low);
+    out.key("to");
+    out.number(content.result.high);
+    out.end_object();
+}
+
+template <class T>
+OrReason<T> with_reason(std::optional<T> value, std::string why) {
+    return {std::move(value), std::move(why)};
+}
+
+}  // namespace
+
+RangeContent::RangeContent(RangeResult of) : result(std::move(of)) {
+    curves = curves_of(result);
+    range::RangeDesign& design = result.design;
+    worst = {design.one_curve.worst, design.schedule_curve.worst};
+    one = with_reason(std::move(design.one), result.given ? kNothingDesigned : design.why_no_one);
+    schedule = with_reason(std::move(design.schedule), design.why_no_schedule);
+}
+
+const Description<RangeContent>& range_content_contract() {
+    static const auto description = [] {
+        using C = RangeContent;
+        Description<C> d("Range", "One setting and a schedule for an operating range, and what each costs.");
+        d.field("scheduling", {}, write_scheduling, scheduling_schema, "The scheduling variable and its range.")
+            .field(
+                "stated", {}, [](const C& c, Writer& out) { out.text(c.result.design.stated); }, words().schema,
+                "How the plants between the points are known.")
+            .field(
+                "points", {},
+                [](const C& c, Writer& out) { list_of(answer(range_plant_contract())).write(c.result.points, out); },
+                list_of(answer(range_plant_contract())).schema, "The plants at the points.")
+            .field("one", &C::one, or_reason(answer(one_setting_contract())), "One setting for the range.")
+            .field("schedule", &C::schedule, or_reason(answer(schedule_contract())), "The schedule.")
+            .field("curves", &C::curves, answer(range_curves_contract()), "Figures over the range.")
+            .field("worst", &C::worst, answer(worst_contract()), "Where each is worst.")
+            .field(
+                "verdict", {}, [](const C& c, Writer& out) { finding_contract().write(*c.result.verdict, out); },
+                [](SchemaBook& book) { return finding_contract().schema(book); },
+                "Whether a schedule is worth it; left out where one was given.", {},
+                [](const C& c) { return !c.result.verdict; })
+            .field(
+                "runs", {},
+                [](const C& c, Writer& out) { list_of(answer(range_passage_contract())).write(c.result.runs, out); },
+                list_of(answer(range_passage_contract())).schema, "Of equations: passages across the range.", {},
+                [](const C& c) { return c.result.runs.empty(); })
+            .field(
+                "warnings", {},
+                [](const C& c, Writer& out) {
+                    list_of(answer(warning_contract())).write(c.result.design.warnings, out);
+                },
+                list_of(answer(warning_contract())).schema, "Remarks.")
+            .why_null("None was found.");
+        return d;
+    }();
+    return description;
+}
+
+namespace {
+
+Description<RangeAnswer>& add_range(Description<RangeAnswer>& d) {
+    d.field(
+         "range", {}, [](const RangeAnswer& a, Writer& out) { range_content_contract().write(a.range, out); },
+         [](SchemaBook& book) { return range_content_contract().schema(book); }, "The answer.")
+        .field(
+            "compute_ms", {}, [](const RangeAnswer& a, Writer& out) { out.number(a.range.result.compute_ms); },
+            number().schema, "Time that it took, ms.");
+    return d;
+}
+
+}  // namespace
+
+const Description<RangeAnswer>& range_result_contract() {
+    static const auto description = [] {
+        using A = RangeAnswer;
+        Description<A> d("RangeResult", "The result of a job about an operating range.");
+        d.field("units", &A::units, only_answered(maybe(object(units_contract()))), "As sent.");
+        add_range(d)
+            .field(
+                "partial", {}, [](const A& a, Writer& out) { out.boolean(a.range.result.design.partial); },
+                boolean().schema, "True: cancelled after a setting was found; this is the best so far.")
+            .field(
+                "version", {}, [](const A&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
+                "Of the service.")
+            .field("request_hash", &A::request_hash, words(), "SHA-256 of the request in its canonical spelling.");
+        return d;
+    }();
+    return description;
+}
+
+const Description<RangeAnswer>& range_answer_contract() {
+    static const auto description = [] {
+        Description<RangeAnswer> d("RangeCallAnswer", "An operating range, answered while the client waits.");
+        add_range(d);
+        return d;
+    }();
+    return description;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,56 @@
+// Answers about a whole operating range. Answers are only written.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/contract/record.h"
+#include "api/describe/description.h"
+#include "engine/request/range/ask_range.h"
+
+namespace tunewright::api {
+
+/// Ms, Mt and price over the range; not a number where they are not known.
+struct RangeTraces {
+    std::vector<double> Ms, Mt, relative_IAE;
+    std::vector<double> Kp, Ti, Td;  ///< of a schedule: what the controller computes with there
+};
+
+struct RangeCurves {
+    std::vector<double> at, K, T, L, u, y;  ///< u, y of equations alone
+    std::optional<RangeTraces> one, schedule;
+};
+
+struct RangeWorst {
+    std::vector<range::WorstPlace> one, schedule;
+};
+
+/// The result in the shape of the contract.
+struct RangeContent {
+    explicit RangeContent(RangeResult result);
+    RangeContent() = default;
+
+    RangeResult result;
+    OrReason<range::OneSetting> one;
+    OrReason<range::ScheduleDesign> schedule;
+    RangeCurves curves;
+    RangeWorst worst;
+};
+
+/// With what only the request knew.
+struct RangeAnswer {
+    RangeContent range;
+    std::optional<Units> units;
+    std::string request_hash;
+};
+
+/// The result of a job about a range.
+const Description<RangeAnswer>& range_result_contract();
+
+/// The answer of POST /v1/range.
+const Description<RangeAnswer>& range_answer_contract();
+
+const Description<RangeContent>& range_content_contract();
+
+}  // namespace tunewright::api

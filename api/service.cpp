@@ -15,6 +15,7 @@
 #include "api/json/digest.h"
 #include "api/json/json.h"
 #include "api/outline.h"
+#include "api/range_service.h"
 #include "api/reading.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
@@ -47,13 +48,11 @@ Problem timeout_too_long(double timeout_s, const JobLimits& limits) {
     return *reader.problem();
 }
 
-/// Whether a plant is given as a text, alone or among several.
-bool has_typed_plant(const Json& request) {
-    const auto plant = request.find("plant");
-    if (plant == request.end()) return false;
-    if (plant->is_string()) return true;
-    const auto several = plant->is_object() ? plant->find("plants") : plant->end();
-    return plant->is_object() && several != plant->end() && several->is_array() &&
+/// Whether a plant is a text, alone or among several.
+bool is_typed(const Json& plant) {
+    if (plant.is_string()) return true;
+    const auto several = plant.is_object() ? plant.find("plants") : plant.end();
+    return plant.is_object() && several != plant.end() && several->is_array() &&
            std::any_of(several->begin(), several->end(), [](const Json& one) { return one.is_string(); });
 }
 
@@ -63,32 +62,68 @@ Json plant_json(const PlantModel& plant) {
     return Json::parse(out.view());
 }
 
-/// `text` spells the request that is kept. A typed plant is kept as what it means: whoever reads the job finds a plant,
-/// and every spelling of it is the same request.
-template <class Spelling>
-std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits, const Spelling& text) {
-    auto decoded = decode(value, job_contract());
+/// A typed plant is kept as what it means: whoever reads the job finds a plant, and every spelling of it is the same
+/// request. False where there is none.
+bool spell_plants(Json& value, const JobRequest& request) {
+    if (!request.plant || !is_typed(value["plant"])) return false;
+    value["plant"] = plant_json(*request.plant);
+    return true;
+}
+
+bool spell_plants(Json& value, const RangeRequest& request) {
+    bool typed = false;
+    if (!request.points) return typed;
+    for (std::size_t k = 0; k < request.points->size(); ++k) {
+        const auto& plant = (*request.points)[k].plant;
+        if (!plant || !is_typed(value["points"][k]["plant"])) continue;
+        value["points"][k]["plant"] = plant_json(*plant);
+        typed = true;
+    }
+    return typed;
+}
+
+void keep_decoded(PreparedJob& job, JobRequest&& request) {
+    job.request = std::make_shared<const JobRequest>(std::move(request));
+}
+void keep_decoded(PreparedJob& job, RangeRequest&& request) {
+    job.range = std::make_shared<const RangeRequest>(std::move(request));
+}
+
+/// `text` spells the request that is kept, unless a plant in it is typed.
+template <class Request, class Spelling>
+std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contract, Json& value,
+                                               const JobLimits& limits, const Spelling& text) {
+    auto decoded = decode(value, contract);
     if (const auto* problem = std::get_if<Problem>(&decoded)) return *problem;
-    auto& request = std::get<JobRequest>(decoded);
+    auto& request = std::get<Request>(decoded);
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
-    const bool typed = has_typed_plant(value);
-    if (typed) value["plant"] = plant_json(*request.plant);
-    PreparedJob job{request.name.value_or(""),
-                    given ? request.timeout_s : limits.default_timeout_s,
-                    typed ? value.dump() : text(),
-                    {},
-                    request.notify,
-                    request.low_priority};
+    const bool typed = spell_plants(value, request);
+    PreparedJob job{.name = request.name.value_or(""),
+                    .timeout_s = given ? request.timeout_s : limits.default_timeout_s,
+                    .request_json = typed ? value.dump() : text(),
+                    .request_hash = {},
+                    .notify = request.notify,
+                    .low_priority = request.low_priority};
     leave_out_terms(value);
     job.request_hash = sha256_hex(canonical(value));
-    job.request = std::make_shared<const JobRequest>(std::move(request));
+    keep_decoded(job, std::move(request));
     return job;
+}
+
+template <class Spelling>
+std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits, const Spelling& text) {
+    return is_range_request(value) ? prepared_as(range_request_contract(), value, limits, text)
+                                   : prepared_as(job_contract(), value, limits, text);
 }
 
 /// What a batch's request leaves open about traces; one of the wrong kind is left to the contract.
 void ask_for_no_traces(Json& request) {
     if (!request.is_object()) return;
+    if (is_range_request(request)) {
+        if (!request.contains("runs")) request["runs"] = false;
+        return;
+    }
     if (!request.contains("evaluate")) request["evaluate"] = Json::object();
     Json& evaluate = request["evaluate"];
     if (evaluate.is_object() && !evaluate.contains("points")) evaluate["points"] = 0;
@@ -147,16 +182,28 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     ask_for_no_traces(value);
     auto job = prepared(value, limits, [&] { return value.dump(); });
     // Entries wait for the store in groups, as text alone.
-    if (auto* ready = std::get_if<PreparedJob>(&job)) ready->request.reset();
+    if (auto* ready = std::get_if<PreparedJob>(&job)) {
+        ready->request.reset();
+        ready->range.reset();
+    }
     return job;
 }
 
 JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
+    if (job.range) return range_outcome(*job.range, job.request_hash, control);
     return computed(*job.request, job.request_hash, control);
 }
 
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
-    auto decoded = read_body(stored.json, job_contract());
+    const auto parsed = parse(stored.json);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return failure(*problem);
+    const Json& value = std::get<Json>(parsed);
+    if (is_range_request(value)) {
+        auto range = decode(value, range_request_contract());
+        if (const auto* problem = std::get_if<Problem>(&range)) return failure(*problem);
+        return range_outcome(std::get<RangeRequest>(std::move(range)), stored.hash, control);
+    }
+    auto decoded = decode(value, job_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return failure(*problem);
     return computed(std::get<JobRequest>(std::move(decoded)), stored.hash, control);
 }

@@ -15,6 +15,7 @@
 namespace tunewright::api {
 
 struct JobRequest;
+struct RangeRequest;
 
 /// A tuning request that has been read and found valid.
 struct PreparedJob {
@@ -24,7 +25,9 @@ struct PreparedJob {
     std::string request_hash;           ///< of the canonical request without the terms it is run on, hexadecimal
     std::optional<Notify> notify = {};  ///< whom to tell of its end
     bool low_priority = false;
-    std::shared_ptr<const JobRequest> request = {};  ///< decoded, for a run in this process; null for a batch's entry
+    /// Decoded, for a run in this process: one of the two; both null for a batch's entry.
+    std::shared_ptr<const JobRequest> request = {};
+    std::shared_ptr<const RangeRequest> range = {};
 };
 
 /// A prepared request as a store keeps it, whose text is the truth for whichever process runs it.
@@ -74,6 +77,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control);  ///< PO
 Answer design_call(std::string_view body, const RunControl& control);    ///< POST /v1/design
 Answer frontier_call(std::string_view body, const RunControl& control);  ///< POST /v1/frontier
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
+Answer range_call(std::string_view body, const RunControl& control);     ///< POST /v1/range
 
 /// POST /v1/records/preview: of JSON, and of the file itself, in any encoding.
 Answer preview_call(std::string_view body);
@@ -83,6 +87,7 @@ Answer preview_file(std::string_view bytes);
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
 Answer parse_plant_call(std::string_view body);                       ///< POST /v1/plants/parse
 Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
+Answer range_experiments_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/range
 
 std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for
 Answer controller_json(std::string_view id);  ///< GET /v1/controllers/{id}; 404 for none

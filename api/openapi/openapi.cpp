@@ -1,6 +1,8 @@
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/product/product.h"
+#include "api/contract/range/range_experiments.h"
+#include "api/contract/range/range_result.h"
 #include "api/contract/relay.h"
 #include "api/contract/reports/frontier.h"
 #include "api/contract/request.h"
@@ -47,6 +49,11 @@ std::string openapi_json() {
         design_answer_contract().schema(book);
         frontier_request_contract().schema(book);
         frontier_contract().schema(book);
+        range_request_contract().schema(book);
+        range_result_contract().schema(book);
+        range_answer_contract().schema(book);
+        range_experiments_contract().schema(book);
+        range_experiments_answer_contract().schema(book);
         evaluate_request_contract().schema(book);
         evaluate_answer_contract().schema(book);
         identify_request_contract().schema(book);

@@ -46,7 +46,7 @@ struct BatchLimits {
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
                       NotifyPolicy& policy, const BatchLimits& limits);
 
-/// /v1/evaluate, /v1/design, /v1/frontier, /v1/identify, /v1/experiments/relay and the conversions below
+/// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/identify, /v1/experiments/... and the conversions below
 /// /v1/controllers: computed while the client waits, when its turn has come, with a deadline, or until `closing`.
 /// /v1/plants/parse: at once.
 void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing);

@@ -25,6 +25,7 @@ using Refusal = std::optional<Response> (*)(const http::Request&);
 
 constexpr std::chrono::seconds kEvaluateTime{10};
 constexpr std::chrono::seconds kDesignTime{10};
+constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
@@ -156,9 +157,11 @@ void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, co
     add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);
     add("/v1/design", of_body(api::design_call), kDesignTime);
     add("/v1/frontier", of_body(api::frontier_call), kDesignTime);
+    add("/v1/range", of_body(api::range_call), kRangeTime);
     add("/v1/identify", of_body(api::identify_call), kIdentifyTime);
     add("/v1/records/preview", preview, kIdentifyTime, refuse_file_call);
     add("/v1/experiments/relay", of_body(api::relay_call), kRelayTime);
+    add("/v1/experiments/range", of_body(api::range_experiments_call), kRangeTime);
     add("/v1/controllers/{id}/settings", of_product(api::controller_settings_call), kConversionTime);
     add("/v1/controllers/{id}/controller", of_product(api::controller_twin_call), kConversionTime);
 }

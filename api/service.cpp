@@ -174,6 +174,12 @@ std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobL
     return prepared(std::get<Json>(parsed), limits, [&] { return compact(body); });
 }
 
+std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const JobLimits& limits) {
+    auto parsed = parse(body);
+    if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
+    return prepared_as(range_request_contract(), std::get<Json>(parsed), limits, [&] { return compact(body); });
+}
+
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits) {
     auto parsed = parse(body);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;

@@ -60,6 +60,9 @@ struct JobLimits {
 /// Reads and checks a tuning request; every fault at once. 400 not JSON, 422 not a valid request.
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits = {});
 
+/// The same for a request that has to be about a range, whatever its members are.
+std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const JobLimits& limits = {});
+
 /// The same for an entry of a batch, which answers no traces unless it asks for them: evaluate.points is 0 by default,
 /// and stands in the request that is kept. 422 where it has terms that only the batch as a whole can have.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});

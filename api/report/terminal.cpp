@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/json/json.h"
+#include "api/report/columns.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -12,41 +13,6 @@ namespace {
 
 constexpr const char* kNothing = "-";
 constexpr std::size_t kWidestTitle = 44;
-
-std::size_t letters(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-/// Columns as wide as their widest cell; the first `left` of them begin at the left, the others are numbers.
-class Columns {
-public:
-    Columns(std::vector<std::string> heads, std::size_t left) : left_(left) { row(std::move(heads)); }
-
-    void row(std::vector<std::string> cells) {
-        widths_.resize(std::max(widths_.size(), cells.size()), 0);
-        for (std::size_t i = 0; i < cells.size(); ++i) widths_[i] = std::max(widths_[i], letters(cells[i]));
-        rows_.push_back(std::move(cells));
-    }
-
-    std::string text() const {
-        std::string out;
-        for (const auto& cells : rows_) {
-            std::string line;
-            for (std::size_t i = 0; i < cells.size(); ++i) {
-                const std::string room(widths_[i] - letters(cells[i]), ' ');
-                line += (i == 0 ? "" : "  ") + (i < left_ ? cells[i] + room : room + cells[i]);
-            }
-            out += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-        }
-        return out;
-    }
-
-private:
-    std::size_t left_;
-    std::vector<std::vector<std::string>> rows_;
-    std::vector<std::size_t> widths_;
-};
 
 /// The member at a path such as "/performance/load/IAE"; null where there is none.
 Json at(const Json& value, const char* pointer) {
@@ -173,6 +139,7 @@ std::string listing(std::string_view answer, const char* member,
 
 std::string result_text(std::string_view result) try {
     const Json value = parsed_or_null(result);
+    if (value.contains("range")) return range_text(result);
     const std::string time = words(at(value, "/units/time"));
     return text_of_result(value, time.empty() ? "s" : time);
 } catch (const Json::exception&) {

@@ -14,6 +14,10 @@ namespace tunewright::api {
 /// settings, Ms, Mt and load IAE, and the verdict on the best. A text that is no result is answered as it is.
 std::string result_text(std::string_view result);
 
+/// A result about a range: one setting, the schedule's rows with their figures, the worst over the range, the runs'
+/// areas and the verdict. A text that is no such result is answered as it is.
+std::string range_text(std::string_view result);
+
 /// An answer of identify: the candidates with their fits, the chosen one's parameters with standard errors, warnings.
 std::string model_text(std::string_view answer);
 

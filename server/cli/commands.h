@@ -22,6 +22,12 @@ struct TuneCommand {
 };
 int tune(const TuneCommand& command);
 
+struct RangeCommand {
+    std::string file;  ///< a request about a range, as POST /v1/jobs takes it; "-": standard input
+    OutputWords output;
+};
+int range(const RangeCommand& command);
+
 struct IdentifyCommand {
     std::string file;  ///< CSV or a log as it is, or a request of POST /v1/identify; "-": standard input
     api::CsvRequest question;

@@ -106,6 +106,13 @@ void add_loop_commands(CommandTree& tree) {
         tree.add("compare", "The same by every method that applies, ranked", [&] { return tune(comparing); }),
         comparing);
 
+    RangeCommand& ranging = tree.keep<RangeCommand>();
+    CLI::App& range_app =
+        tree.add("range", "One setting and a schedule for a whole operating range", [&] { return range(ranging); });
+    range_app.add_option("file", ranging.file, "A request with points or equations as JSON; - reads standard input")
+        ->required();
+    add_output_options(range_app, ranging.output, true);
+
     IdentifyCommand& identifying = tree.keep<IdentifyCommand>();
     CLI::App& identify_app =
         tree.add("identify", "A model from a recorded test", [&] { return identify(identifying); });

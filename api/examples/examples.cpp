@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "api/contract/range/range_request.h"
 #include "api/describe/suggest.h"
 #include "api/embed/files.h"
 #include "api/json/json.h"
@@ -21,11 +22,13 @@ void insert_record(Json& request) {
     csv = std::string(embedded_file("examples/" + csv.get<std::string>()));
 }
 
-Json all_examples() {
+/// Those about one loop, or those about a range: what shows requests of one kind need not know the other.
+Json examples_of(bool ranges) {
     Json examples = Json::array();
     for (const EmbeddedFile& file : embedded_files()) {
         if (!is_example(file.name)) continue;
         Json example = Json::parse(file.text);
+        if (is_range_request(example["request"]) != ranges) continue;
         insert_record(example["request"]);
         examples.push_back(std::move(example));
     }
@@ -35,12 +38,13 @@ Json all_examples() {
 }  // namespace
 
 std::string examples_json() {
-    static const std::string text = Json{{"examples", all_examples()}}.dump();
+    static const std::string text = Json{{"examples", examples_of(false)}, {"ranges", examples_of(true)}}.dump();
     return text;
 }
 
 Answer example_request(std::string_view which) {
-    const Json examples = all_examples();
+    Json examples = examples_of(false);
+    for (Json& example : examples_of(true)) examples.push_back(std::move(example));
     std::vector<std::string> ids;
     for (const Json& example : examples) {
         ids.push_back(example.at("id"));

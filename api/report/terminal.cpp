@@ -170,7 +170,9 @@ std::string controllers_text(std::string_view answer) {
 }
 
 std::string examples_text(std::string_view answer) {
-    return listing(answer, "examples", {{"id", "id"}, {"example", "title"}});
+    Json all = parsed_or_null(answer);
+    for (const Json& range : all.value("ranges", Json::array())) all["examples"].push_back(range);
+    return listing(all.dump(), "examples", {{"id", "id"}, {"example", "title"}});
 }
 
 std::string problem_of_file(std::string_view problem, const std::string& file) {

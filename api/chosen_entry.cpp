@@ -33,8 +33,25 @@ std::variant<std::size_t, Problem> index_of(const Json& result, std::string_view
                      count_of(controllers));
 }
 
-/// A result alone, or a job with its request.
-std::optional<Problem> read_source(const ResultSource& source, ChosenEntry& found) {
+std::optional<Problem> find_entry(std::string_view index, ChosenEntry& found) {
+    const bool holds = found.result.is_object() && found.result.contains("controllers") &&
+                       found.result["controllers"].is_array() && !found.result["controllers"].empty();
+    if (!holds) return not_a_result();
+    const auto number = index_of(found.result, index);
+    if (const auto* problem = std::get_if<Problem>(&number)) return *problem;
+    found.index = std::get<std::size_t>(number);
+    const Json& entry = found.entry();
+    if (entry.is_object() && entry.contains("controller")) return std::nullopt;
+    const std::string method = entry.is_object() ? entry.value("method", "") : "";
+    const Json::json_pointer detail("/error/detail");
+    return not_found("Number " + std::to_string(found.index) + (method.empty() ? "" : " (" + method + ")") +
+                     " has no controller: " +
+                     (entry.contains(detail) ? entry.at(detail).get<std::string>() : "the method found none."));
+}
+
+}  // namespace
+
+std::optional<Problem> read_result(const ResultSource& source, ChosenEntry& found) {
     for (const auto& [text, value] :
          {std::pair{source.result, &found.result}, std::pair{source.request, &found.request}}) {
         if (value == &found.request && text.empty()) continue;
@@ -50,26 +67,13 @@ std::optional<Problem> read_source(const ResultSource& source, ChosenEntry& foun
                 *target = at->get<std::string>();
         found.result = Json(found.result["result"]);
     }
-    const bool holds = found.result.is_object() && found.result.contains("controllers") &&
-                       found.result["controllers"].is_array() && !found.result["controllers"].empty();
-    if (!holds) return not_a_result();
     return std::nullopt;
 }
 
-std::optional<Problem> find_entry(std::string_view index, ChosenEntry& found) {
-    const auto number = index_of(found.result, index);
-    if (const auto* problem = std::get_if<Problem>(&number)) return *problem;
-    found.index = std::get<std::size_t>(number);
-    const Json& entry = found.entry();
-    if (entry.is_object() && entry.contains("controller")) return std::nullopt;
-    const std::string method = entry.is_object() ? entry.value("method", "") : "";
-    const Json::json_pointer detail("/error/detail");
-    return not_found("Number " + std::to_string(found.index) + (method.empty() ? "" : " (" + method + ")") +
-                     " has no controller: " +
-                     (entry.contains(detail) ? entry.at(detail).get<std::string>() : "the method found none."));
+bool has_schedule(const Json& result) {
+    const Json::json_pointer rows("/range/schedule/rows");
+    return result.is_object() && result.contains(rows) && result.at(rows).is_array() && !result.at(rows).empty();
 }
-
-}  // namespace
 
 Problem not_a_result() {
     return not_found("This is no result with controllers. Give what `tune` or a succeeded job has answered.");
@@ -77,7 +81,7 @@ Problem not_a_result() {
 
 std::variant<ChosenEntry, Problem> choose_entry(const ResultSource& source, std::string_view index) {
     ChosenEntry found;
-    if (auto problem = read_source(source, found)) return *std::move(problem);
+    if (auto problem = read_result(source, found)) return *std::move(problem);
     if (auto problem = find_entry(index, found)) return *std::move(problem);
     return found;
 }

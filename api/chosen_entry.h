@@ -1,6 +1,7 @@
 // A controller of a result, by its number: what code and reports are made of.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -27,6 +28,12 @@ struct ChosenEntry {
 /// such controller, or an entry without one. Throws Json::exception where the text only looks like a result;
 /// not_a_result() is the answer to that.
 std::variant<ChosenEntry, Problem> choose_entry(const ResultSource& source, std::string_view index);
+
+/// A result alone, or a job with its request, whatever it answers. Problems: 400 not JSON.
+std::optional<Problem> read_result(const ResultSource& source, ChosenEntry& found);
+
+/// Whether it answers about an operating range, and has a schedule.
+bool has_schedule(const Json& result);
 
 Problem not_a_result();
 

@@ -12,8 +12,6 @@ namespace {
 
 using product::Product;
 
-Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
-
 Answer no_such_controller(std::string_view id) {
     std::vector<std::string> ids;
     for (const Product& product : product::catalogue()) ids.emplace_back(product.id);

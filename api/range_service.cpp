@@ -11,8 +11,6 @@
 namespace tunewright::api {
 namespace {
 
-Answer refused(const Problem& problem) { return {problem.status, to_json(problem)}; }
-
 /// The engine's answer, with what reading the records has found.
 Expected<RangeResult> answered_range(const RangeRequest& request, const RunControl& control) {
     auto result = ask_range(request.question, control);
@@ -88,12 +86,12 @@ JobOutcome range_outcome(RangeRequest request, std::string_view hash, const RunC
 
 Answer range_call(std::string_view body, const RunControl& control) {
     const auto decoded = read_body(body, range_request_contract());
-    if (const auto* problem = std::get_if<Problem>(&decoded)) return refused(*problem);
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<RangeRequest>(decoded);
     auto result = answered_range(request, control);
-    if (!result) return refused(problem_of(result.error(), request));
+    if (!result) return refusal(problem_of(result.error(), request));
     // Nobody keeps half a search that was stopped.
-    if (result->design.partial) return refused(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));
+    if (result->design.partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));
     Writer out;
     range_answer_contract().write({RangeContent(std::move(*result)), {}, {}}, out);
     return {200, out.take()};
@@ -101,10 +99,10 @@ Answer range_call(std::string_view body, const RunControl& control) {
 
 Answer range_experiments_call(std::string_view body, const RunControl& control) {
     const auto decoded = read_body(body, range_experiments_contract());
-    if (const auto* problem = std::get_if<Problem>(&decoded)) return refused(*problem);
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<RangeExperimentsRequest>(decoded);
     auto tests = test_places(*request.branch, request.experiment, control);
-    if (!tests) return refused(to_problem(tests.error()));
+    if (!tests) return refusal(to_problem(tests.error()));
     Writer out;
     range_experiments_answer_contract().write({request.branch, std::move(*tests)}, out);
     return {200, out.take()};

@@ -23,8 +23,6 @@
 namespace tunewright::api {
 namespace {
 
-Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
-
 JobOutcome failure(const Problem& problem) { return {JobOutcome::Status::failed, {}, to_json(problem)}; }
 
 Answer identified(const ReadRecord& read, const IdentifyQuestion& question, const RunControl& control) {
@@ -167,6 +165,8 @@ JobOutcome computed(JobRequest request, std::string_view hash, const RunControl&
 }
 
 }  // namespace
+
+Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
     auto parsed = parse(body);

@@ -51,6 +51,9 @@ struct Answer {
     std::string body;
 };
 
+/// What a call answers that cannot be done.
+Answer refusal(const Problem& problem);
+
 /// What an operator allows beside the contract.
 struct JobLimits {
     double default_timeout_s = 60;    ///< of a request without timeout_s

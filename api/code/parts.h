@@ -1,9 +1,13 @@
-// The two ends of a controller's code: what may be asked of it (the parameters of the call, which are the options of
-// the command), and what it says of where it comes from.
+// The two ends of a program: what may be asked of it (the parameters of the call, which are the options of the command),
+// and what it says of where it comes from.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <variant>
 
+#include "api/chosen_entry.h"
+#include "api/code/code.h"
 #include "api/describe/description.h"
 #include "engine/code/algorithm.h"
 #include "engine/code/print.h"
@@ -25,7 +29,36 @@ struct CodeQuestion {
 /// Read from an object of the parameters as they were typed, numbers as numbers.
 const Description<CodeQuestion>& code_contract();
 
+/// The parameters as they were typed, and what the result says of units: both read before anything is computed.
+struct AskedCode {
+    CodeQuestion question;
+    double unit = 1;  ///< seconds in the result's unit of time
+};
+AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader);
+
+struct SampleTime {
+    double seconds = 0;
+    std::string origin;  ///< for the head comment
+};
+
+/// As asked for, else as the request says how the controller runs, else from the controller's own times (gains with
+/// their times in seconds). A fault of `sample_time` where there is none.
+std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains);
+
+/// In seconds; the sample time is still to be set.
+SampledPid law_of(const AskedCode& asked, const ParallelPid& gains);
+code::CodeOptions options_of(const AskedCode& asked, const Json& result);
+
+ControllerCode printed(const code::Program& program, code::Language language, const code::Provenance& provenance,
+                       const SampleTime& sample_time);
+
+/// The program of the schedule in a range's answer. May throw Json::exception, as choose_entry.
+std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found, const CodeWords& words);
+
 /// Lines of the head comment from a result, one of its entries, and the request (null where it is not known).
 code::Provenance provenance_of(const Json& result, const Json& entry, const Json& request);
+
+/// The same of a range's answer: its scheduling variable, and the worst place of the schedule.
+code::Provenance provenance_of_schedule(const Json& result, const Json& request);
 
 }  // namespace tunewright::api

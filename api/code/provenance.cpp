@@ -60,6 +60,15 @@ void add_units(const Json& result, code::Provenance& rows) {
     if (!units.empty()) rows.emplace_back("Units", units + " in the request; all times here are in seconds");
 }
 
+void add_origin(const Json& result, code::Provenance& rows) {
+    add_units(result, rows);
+    if (result.value("partial", false))
+        rows.emplace_back("Warning", "the search was stopped; this is the best found so far");
+    const std::string hash = word_at(result, "/request_hash"), version = word_at(result, "/version");
+    if (!hash.empty()) rows.emplace_back("Request", "SHA-256 " + hash);
+    if (!version.empty()) rows.emplace_back("Tuned by", "Tunewright " + version);
+}
+
 }  // namespace
 
 code::Provenance provenance_of(const Json& result, const Json& entry, const Json& request) {
@@ -77,12 +86,22 @@ code::Provenance provenance_of(const Json& result, const Json& entry, const Json
     }
     if (entry.contains("/performance/load"_json_pointer))
         rows.emplace_back("Load IAE", figure_at(entry, "/performance/load", "IAE") + ", in the request's units");
-    add_units(result, rows);
-    if (result.value("partial", false))
-        rows.emplace_back("Warning", "the search was stopped; this is the best controller so far");
-    const std::string hash = word_at(result, "/request_hash"), version = word_at(result, "/version");
-    if (!hash.empty()) rows.emplace_back("Request", "SHA-256 " + hash);
-    if (!version.empty()) rows.emplace_back("Tuned by", "Tunewright " + version);
+    add_origin(result, rows);
+    return rows;
+}
+
+code::Provenance provenance_of_schedule(const Json& result, const Json& request) {
+    code::Provenance rows;
+    const std::string name = word_at(request, "/name"), unit = word_at(result, "/range/scheduling/unit");
+    if (!name.empty()) rows.emplace_back("Loop", name);
+    const Json& range = result.at("range");
+    const Json& scheduling = range.at("scheduling");
+    rows.emplace_back("Range", word_at(scheduling, "/name") + " from " + value_text(scheduling.at("from")) + " to " +
+                                   value_text(scheduling.at("to")) + (unit.empty() ? "" : " " + unit));
+    for (const Json& worst : range.value("/worst/schedule"_json_pointer, Json::array()))
+        rows.emplace_back("Largest " + word_at(worst, "/quantity"),
+                          value_text(worst.at("value")) + " at " + value_text(worst.at("at")));
+    add_origin(result, rows);
     return rows;
 }
 

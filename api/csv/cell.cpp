@@ -6,12 +6,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "api/csv/text.h"
+
 namespace tunewright::api {
 namespace {
 
 constexpr std::size_t kMaxNumberLength = 64;
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::string_view without_sign(std::string_view cell) {
     if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kMaxPairs = 200, kMaxKeyLength = 60, kMaxLineLength = 20'000;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 void skip_blanks(std::string_view text, std::size_t& at) {

@@ -31,4 +31,7 @@ bool is_utf8(std::string_view text);
 ///     while (const auto line = next_line(text, at)) ...
 std::optional<std::string_view> next_line(std::string_view text, std::size_t& at);
 
+/// Of ASCII, whatever the locale.
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 }  // namespace tunewright::api

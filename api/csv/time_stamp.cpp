@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
+#include "api/csv/text.h"
+
 namespace tunewright::api {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Reads `least` to `most` digits.
 std::optional<int> take_digits(std::string_view& text, std::size_t least, std::size_t most) {

@@ -55,7 +55,7 @@ Answer example_request(std::string_view which) {
     problem.detail = "There is no example \"" + std::string(which) + "\". " +
                      (meant.empty() ? "They are numbered from 1 to " + std::to_string(ids.size()) + "."
                                     : "Did you mean " + meant + "?");
-    return {problem.status, to_json(problem)};
+    return refusal(problem);
 }
 
 }  // namespace tunewright::api

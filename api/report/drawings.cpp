@@ -1,20 +1,12 @@
 // Responses before and after, the Nyquist curve and the sensitivities, as drawings.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "api/report/figures.h"
 #include "api/report/plot.h"
 
 namespace tunewright::api {
 namespace {
-
-std::vector<double> numbers_at(const Place& place) {
-    std::vector<double> out;
-    for (const Json& value : place.value())
-        out.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
-    return out;
-}
 
 struct Source {
     std::string name;

@@ -1,5 +1,6 @@
 #include "api/report/subject.h"
 
+#include <limits>
 #include <utility>
 
 #include "api/contract/terms.h"
@@ -28,6 +29,13 @@ Place Place::at(std::size_t index) const { return {root, pointer + "/" + std::to
 std::string text_at(const Place& place) {
     const Json& value = place.value();
     return value.is_string() ? value.get<std::string>() : "";
+}
+
+std::vector<double> numbers_at(const Place& place) {
+    std::vector<double> out;
+    for (const Json& value : place.value())
+        out.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+    return out;
 }
 
 ReportSubject subject_of(const Json& document, std::size_t index) {

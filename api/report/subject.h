@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "api/chosen_entry.h"
 #include "api/json/json.h"
@@ -25,6 +26,9 @@ struct Place {
 
 /// A text at the place; "" for none.
 std::string text_at(const Place& place);
+
+/// The list at the place, not a number where an element is none; empty for no list.
+std::vector<double> numbers_at(const Place& place);
 
 /// What a section is about: places in one document {result, request}.
 struct ReportSubject {

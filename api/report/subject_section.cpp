@@ -103,12 +103,6 @@ Html quality_of(const Place& quality) {
     return table("The record", {"", ""}, rows) + list(notes);
 }
 
-std::vector<double> numbers_at(const Place& place) {
-    std::vector<double> out;
-    for (const Json& value : place.value()) out.push_back(value.is_number() ? value.get<double>() : 0.0 / 0.0);
-    return out;
-}
-
 Html fit_of(const Place& fit, const ReportSubject& s) {
     if (!fit.at("t").exists() || !fit.at("y_model").exists()) return {};
     const std::vector<double> t = numbers_at(fit.at("t"));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/controller/schedule/schedule.h"
 #include "engine/plant/plant_family.h"
 #include "engine/tuning/robust/robust.h"
 
@@ -27,13 +28,6 @@ struct RangePoint {
 enum class Between {
     parameters,          ///< logarithms of K, T, L, ... of one structure; linear where a sign or a 0 forbids them
     frequency_response,  ///< ln |P| and the unwrapped phase, linear in `at`: for unlike structures
-};
-
-/// How the user's controller moves between the rows of its schedule.
-enum class Interpolation {
-    steps,            ///< a row's settings from its place on, with hysteresis
-    linear_in_gains,  ///< Kp, 1/Ti and Td are linear between rows
-    linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
 
 /// What one setting for all points has the least of: IAE relative to each point's own optimum.

@@ -19,7 +19,6 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-constexpr std::size_t kMaxKeyLength = 200;
 constexpr std::size_t kMaxNameLength = 200;
 
 Response no_such_batch(const std::string& id) {
@@ -97,9 +96,7 @@ std::optional<Response> read_order(const http::Request& request, NotifyPolicy& p
     if (auto refusal = refuse_form(request)) return refusal;
     if (auto refusal = read_form(request, order.question.form)) return refusal;
     order.idempotency_key = request.header("Idempotency-Key");
-    if (order.idempotency_key.size() > kMaxKeyLength)
-        return problem_response(422, "The Idempotency-Key has " + std::to_string(order.idempotency_key.size()) +
-                                         " characters; at most 200 are accepted.");
+    if (auto refusal = refuse_key(order.idempotency_key)) return refusal;
     for (const auto& [name, value] : request.query) {
         if (!api::is_utf8(name) || !api::is_utf8(value))
             return problem_response(422, "The parameters of the call are no UTF-8 text.");

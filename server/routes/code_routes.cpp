@@ -1,3 +1,6 @@
+#include <functional>
+#include <variant>
+
 #include "api/code/code.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
@@ -11,14 +14,17 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-Response code_of(const JobRecord& job, const Call& call) {
+using Written = std::variant<api::ControllerCode, api::Problem>;
+
+api::CodeWords words_of(const Call& call) { return {call.request.query.begin(), call.request.query.end()}; }
+
+Response code_of(const JobRecord& job, const Call& call, const std::function<Written(const JobRecord&)>& write) {
     if (!has_ended(job.status))
         return problem_response(409, "The job has not ended; its controllers' code is there when it has succeeded.");
     if (job.result.empty())
         return problem_response(
             404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");
-    const auto written = api::controller_code({job.result, job.request}, call.path.at("index"),
-                                              {call.request.query.begin(), call.request.query.end()});
+    const Written written = write(job);
     if (const auto* problem = std::get_if<api::Problem>(&written)) return problem_response(*problem);
     const auto& code = std::get<api::ControllerCode>(written);
     if (!http::accepts(call.request, code.media_type))
@@ -29,19 +35,28 @@ Response code_of(const JobRecord& job, const Call& call) {
     return response.set("Content-Disposition", "attachment; filename=\"" + code.file_name + "\"");
 }
 
-Response get_code(JobService& jobs, const Call& call) {
+Response get_code(JobService& jobs, const Call& call, const std::function<Written(const JobRecord&)>& write) {
     const std::string& id = call.path.at("id");
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(call.request, view->job)) return no_such_job(id);
-        return code_of(view->job, call);
+        return code_of(view->job, call, write);
     });
 }
 
 }  // namespace
 
 void add_code_routes(http::Router& router, JobService& jobs) {
-    router.add("GET", "/v1/jobs/{id}/controllers/{index}/code", [&](const Call& call) { return get_code(jobs, call); });
+    router.add("GET", "/v1/jobs/{id}/controllers/{index}/code", [&](const Call& call) {
+        return get_code(jobs, call, [&](const JobRecord& job) {
+            return api::controller_code({job.result, job.request}, call.path.at("index"), words_of(call));
+        });
+    });
+    router.add("GET", "/v1/jobs/{id}/schedule/code", [&](const Call& call) {
+        return get_code(jobs, call, [&](const JobRecord& job) {
+            return api::schedule_code({job.result, job.request}, words_of(call));
+        });
+    });
 }
 
 }  // namespace tunewright::server

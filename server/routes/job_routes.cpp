@@ -17,7 +17,6 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-constexpr std::size_t kMaxKeyLength = 200;
 
 Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
     return guarded([&] {
@@ -104,9 +103,7 @@ Response post_job(JobService& jobs, Places& places, NotifyPolicy& policy, const 
                   const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
-    if (key.size() > kMaxKeyLength)
-        return problem_response(
-            422, "The Idempotency-Key has " + std::to_string(key.size()) + " characters; at most 200 are accepted.");
+    if (auto refusal = refuse_key(key)) return *std::move(refusal);
     auto prepared = api::prepare_job(call.request.body, limits);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return http::problem_response(*problem);
 

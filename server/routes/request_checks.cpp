@@ -8,6 +8,11 @@
 #include "server/http/app/problems.h"
 
 namespace tunewright::server {
+namespace {
+
+constexpr std::size_t kMaxKeyLength = 200;
+
+}  // namespace
 
 std::optional<http::Response> refuse_form(const http::Request& request) {
     if (http::accepts(request, "application/json") || http::accepts(request, "application/problem+json"))
@@ -19,6 +24,12 @@ std::optional<http::Response> refuse_call(const http::Request& request) {
     if (!http::sends_json(request))
         return http::problem_response(415, "The body must be JSON, with Content-Type: application/json.");
     return refuse_form(request);
+}
+
+std::optional<http::Response> refuse_key(const std::string& key) {
+    if (key.size() <= kMaxKeyLength) return std::nullopt;
+    return http::problem_response(422, "The Idempotency-Key has " + std::to_string(key.size()) +
+                                           " characters; at most " + std::to_string(kMaxKeyLength) + " are accepted.");
 }
 
 http::Response response_of(api::Answer answer) {

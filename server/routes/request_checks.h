@@ -18,6 +18,9 @@ std::optional<http::Response> refuse_call(const http::Request& request);
 /// 406 where the client takes no JSON.
 std::optional<http::Response> refuse_form(const http::Request& request);
 
+/// 422 for an Idempotency-Key that is too long.
+std::optional<http::Response> refuse_key(const std::string& key);
+
 /// What the facade answers, as JSON or as a problem.
 http::Response response_of(api::Answer answer);
 

@@ -29,7 +29,7 @@ constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
-constexpr std::chrono::milliseconds kLook{250};  // for clients that have gone
+constexpr std::chrono::milliseconds kGoneLook{250};  // for clients that have gone
 
 bool is_file(const http::Request& request) {
     const std::string type = http::media_type(request);
@@ -58,7 +58,7 @@ public:
         if (over_) return;
         if (Turns::Clock::now() >= deadline_ || (left_ && left_())) return stop();
         const std::chrono::duration<double> rest = deadline_ - Turns::Clock::now();
-        timer_.after(std::min<std::chrono::duration<double>>(kLook, rest),
+        timer_.after(std::min<std::chrono::duration<double>>(kGoneLook, rest),
                      [self = shared_from_this()] { self->look(); });
     }
     void stop() { stop_.request_stop(); }

@@ -44,7 +44,7 @@ struct ScheduleWish {
     range::Aim aim = range::Aim::worst;
     double allowance = 0.05;
     std::optional<int> rows;
-    range::Interpolation interpolation = range::Interpolation::linear_in_gains;
+    Interpolation interpolation = Interpolation::linear_in_gains;
     double hysteresis = 0.02;
     range::Between between = range::Between::parameters;
     double b = 1;
@@ -86,6 +86,6 @@ void follow_way(RangeSubject& subject, Reader& reader);
 
 const Description<GivenWay>& way_contract();
 /// The word that a schedule is written with too.
-Codec<range::Interpolation> interpolation_word();
+Codec<Interpolation> interpolation_word();
 
 }  // namespace tunewright::api

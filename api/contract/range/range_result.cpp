@@ -55,9 +55,9 @@ const Description<range::OneSetting>& one_setting_contract() {
     return description;
 }
 
-const Description<range::ScheduleRow>& schedule_row_contract() {
+const Description<ScheduleRow>& schedule_row_contract() {
     static const auto description = [] {
-        using R = range::ScheduleRow;
+        using R = ScheduleRow;
         Description<R> d("ScheduleRow", "Settings in the ideal form, with a second-order measurement filter.");
         d.field("at", &R::at, only_answered(number()), "Its place.")
             .field("Kp", &R::Kp, only_answered(number()), "Gain.", {.unit = "u/y"})

@@ -58,9 +58,9 @@ void check_rows(const Json&, ScheduleWish& wish, Reader& reader) {
 
 }  // namespace
 
-Codec<range::Interpolation> interpolation_word() {
-    using enum range::Interpolation;
-    return choice<range::Interpolation>(
+Codec<Interpolation> interpolation_word() {
+    using enum Interpolation;
+    return choice<Interpolation>(
         {{"steps", steps}, {"linear_in_gains", linear_in_gains}, {"linear_in_times", linear_in_times}});
 }
 
@@ -115,8 +115,8 @@ range::RangeOptions options_of(const ScheduleWish& wish) {
     return options;
 }
 
-std::vector<range::ScheduleRow> rows_of(const ScheduleWish& wish) {
-    std::vector<range::ScheduleRow> rows;
+std::vector<ScheduleRow> rows_of(const ScheduleWish& wish) {
+    std::vector<ScheduleRow> rows;
     if (!wish.given) return rows;
     for (const GivenRow& row : *wish.given)
         rows.push_back({.at = row.at,

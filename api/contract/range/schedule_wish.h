@@ -9,6 +9,6 @@ const Description<ScheduleWish>& schedule_wish_contract();
 
 range::RangeOptions options_of(const ScheduleWish& wish);
 /// The rows that were given, if any.
-std::vector<range::ScheduleRow> rows_of(const ScheduleWish& wish);
+std::vector<ScheduleRow> rows_of(const ScheduleWish& wish);
 
 }  // namespace tunewright::api

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/range/equations/steady_branch.h"
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 
 namespace tunewright::range {
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "engine/range/equations/steady_branch.h"
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 #include "engine/warning.h"
 
 namespace tunewright::range {

@@ -7,7 +7,7 @@
 #include "engine/expected.h"
 #include "engine/range/one_setting.h"
 #include "engine/range/schedule/own_optima.h"
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 #include "engine/warning.h"
 
 namespace tunewright::range {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/range/schedule/own_optima.h"
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 #include "engine/range/search/joint_search.h"
 
 namespace tunewright::range {

@@ -5,7 +5,7 @@
 
 #include "engine/expected.h"
 #include "engine/range/schedule/own_optima.h"
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 #include "engine/range/search/places.h"
 
 namespace tunewright::range {

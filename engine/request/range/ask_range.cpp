@@ -127,8 +127,8 @@ private:
         return std::nullopt;
     }
 
-    range::Schedule given() const {
-        const bool steps = question_.options.interpolation == range::Interpolation::steps;
+    Schedule given() const {
+        const bool steps = question_.options.interpolation == Interpolation::steps;
         return {.interpolation = question_.options.interpolation,
                 .hysteresis = steps ? question_.options.hysteresis * (model_->high() - model_->low()) : 0,
                 .rows = question_.given};

@@ -29,7 +29,7 @@ struct RangeQuestion {
     IdentifyOptions identify;  ///< of every record
     bool over_region = false;  ///< limits hold over each record's 95 % confidence region
     range::RangeOptions options;
-    std::vector<range::ScheduleRow> given;  ///< a schedule to judge in place of a design, ascending; empty: none
+    std::vector<ScheduleRow> given;  ///< a schedule to judge in place of a design, ascending; empty: none
     bool runs = true;                       ///< of equations: simulate passages across the range
 };
 

@@ -1,4 +1,4 @@
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 
 #include <gtest/gtest.h>
 

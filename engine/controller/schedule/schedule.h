@@ -5,9 +5,15 @@
 #include <vector>
 
 #include "engine/controller/pid.h"
-#include "engine/range/problem.h"
 
-namespace tunewright::range {
+namespace tunewright {
+
+/// How the user's controller moves between the rows of its schedule.
+enum class Interpolation {
+    steps,            ///< a row's settings from its place on, with hysteresis
+    linear_in_gains,  ///< Kp, 1/Ti and Td are linear between rows
+    linear_in_times,  ///< Kp, Ti and Td are linear between rows
+};
 
 /// The contract's ideal form (controller/pid.h). Tf = 0: no filter.
 struct ScheduleRow {
@@ -33,4 +39,4 @@ IdealPid settings_at(const Schedule& schedule, double at);
 /// beyond its borders.
 std::size_t row_after(const Schedule& schedule, std::size_t row, double at);
 
-}  // namespace tunewright::range
+}  // namespace tunewright

@@ -1,8 +1,8 @@
-#include "engine/range/schedule/schedule.h"
+#include "engine/controller/schedule/schedule.h"
 
 #include <algorithm>
 
-namespace tunewright::range {
+namespace tunewright {
 namespace {
 
 double mixed(double left, double right, double share) { return left + share * (right - left); }
@@ -40,4 +40,4 @@ std::size_t row_after(const Schedule& schedule, std::size_t row, double at) {
     return row;
 }
 
-}  // namespace tunewright::range
+}  // namespace tunewright

@@ -1,0 +1,105 @@
+#include "api/code/parts.h"
+
+#include "api/csv/text.h"
+#include "engine/code/settings.h"
+#include "engine/number_text.h"
+
+namespace tunewright::api {
+namespace {
+
+/// Words that spell numbers become numbers; what the contract does not take stays as it was typed, for its sentence.
+void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) {
+    Json given = Json::object();
+    for (const auto& [name, word] : words) {
+        std::string name_storage, word_storage;
+        const std::string key(utf8_text(name, name_storage)), value(utf8_text(word, word_storage));
+        if (given.contains(key)) reader.fault_at(key, key + " is given twice. Leave one out.");
+        Json number = Json::parse(value, nullptr, false);
+        given[key] = number.is_number() ? std::move(number) : Json(value);
+    }
+    code_contract().read(given, question, reader);
+}
+
+/// Seconds in the result's unit of time.
+double unit_of(const Json& result, Reader& reader) {
+    const Json::json_pointer place("/units/time");
+    const std::string label =
+        result.contains(place) && result.at(place).is_string() ? result.at(place).get<std::string>() : "s";
+    if (const auto seconds = code::seconds_in(label)) return *seconds;
+    const Reader::At units(reader, "units");
+    reader.fault_at("time", "units.time is " + shown(Json(label)) +
+                                "; code counts seconds and knows s, ms, min, h and d. Tune in one of these.");
+    return 1;
+}
+
+double number_at(const Json& value, const char* place) {
+    const Json::json_pointer pointer(place);
+    return value.contains(pointer) && value.at(pointer).is_number() ? value.at(pointer).get<double>() : 0;
+}
+
+ControllerCode file_of(code::Language language, std::string text) {
+    switch (language) {
+        case code::Language::structured_text: return {"text/plain", "TunewrightPid.st", std::move(text)};
+        case code::Language::c: return {"text/x-c", "tunewright_pid.h", std::move(text)};
+        case code::Language::python: return {"text/x-python", "tunewright_pid.py", std::move(text)};
+    }
+    return {};
+}
+
+}  // namespace
+
+AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader) {
+    AskedCode asked;
+    read_words(words, asked.question, reader);
+    asked.unit = unit_of(result, reader);
+    return asked;
+}
+
+std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request,
+                                                 const ParallelPid& gains) {
+    if (asked.question.sample_time) return SampleTime{*asked.question.sample_time * asked.unit, "as asked for"};
+    const Json::json_pointer place("/implement/sample_time");
+    if (request.is_object() && request.contains(place) && request.at(place).is_number() &&
+        request.at(place).get<double>() > 0)
+        return SampleTime{request.at(place).get<double>() * asked.unit, "as the request says"};
+    if (const auto proposed = code::proposed_sample_time(gains))
+        return SampleTime{*proposed,
+                          "proposed, as none was asked for: a tenth of the shorter of Ti and Td, no more than Tf, "
+                          "rounded down"};
+    Reader reader;
+    reader.fault_at("sample_time",
+                    "sample_time is missing; this controller has no time of its own to propose one from.");
+    return *reader.problem();
+}
+
+SampledPid law_of(const AskedCode& asked, const ParallelPid& gains) {
+    const CodeQuestion& question = asked.question;
+    return code::in_seconds({.gains = gains,
+                             .integral = question.integral,
+                             .derivative = question.derivative,
+                             .slope_samples = question.slope_samples.value_or(1),
+                             .velocity = question.velocity},
+                            asked.unit);
+}
+
+code::CodeOptions options_of(const AskedCode& asked, const Json& result) {
+    const CodeQuestion& question = asked.question;
+    code::CodeOptions options;
+    options.anti_windup = question.anti_windup.value_or(code::AntiWindup::back_calculation);
+    options.u_min = question.u_min;
+    options.u_max = question.u_max;
+    options.rate_limit = question.rate_limit.value_or(0) / asked.unit;
+    if (question.tracking_time) options.tracking_time = *question.tracking_time * asked.unit;
+    options.bias = question.bias.value_or(number_at(result, "/operating_point/u"));
+    options.y0 = question.y0.value_or(number_at(result, "/operating_point/y"));
+    return options;
+}
+
+ControllerCode printed(const code::Program& program, code::Language language, const code::Provenance& provenance,
+                       const SampleTime& sample_time) {
+    code::Provenance rows = provenance;
+    rows.emplace_back("Sample time", tunewright::text(sample_time.seconds, 6) + " s, " + sample_time.origin);
+    return file_of(language, code::print(program, language, rows));
+}
+
+}  // namespace tunewright::api

@@ -93,6 +93,10 @@ void add_step(const Program& program, std::string& out) {
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }
 
+std::string example_argument(const Declaration& input) {
+    return input.name == "manual" ? "false" : input.name == "manual_output" ? "0.0" : input.name;
+}
+
 }  // namespace
 
 std::string print_c(const Program& program, const Provenance& provenance) {
@@ -100,8 +104,8 @@ std::string print_c(const Program& program, const Provenance& provenance) {
                                         "    tunewright_pid pid;",
                                         "    tunewright_pid_init(&pid);",
                                         "and then every Ts seconds:",
-                                        "    u = tunewright_pid_step(&pid, setpoint, measurement, false, 0.0);",
-                                        "Settings are fields of the struct: pid.Kp = 2.0;"};
+                                        "    u = tunewright_pid_step(&pid, " + example_arguments(program, example_argument) + ");",
+                                        "Settings are fields of the struct: pid." + example_setting(program) + " = 2.0;"};
     std::string head = "/*\n";
     for (const std::string& line : head_lines(program, provenance, call))
         head += line.empty() ? " *\n" : " * " + line + "\n";

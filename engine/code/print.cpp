@@ -1,5 +1,7 @@
 #include "engine/code/print.h"
 
+#include <algorithm>
+
 #include "engine/number_text.h"
 
 namespace tunewright::code {
@@ -140,6 +142,17 @@ std::vector<Declaration> of_role(const Program& program, Role role) {
     std::vector<Declaration> out;
     for (const Declaration& variable : program.variables)
         if (variable.role == role) out.push_back(variable);
+    return out;
+}
+
+std::string example_setting(const Program& program) {
+    const auto settings = of_role(program, Role::parameter);
+    return std::ranges::any_of(settings, [](const Declaration& setting) { return setting.name == "Kp"; }) ? "Kp" : "u_max";
+}
+
+std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument) {
+    std::string out;
+    for (const Declaration& input : of_role(program, Role::input)) out += (out.empty() ? "" : ", ") + argument(input);
     return out;
 }
 

@@ -1,6 +1,7 @@
 // Writes a controller's program as source text: IEC 61131-3 Structured Text, C11 or Python 3.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +59,12 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
 std::string indentation(int depth);
 
 std::vector<Declaration> of_role(const Program& program, Role role);
+
+/// A setting that the user may write, for the words on how: Kp, or a limit where the program computes Kp itself.
+std::string example_setting(const Program& program);
+
+/// What the call in the comment is given for each input, joined by commas: `argument` of each declaration.
+std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument);
 
 // One printer a language, each in its source.
 std::string print_structured_text(const Program& program, const Provenance& provenance);

@@ -1,3 +1,5 @@
+#include <map>
+
 #include "engine/code/print.h"
 
 namespace tunewright::code {
@@ -62,13 +64,23 @@ void add_section(const char* section, const std::vector<Declaration>& variables,
     out += "END_VAR\n";
 }
 
+std::string example_argument(const Declaration& input) {
+    static const std::map<std::string, std::string> kGiven{{"setpoint", "SP"},
+                                                           {"measurement", "PV"},
+                                                           {"scheduling", "PLACE"},
+                                                           {"manual", "FALSE"},
+                                                           {"manual_output", "0.0"}};
+    return input.name + " := " + kGiven.at(input.name);
+}
+
 }  // namespace
 
 std::string print_structured_text(const Program& program, const Provenance& provenance) {
     const std::vector<std::string> call{
         "Call, once a cycle in a task whose period is Ts, with an instance heater : TunewrightPid;",
-        "    heater(setpoint := SP, measurement := PV, manual := FALSE, manual_output := 0.0);", "    OUT := heater.u;",
-        "Settings are inputs with initial values; they are given in the same way: heater(Kp := 2.0, ...)."};
+        "    heater(" + example_arguments(program, example_argument) + ");", "    OUT := heater.u;",
+        "Settings are inputs with initial values; they are given in the same way: heater(" + example_setting(program) +
+            " := 2.0, ...)."};
     std::string out = "(*\n";
     for (const std::string& line : head_lines(program, provenance, call))
         out += line.empty() ? "\n" : "  " + line + "\n";

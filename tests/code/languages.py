@@ -12,7 +12,7 @@ from structured_text import FunctionBlock
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BINARY = os.environ.get("TUNEWRIGHT_BIN", str(ROOT / "build" / "release" / "tunewright"))
 LANGUAGES = ("st", "c", "python")
-SIGNALS = ("setpoint", "measurement", "manual", "manual_output")
+SIGNALS = ("setpoint", "measurement", "scheduling", "manual", "manual_output")  # in their order; scheduling of a schedule
 FLAGS = ("manual", "at_rest", "restart")
 WARNINGS = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Wshadow", "-Werror"]
 SANITIZERS = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"]
@@ -61,7 +61,7 @@ def run_python(text, columns, rows):
     for row in rows:
         for name in names:
             setattr(pid, name, bool(row[name]) if name in FLAGS else row[name])
-        out.append(pid.step(row["setpoint"], row["measurement"], bool(row["manual"]), row["manual_output"]))
+        out.append(pid.step(**{name: bool(row[name]) if name in FLAGS else row[name] for name in columns if name in SIGNALS}))
     return out
 
 
@@ -98,7 +98,8 @@ class CProgram:
                  "    tunewright_pid pid;", "    tunewright_pid_init(&pid);",
                  "    while (fread(row, sizeof row, 1, stdin) == 1) {"]
         lines += ["        pid.%s = %s%s;" % (name, at[name], " > 0.5" if name in FLAGS else "") for name in fields]
-        lines += ["        double u = tunewright_pid_step(&pid, %s, %s, %s > 0.5, %s);" % tuple(at[n] for n in SIGNALS),
+        given = [at[name] + (" > 0.5" if name in FLAGS else "") for name in SIGNALS if name in self.columns]
+        lines += ["        double u = tunewright_pid_step(&pid, %s);" % ", ".join(given),
                   "        fwrite(&u, sizeof u, 1, stdout);", "    }", "}"]
         return "\n".join(lines)
 

@@ -65,6 +65,32 @@ const Description<range::ScheduledRun>& scheduled_run_contract() {
     return description;
 }
 
+const Description<range::LinearisingPassage>& linearising_passage_contract() {
+    static const auto description = [] {
+        using P = range::LinearisingPassage;
+        Description<P> d("RangeNonlinearRun",
+                         "The equations under the input/output linearising controller that knows their states, made as "
+                         "fast as the schedule where that is slowest: (tau s/r + 1)^r of the relative degree r.");
+        const auto of_run = [](auto member, const auto& codec) {
+            return [member, write = codec.write](const P& p, Writer& out) { write(p.run.*member, out); };
+        };
+        using R = range::ScheduledRun;
+        d.field("y", {}, of_run(&R::y, trace()), trace().schema, "The output.", {.unit = "y"})
+            .field("u", {}, of_run(&R::u, trace()), trace().schema, "The input, limits included.", {.unit = "u"})
+            .field("tau", {}, [](const P& p, Writer& out) { out.number(p.tau); }, number().schema,
+                   "Sum of the loop's time constants.", {.unit = "time"})
+            .field("IAE", {}, [](const P& p, Writer& out) { out.number(p.run.IAE); }, number().schema,
+                   "Of the set point less y.", {.unit = "y time"})
+            .field("limited", {}, of_run(&R::limited, boolean()), boolean().schema, "The input met a limit.")
+            .field("settled", {}, of_run(&R::settled, boolean()), boolean().schema,
+                   "At the end y is within 1 % of the step of the set point.")
+            .field("ended", {}, of_run(&R::ended, words()), words().schema, "Why it ended early.", {},
+                   [](const P& p) { return p.run.ended.empty(); });
+        return d;
+    }();
+    return description;
+}
+
 /// Times and targets are the same for both of a passage; the longer one has all that there are.
 const range::ScheduledRun& longer(const RangePassage& passage) {
     if (!passage.schedule) return *passage.one;
@@ -133,7 +159,10 @@ const Description<RangePassage>& range_passage_contract() {
                 "target", {}, [](const P& p, Writer& out) { trace().write(longer(p).target, out); }, trace().schema,
                 "The set point of y; along a parameter the parameter.")
             .field("one", &P::one, maybe(answer(scheduled_run_contract())), "With one setting.")
-            .field("schedule", &P::schedule, maybe(answer(scheduled_run_contract())), "With the schedule.");
+            .field("schedule", &P::schedule, maybe(answer(scheduled_run_contract())), "With the schedule.")
+            .field("nonlinear", &P::nonlinear, or_reason(answer(linearising_passage_contract())),
+                   "By a nonlinear controller that knows the equations: how well any could pass.")
+            .why_null("There is no such controller.");
         return d;
     }();
     return description;

@@ -113,7 +113,7 @@ void check_range(const Json&, RangeRequest& request, Reader& reader) {
     const std::size_t before = reader.count();
     RangeQuestion& question = request.question;
     question.identify = request.identify;
-    question.over_region = request.over_region;
+    question.over_region = request.over_region.value_or(true);
     question.options = options_of(request.schedule);
     question.given = rows_of(request.schedule);
     question.runs = request.runs;
@@ -136,7 +136,7 @@ void check_range(const Json&, RangeRequest& request, Reader& reader) {
     const bool records = request.points && std::ranges::any_of(*request.points, [](const GivenRangePoint& point) {
                              return point.record.has_value();
                          });
-    if (request.over_region && !records)
+    if (request.over_region.value_or(false) && !records)
         reader.fault_at("uncertainty",
                         "uncertainty is \"identified\", which needs records. For plants give each its own "
                         "uncertainty, such as {\"K\": [0.8, 1.2]}.");
@@ -206,8 +206,9 @@ const Description<RangeRequest>& range_request_contract() {
                    "Equations, with `range`; exactly one of points and plant.")
             .field("range", &R::way, maybe(object(way_contract())), "Of equations: the way through their steady states.")
             .field("identify", &R::identify, object(identify_contract()), "How records become models.")
-            .field("uncertainty", &R::over_region, choice<bool>({{"none", false}, {"identified", true}}),
-                   "identified: limits hold over each record's 95 % confidence region.")
+            .field("uncertainty", &R::over_region, maybe(choice<bool>({{"none", false}, {"identified", true}})),
+                   "identified: limits hold over each record's 95 % confidence region, as they do for records where it is "
+                   "not given; none: on the models alone.")
             .field("schedule", &R::schedule, object(schedule_wish_contract()),
                    "Limits, and how the controller moves between its rows.", {.no_default = true})
             .field("runs", &R::runs, boolean(), "With equations: simulate passages across the range.")

@@ -64,7 +64,7 @@ struct RangeRequest : RangeSubject {
     std::optional<GivenScheduling> scheduling;
     std::optional<std::vector<GivenRangePoint>> points;
     IdentifyQuestion identify;
-    bool over_region = false;
+    std::optional<bool> over_region;
     ScheduleWish schedule;
     bool runs = true;
     double timeout_s = 60;

@@ -166,7 +166,7 @@ private:
             options.horizon = passage.horizon;
             options.samples = kRunSamples;
             options.stop = control_.stop;
-            RangePassage run{.passage = std::move(passage), .one = {}, .schedule = {}};
+            RangePassage run{.passage = std::move(passage), .one = {}, .schedule = {}, .nonlinear = {}};
             auto scheduled =
                 run_schedule(*question_.branch, design.schedule->schedule, run.passage.profile, options);
             if (!scheduled) return scheduled.error();
@@ -177,6 +177,11 @@ private:
                 if (!plain) return plain.error();
                 run.one = std::move(*plain);
             }
+            auto nonlinear = run_linearising(*question_.branch, design.schedule->schedule, run.passage.profile, options);
+            if (nonlinear)
+                run.nonlinear = std::move(*nonlinear);
+            else
+                run.nonlinear.why = nonlinear.error().message;
             result_.runs.push_back(std::move(run));
         }
         return std::nullopt;

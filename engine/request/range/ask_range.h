@@ -8,10 +8,12 @@
 #include <variant>
 #include <vector>
 
+#include "engine/figure.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/plant_family.h"
 #include "engine/range/design_range.h"
 #include "engine/range/equations/steady_branch.h"
+#include "engine/range/run/linearising_run.h"
 #include "engine/range/run/scheduled_run.h"
 #include "engine/request/verdict/finding.h"
 
@@ -52,6 +54,7 @@ struct RangePlace {
 struct RangePassage {
     range::Passage passage;
     std::optional<range::ScheduledRun> one, schedule;
+    OrReason<range::LinearisingPassage> nonlinear;  ///< by a controller that knows the equations and their states
 };
 
 struct RangeResult {

@@ -16,7 +16,6 @@
 #include "api/json/json.h"
 #include "api/outline.h"
 #include "api/range_service.h"
-#include "api/reading.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 

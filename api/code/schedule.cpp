@@ -1,13 +1,15 @@
 #include "api/code/parts.h"
 #include "api/contract/range/range_request.h"
-#include "engine/code/scheduled.h"
+#include "engine/code/algorithm.h"
 
 namespace tunewright::api {
 namespace {
 
 /// With its times in seconds, as programs count.
 Schedule schedule_of(const Json& schedule, double unit, Reader& reader) {
-    Schedule read{.hysteresis = schedule.value("hysteresis", 0.0)};
+    Schedule read;
+    read.hysteresis = schedule.value("hysteresis", 0.0);
+    const Reader::At at(reader, "interpolation");
     interpolation_word().read(schedule.at("interpolation"), read.interpolation, reader);
     for (const Json& row : schedule.at("rows"))
         read.rows.push_back({.at = row.at("at").get<double>(),

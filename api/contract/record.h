@@ -59,4 +59,10 @@ const Description<IdentifyQuestion>& identify_contract();
 /// Reports to the reader, which stands at the record.
 ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader);
 
+/// What reading the CSV has found belongs to the data's quality too.
+void add_reading(const ReadRecord& read, IdentifiedModel& model);
+
+/// Traces are answered only where they were asked for.
+void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model);
+
 }  // namespace tunewright::api

@@ -9,9 +9,11 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "engine/code/program.h"
 #include "engine/controller/sampled/sampled_pid.h"
+#include "engine/controller/schedule/schedule.h"
 #include "engine/expected.h"
 
 namespace tunewright::code {
@@ -37,5 +39,20 @@ constexpr double kNoLimit = 1e30;  ///< what u_min and u_max are in size where t
 /// Errors (invalid_argument or unsupported, `where` names the field): Ts, Tf, slope_samples or limits out of range; the
 /// forward rule unstable at this Ts; a velocity form without integral action, whose u nothing would bring back.
 Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options);
+
+/// What the input of the scheduling variable is called in the programs.
+constexpr const char* kSchedulingInput = "scheduling";
+
+/// The row from which what is fixed in the program comes (tracking time, a proposed sample time, whether there is a
+/// derivative and a filter): the one with the shortest Ti, of those with a derivative where any has one.
+const ScheduleRow& leading_row(const Schedule& schedule);
+
+/// The same program with settings that follow a schedule over one more input: each call computes Kp, Ti, Td, Tf and b
+/// before all else. Settings that move between two calls do not move u, so it is bumpless at rows and between.
+/// `law`: its rules and sample time; its gains are taken from the leading row. `named`: "level in cm", for the reader.
+/// Rows: times in seconds. Errors: those of pid_algorithm; unsupported for a velocity form, for a Kp that changes its
+/// sign, and for rows of which some have a filter and others none.
+Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid& law,
+                                      const CodeOptions& options, const std::string& named);
 
 }  // namespace tunewright::code

@@ -1,4 +1,4 @@
-#include "engine/code/scheduled.h"
+#include "engine/code/algorithm.h"
 
 #include <algorithm>
 #include <array>

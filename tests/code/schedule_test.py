@@ -25,7 +25,7 @@ def passing_rows(count=4000):
     level, rows = 50.0, []
     for k in range(count):
         level += chance.gauss(0, 0.5)
-        rows.append({"setpoint": 45 + 20 * (k // 300 % 2), "measurement": 50 + 5 * math.sin(k / 60) + chance.gauss(0, 0.3),
+        rows.append({"setpoint": 45.0 + 20 * (k // 300 % 2), "measurement": 50 + 5 * math.sin(k / 60) + chance.gauss(0, 0.3),
                      "scheduling": 55 + 50 * math.sin(0.013 * k) + chance.gauss(0, 1), "manual": k // 130 % 7 == 3,
                      "manual_output": 40.0})
     return rows
@@ -51,7 +51,7 @@ class ScheduleTest(unittest.TestCase):
         self.assertIn("at 40 Kp 1.6, Ti 300, Td 30", text.replace("\n  ", " "))
         self.assertIn("scheduling := PLACE", text)
         block = FunctionBlock(text)
-        block.call(setpoint=1, measurement=0, scheduling=30, manual=False, manual_output=0)
+        block.call(setpoint=1.0, measurement=0.0, scheduling=30.0, manual=False, manual_output=0.0)
         self.assertAlmostEqual(block["Ti"], 60 / (0.5 / 9 + 0.5 / 5), 9)
         self.assertEqual(block["Ts"], 0.6)
 

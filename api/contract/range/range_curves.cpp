@@ -1,4 +1,4 @@
-#include "api/contract/range/range_curves.h"
+#include "api/contract/range/range_result.h"
 
 #include <limits>
 

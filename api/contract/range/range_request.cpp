@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "api/contract/plant/typed.h"
-#include "api/contract/range/schedule_wish.h"
 
 namespace tunewright::api {
 namespace {
@@ -113,7 +112,7 @@ void check_range(const Json&, RangeRequest& request, Reader& reader) {
     const std::size_t before = reader.count();
     RangeQuestion& question = request.question;
     question.identify = request.identify;
-    question.over_region = request.over_region.value_or(true);
+    question.over_region = request.over_region.value_or(request.schedule.between == range::Between::parameters);
     question.options = options_of(request.schedule);
     question.given = rows_of(request.schedule);
     question.runs = request.runs;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/contract/request.h"
+#include "engine/range/experiments.h"
 #include "engine/request/range/ask_range.h"
 
 namespace tunewright::api {
@@ -85,7 +86,18 @@ bool is_range_request(const Json& request);
 void follow_way(RangeSubject& subject, Reader& reader);
 
 const Description<GivenWay>& way_contract();
+
+const Description<ScheduleWish>& schedule_wish_contract();
+range::RangeOptions options_of(const ScheduleWish& wish);
+/// The rows that were given, if any.
+std::vector<ScheduleRow> rows_of(const ScheduleWish& wish);
 /// The word that a schedule is written with too.
 Codec<Interpolation> interpolation_word();
+
+/// Step and relay tests at several places of a range of equations: POST /v1/experiments/range.
+struct RangeExperimentsRequest : RangeSubject {
+    range::ExperimentOptions experiment;
+};
+const Description<RangeExperimentsRequest>& range_experiments_contract();
 
 }  // namespace tunewright::api

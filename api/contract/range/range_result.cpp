@@ -4,7 +4,6 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
-#include "api/contract/range/range_curves.h"
 #include "api/contract/range/range_request.h"
 #include "api/contract/result/evaluation.h"
 #include "api/contract/result/identified_model.h"

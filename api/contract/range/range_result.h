@@ -1,12 +1,14 @@
 // Answers about a whole operating range. Answers are only written.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "api/contract/record.h"
 #include "api/describe/description.h"
+#include "engine/range/experiments.h"
 #include "engine/request/range/ask_range.h"
 
 namespace tunewright::api {
@@ -52,5 +54,17 @@ const Description<RangeAnswer>& range_result_contract();
 const Description<RangeAnswer>& range_answer_contract();
 
 const Description<RangeContent>& range_content_contract();
+
+/// Both curves over the same places, with the plant's own figures there.
+RangeCurves curves_of(const RangeResult& result);
+const Description<RangeCurves>& range_curves_contract();
+const Description<RangePassage>& range_passage_contract();
+
+/// Tests at several places of a range.
+struct RangeExperiments {
+    std::shared_ptr<const range::SteadyBranch> branch;
+    std::vector<range::PlaceTest> tests;
+};
+const Description<RangeExperiments>& range_experiments_answer_contract();
 
 }  // namespace tunewright::api

@@ -1,4 +1,4 @@
-#include "api/contract/range/schedule_wish.h"
+#include "api/contract/range/range_request.h"
 
 namespace tunewright::api {
 namespace {

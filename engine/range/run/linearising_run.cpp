@@ -1,4 +1,4 @@
-#include "engine/range/run/linearising_run.h"
+#include "engine/range/run/scheduled_run.h"
 
 #include <algorithm>
 #include <cmath>

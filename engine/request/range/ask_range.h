@@ -13,7 +13,6 @@
 #include "engine/plant/plant_family.h"
 #include "engine/range/design_range.h"
 #include "engine/range/equations/steady_branch.h"
-#include "engine/range/run/linearising_run.h"
 #include "engine/range/run/scheduled_run.h"
 #include "engine/request/verdict/finding.h"
 

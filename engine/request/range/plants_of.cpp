@@ -151,6 +151,8 @@ Expected<std::vector<RangePointPlant>> plants_of(const RangeQuestion& question, 
             auto region = identified_region(*plants[k].model);
             if (!region)
                 return Error{region.error().kind, "points/" + std::to_string(k) + "/record", region.error().message};
+            // A plant of another structure says nothing about the plants between the points.
+            region->regions.erase(region->regions.begin() + 1, region->regions.end());
             point.family = std::move(*region);
         }
         points.push_back(std::move(point));

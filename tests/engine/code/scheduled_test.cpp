@@ -1,6 +1,6 @@
 // The program with a schedule: executed as it stands, beside the controller of reference.h with the settings of each call
 // interpolated here.
-#include "engine/code/scheduled.h"
+#include "engine/code/algorithm.h"
 
 #include <gmock/gmock.h>
 
@@ -74,7 +74,8 @@ TEST(ScheduledProgram, ComputesTheLawWithTheSettingsOfThePlaceThroughLimitsAndMa
             for (const AntiWindup anti_windup : {AntiWindup::back_calculation, AntiWindup::clamping}) {
                 const Schedule schedule = schedule_of(how, sign);
                 const CodeOptions options{.anti_windup = anti_windup, .u_min = 0, .u_max = 100, .rate_limit = 40};
-                Machine machine(program_of(schedule, options));
+                const Program program = program_of(schedule, options);
+                Machine machine(program);
                 SampledPid law = sampled(0.5);
                 law.gains = to_parallel(controller_of(leading_row(schedule)));
                 Reference reference(law, options, false, machine.has("Tt") ? machine["Tt"] : 1);
@@ -98,7 +99,8 @@ TEST(ScheduledProgram, ComputesTheLawWithTheSettingsOfThePlaceThroughLimitsAndMa
 TEST(ScheduledProgram, AgreesWithWhatTheDesignComputesBetweenRowsAndMovesItsFilterToo) {
     for (const Interpolation how : {Interpolation::linear_in_gains, Interpolation::linear_in_times}) {
         const Schedule schedule = schedule_of(how, 1, 0.4);
-        Machine machine(program_of(schedule));
+        const Program program = program_of(schedule);
+        Machine machine(program);
         for (double place = 0; place <= 120; place += 1.7) {
             machine["scheduling"] = place;
             machine.step(1, 0);
@@ -114,7 +116,8 @@ TEST(ScheduledProgram, AgreesWithWhatTheDesignComputesBetweenRowsAndMovesItsFilt
 
 TEST(ScheduledProgram, DoesNotMoveItsOutputAtRestWhileSettingsMove) {
     for (const Interpolation how : kAll) {
-        Machine machine(program_of(schedule_of(how)));
+        const Program program = program_of(schedule_of(how));
+        Machine machine(program);
         machine["scheduling"] = 10;
         const double u = machine.step(40, 40, true, 33);
         for (double place = 10; place < 100; place += 0.9) {

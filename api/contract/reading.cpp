@@ -1,4 +1,4 @@
-#include "api/reading.h"
+#include "api/contract/record.h"
 
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"

@@ -43,11 +43,11 @@ const MOST_IAE = 100;
 
 function rangeOfIAE(traces: Trace[]): Range {
   const values = traces.flatMap(({ y }) => y.filter((value): value is number => typeof value === "number"));
-  return [0.95, 1.15 * Math.min(MOST_IAE, Math.max(1.3, ...values))];
+  return [Math.max(0.3, 0.95 * Math.min(1, ...values)), 1.15 * Math.min(MOST_IAE, Math.max(1.3, ...values))];
 }
 
 const uprights = (rows: readonly ScheduleRow[]): Mark[] =>
-  rows.map((row) => ({ kind: "upright", value: row.at, role: "setpoint" }));
+  rows.map((row) => ({ kind: "upright", value: row.at, role: "zero" }));
 
 function over(shown: RangeShown): Pick<Frame, "x" | "link" | "cursorLabel" | "cursorKind" | "ownLegend"> {
   const { name, unit, from, to } = shown.designed.scheduling;
@@ -71,7 +71,7 @@ export function robustnessFrame(shown: RangeShown): Frame {
   ];
   return {
     ...over(shown),
-    title: "Robustness and cost over the range",
+    title: "Ms and IAE over the range",
     description: said.join(" "),
     panes: [
       {
@@ -111,7 +111,7 @@ export function settingsFrame(shown: RangeShown): Frame | null {
   if (panes.length === 0) return null;
   return {
     ...over(shown),
-    title: "Settings over the range",
+    title: "Settings",
     description: `${shown.rows.length} rows.`,
     panes,
     fileName: "range-settings",
@@ -126,7 +126,7 @@ export function plantFrame(shown: RangeShown): Frame | null {
   const { units } = shown;
   const pane = (name: "K" | "T" | "L", label: string): Pane[] =>
     known(curves[name])
-      ? [{ y: { kind: "linear", label }, traces: [{ name, look: 3, x: curves.at, y: curves[name] }] }]
+      ? [{ y: { kind: "linear", label }, traces: [{ name, look: "data", x: curves.at, y: curves[name] }] }]
       : [];
   const panes = [
     ...pane("K", withUnit("K", quotient(units.y, units.u))),
@@ -136,7 +136,7 @@ export function plantFrame(shown: RangeShown): Frame | null {
   if (panes.length === 0) return null;
   return {
     ...over(shown),
-    title: "The plant over the range",
+    title: "The plant",
     description: shown.designed.stated,
     panes,
     ownLegend: false,
@@ -154,7 +154,7 @@ export function passageFrame(passage: RangePassage, parameter: string | null, un
     runs.flatMap(({ name, look, run }) => (run ? [{ name, look, x: passage.t.slice(0, run[signal].length), y: run[signal] }] : []));
   const target: Trace = { name: parameter ?? "set point", look: "data", x: passage.t, y: passage.target };
   return {
-    title: `Run across the range: ${passage.name}`,
+    title: `Run: ${passage.name}`,
     description: `The equations over ${formatNumber(passage.horizon)} ${units.time}, with the settings changing on the way.`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [

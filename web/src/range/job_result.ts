@@ -20,6 +20,7 @@ export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: 
       const { schedule, one, why_null } = content;
       title.textContent = schedule ? `Schedule: ${counted(schedule.rows.length, "row")}` : "No schedule";
       body.replaceChildren(
+        ...(job.result?.partial ? [h("p", { class: "hint" }, "Stopped early: the best that was found until then.")] : []),
         ...(schedule
           ? [h("p", { class: "hint" }, `Between the rows: ${interpolationWords(schedule.interpolation)}.`), rowsTable(content, units)]
           : [h("p", {}, why_null?.["schedule"] ?? "")]),

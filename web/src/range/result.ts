@@ -10,7 +10,7 @@ import type { Plot } from "../plot/plot.ts";
 import { unitNames } from "../words/numbers.ts";
 import { handOn } from "./hand.ts";
 import { rangeHandles } from "./handles.ts";
-import { resultCards } from "./result_cards.ts";
+import { resultCards, showRangeVerdict } from "./result_cards.ts";
 import { runsCard } from "./runs_card.ts";
 import { handleWords } from "./schedule.ts";
 import { scheduleCard } from "./schedule_card.ts";
@@ -34,6 +34,7 @@ export function rangeResult(announce: (sentence: string) => void, onAsked: (requ
     onRows: follow,
     onCurves(settled) {
       draw();
+      showMoving();
       // What is not under the eye waits until the hand lets go.
       if (!settled || held) return;
       showCards();
@@ -110,10 +111,15 @@ export function rangeResult(announce: (sentence: string) => void, onAsked: (requ
     schedule.follow(shown.rows);
   }
 
-  function showCards(): void {
+  function showMoving(): void {
     const { designed, moved, rows, units } = drawn();
-    cards.show(designed, moved, units);
+    showRangeVerdict(cards.verdict, moved ?? designed);
     schedule.show(moved ?? designed, rows, moved !== null, units);
+  }
+
+  function showCards(): void {
+    const { designed, moved, units } = drawn();
+    cards.show(designed, moved, units);
     const parameter = about.range?.along === "parameter" ? (about.range.parameter ?? null) : null;
     runs.show(designed, moved, parameter, units);
     onAsked(hand.asked());
@@ -128,6 +134,7 @@ export function rangeResult(announce: (sentence: string) => void, onAsked: (requ
       element.hidden = false;
       hand.start(request, content);
       draw();
+      showMoving();
       showCards();
     },
     sentence,

@@ -2,19 +2,18 @@
 import type { OneSetting, RangeContent } from "../api/range.ts";
 import type { Plant } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
-import { DASH, formatNumber, product, withMinus, withUnit } from "../words/numbers.ts";
+import { DASH, formatNumber, formatSetting, product, withMinus, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { plantTitle, plantWords } from "../words/plant.ts";
-import { settingsOfOne, settingWords, verdictOf, worstWords } from "../words/range.ts";
+import { plantWords } from "../words/plant.ts";
+import { placeWords, settingsOfOne, settingWords, verdictOf, worstWords } from "../words/range.ts";
 import { LEVEL_CLASS } from "../views/cards/verdict_card.ts";
-import { placeWords } from "./schedule.ts";
 
 export interface ResultCards {
   verdict: HTMLElement;
   one: HTMLElement;
   points: HTMLElement;
   warnings: HTMLElement;
-  /** `moved`: of rows that were moved, whose verdict and remarks then stand. */
+  /** All but the verdict, which moves with the rows. `moved`: of rows that were moved, whose remarks then stand. */
   show(designed: RangeContent, moved: RangeContent | null, units: UnitNames): void;
 }
 
@@ -37,7 +36,6 @@ export function resultCards(): ResultCards {
     points,
     warnings,
     show(designed, moved, units) {
-      showRangeVerdict(verdict, moved ?? designed);
       showOne(one, designed, units);
       showPoints(points, designed, units);
       const remarks = (moved ?? designed).warnings;
@@ -60,7 +58,7 @@ function showOne(card: HTMLElement, content: RangeContent, units: UnitNames): vo
 
 function oneSetting(one: OneSetting, { scheduling }: RangeContent, units: UnitNames): HTMLElement[] {
   const worst = formatNumber(one.worst_relative_IAE);
-  const place = `${scheduling.name} ${placeWords(one.worst_at, scheduling.unit)}`.trim();
+  const place = placeWords(one.worst_at, scheduling);
   return [
     h("p", { class: "setting-line" }, settingWords(settingsOfOne(one), units)),
     h(
@@ -86,7 +84,7 @@ export function pointRows(content: RangeContent, units: UnitNames): { head: stri
     const price = content.one?.points[index];
     const fit = model ? `, fit ${formatNumber(model.fit_percent)} %` : "";
     return [
-      formatNumber(at, 4),
+      formatSetting(at),
       `${placePlant(content, at, plant, units)}${fit}`,
       price ? settingWords({ ...price.own, Tf: price.own.filter?.Tf ?? 0 }, units) : DASH,
       formatNumber(price?.own_IAE),
@@ -100,7 +98,7 @@ export function pointRows(content: RangeContent, units: UnitNames): { head: stri
 function placePlant({ curves }: RangeContent, at: number, plant: Plant, units: UnitNames): string {
   const words = plantWords(plant, units);
   const index = curves.at.indexOf(at);
-  if (words !== plantTitle(plant.type) || index < 0) return words;
+  if (typeof plant["K"] === "number" || index < 0) return words;
   const [K, T, L] = [curves.K[index], curves.T[index], curves.L[index]];
   return typeof K === "number" && typeof T === "number" ? plantWords({ type: "fopdt", K, T, L: L ?? 0 }, units) : words;
 }

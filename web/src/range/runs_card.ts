@@ -39,7 +39,7 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
     plots.show("run", passage ? passageFrame(passage, about.parameter, about.units) : null);
     if (!passage) return;
     const [schedule, one] = [runFacts(passage.schedule, about.units), runFacts(passage.one, about.units)];
-    const head = (name: string, look: 1 | 2): HTMLElement => h("th", { scope: "col" }, swatch(look), ` ${name}`);
+    const head = (name: string, look: 1 | 2): HTMLElement => h("th", { scope: "col" }, swatch(look), name);
     const remarks = (passage.schedule?.warnings ?? []).map((remark) => h("li", {}, withMinus(remark.detail)));
     notes.replaceChildren(...remarks);
     facts.replaceChildren(

@@ -1,6 +1,7 @@
 // A schedule in the hand: where its rows may go, what is asked while one moves, and what is said of it. No DOM.
 import type { RangeContent, RangeRequest, ScheduleRow } from "../api/range.ts";
-import { formatNumber, formatSetting } from "../words/numbers.ts";
+import { formatNumber } from "../words/numbers.ts";
+import { placeWords } from "../words/range.ts";
 
 /** The least distance of two rows, as a part of the range. */
 const APART = 0.005;
@@ -67,16 +68,9 @@ export interface ShownRange {
   moved: RangeContent | null;
 }
 
-export const scheduleOf = ({ designed, moved }: ShownRange): RangeContent["schedule"] => (moved ?? designed).schedule;
-
-/** A place with its unit: "60 %". */
-export const placeWords = (at: number, unit: string | undefined): string =>
-  `${formatSetting(Number(at.toPrecision(4)))}${unit ? ` ${unit}` : ""}`;
-
 /** What is heard of a handle. */
 export function handleWords(row: ScheduleRow, index: number, { designed, moved }: ShownRange): string {
-  const { name, unit } = designed.scheduling;
   const worst = (moved ?? designed).worst.schedule?.find((place) => place.quantity === "Ms");
   const Ms = worst ? `, largest Ms ${formatNumber(worst.value)}` : "";
-  return `Row ${index + 1} at ${name} ${placeWords(row.at, unit)}, Kp ${formatNumber(row.Kp)}${Ms}`;
+  return `Row ${index + 1} at ${placeWords(row.at, designed.scheduling, 5)}, Kp ${formatNumber(row.Kp)}${Ms}`;
 }

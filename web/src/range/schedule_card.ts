@@ -101,12 +101,17 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
     element,
     show(content, next, moved, units) {
       const { schedule, scheduling } = content;
-      element.hidden = !schedule;
-      if (!schedule) return;
       errors.clear();
+      for (const part of [how, scroll, worst]) part.hidden = !schedule;
+      back.hidden = !moved;
+      if (!schedule) {
+        title.textContent = "No schedule";
+        holds.textContent = content.why_null?.["schedule"] ?? "None was found.";
+        holds.className = "verdict-line bad";
+        return;
+      }
       title.textContent = moved ? "Schedule, moved by hand" : `Schedule: ${counted(next.length, "row")}`;
-      how.textContent = `${interpolationWords(schedule.interpolation)} between the rows. Drag them on the plot, or type.`;
-      how.textContent = how.textContent.charAt(0).toUpperCase() + how.textContent.slice(1);
+      how.textContent = `Between the rows: ${interpolationWords(schedule.interpolation)}. Drag the rows on the plot, or type.`;
       holds.textContent = holdWords(schedule);
       holds.className = `verdict-line ${!schedule.holds_limits ? "bad" : schedule.within_allowance ? "good" : "warn"}`;
       heads.replaceChildren(
@@ -116,10 +121,10 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
       );
       write(next);
       worst.replaceChildren(...worstWords(content.worst.schedule, scheduling).map((text) => h("li", {}, text)));
-      back.hidden = !moved;
     },
     follow: write,
     complain(error) {
+      back.hidden = false;
       errors.show(error instanceof ApiError ? (error.problem.errors ?? []) : [], sentenceOf(error));
     },
   };

@@ -21,14 +21,14 @@ export function termFields(errors: FormErrors): TermFields {
     { label: "Controller", choices: [["PID", "PID"], ["PI", "PI"]], pointer: () => "/schedule/controller" },
     errors,
   );
-  const Ms = field("Ms", "Ms", "at most, everywhere");
-  const Mt = field("Mt", "Mt", "at most, everywhere");
+  const Ms = field("Ms", "Ms", "at most");
+  const Mt = field("Mt", "Mt", "at most");
   const interpolation = choiceField(
     { label: "Between the rows", hint: "as your controller does it", choices: INTERPOLATIONS, pointer: () => "/schedule/interpolation" },
     errors,
   );
-  const rows = field("rows", "Rows", "empty: as few as hold", "fewest");
-  const allowance = field("allowance", "Allowance", "of IAE above the optimum");
+  const rows = field("rows", "Rows", "empty: the fewest", "fewest");
+  const allowance = field("allowance", "Allowance", "IAE above the optimum");
   allowance.setUnit("%");
   const box = h("input", { type: "checkbox", id: uniqueId("region") });
   const region = h("label", { class: "check", for: box.id, hidden: true }, box, "Hold the limits for every model that the records allow");

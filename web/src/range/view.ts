@@ -39,6 +39,7 @@ export function rangeView(announce: (sentence: string) => void, events: RangeEve
     onCancel: cancel,
     onJob: () => void sendJob(),
     onExample(id) {
+      opened = `/${id}`;
       events.onExample(id);
       void openExample(id);
     },

@@ -12,6 +12,12 @@ export const INTERPOLATIONS = [
 
 export const interpolationWords = (id: string): string => INTERPOLATIONS.find(([known]) => known === id)?.[1] ?? id;
 
+/** A place with the name and the unit of what it is of: "load 60 %"; of a variable without a name the number. */
+export function placeWords(at: number, { name, unit }: RangeContent["scheduling"], digits = 3): string {
+  const named = name === "" || name === "at" ? "" : `${name} `;
+  return `${named}${formatSetting(Number(at.toPrecision(digits)))}${unit ? ` ${unit}` : ""}`;
+}
+
 export const counted = (count: number, what: string): string => `${count} ${what}${count === 1 ? "" : "s"}`;
 
 type Settings = Pick<OneSetting["controller"], "Kp" | "Ti" | "Td"> & { Tf?: number | null };
@@ -58,10 +64,10 @@ export function verdictOf(content: RangeContent): Finding {
 const QUANTITIES: Record<WorstPlace["quantity"], string> = { Ms: "Ms", Mt: "Mt", relative_IAE: "IAE over the own optimum" };
 
 /** "Ms is largest at load 30 %: 1.40, limit 1.40." */
-export function worstWords(places: WorstPlace[] | undefined, { name, unit }: RangeContent["scheduling"]): string[] {
+export function worstWords(places: WorstPlace[] | undefined, scheduling: RangeContent["scheduling"]): string[] {
   return (places ?? []).map(
     ({ quantity, at, value, limit }) =>
-      `${QUANTITIES[quantity]} is largest at ${name} ${formatNumber(at)}${unit ? ` ${unit}` : ""}: ${formatNumber(value)}, limit ${formatNumber(limit)}.`,
+      `${QUANTITIES[quantity]} is largest at ${placeWords(at, scheduling)}: ${formatNumber(value)}, limit ${formatNumber(limit)}.`,
   );
 }
 
@@ -81,9 +87,9 @@ export function runFacts(run: RangeRun | null | undefined, units: UnitNames): [s
   return [
     [withUnit("IAE", product(units.y, units.time)), value(run?.IAE)],
     [withUnit("Largest error", units.y), value(run?.largest_error)],
-    [withUnit("Largest bump of u", units.u), value(run?.largest_bump)],
-    ["Switches of rows", run ? String(run.switches) : DASH],
-    ["u met a limit", yes(run?.limited)],
-    ["Settled at the end", run?.ended ? `ended early: ${run.ended}` : yes(run?.settled)],
+    [withUnit("Largest bump", units.u), value(run?.largest_bump)],
+    ["Switches", run ? String(run.switches) : DASH],
+    ["Met a limit", yes(run?.limited)],
+    ["Settled", run?.ended ? `ended early: ${run.ended}` : yes(run?.settled)],
   ];
 }

@@ -47,8 +47,8 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       plantLine.textContent = range
         ? rangeWords(range)
         : plant
-        ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
-        : "from a recorded test";
+          ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
+          : "from a recorded test";
       const shown = plant && !job.result?.model && hasFormulaOnly(plant) ? [plantFormula(plant, "div", true)] : [];
       formula.replaceChildren(...shown);
       formula.hidden = shown.length === 0;

@@ -36,7 +36,7 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
   const placeUnder = (event: PointerEvent): number => box!.x.toValue(event.clientX - layer.getBoundingClientRect().left);
 
   function knobOf(index: number): HTMLElement {
-    const knob = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Place of row ${index + 1}` });
+    const knob = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Handle of row ${index + 1}` });
     knob.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || !box) return;
       event.preventDefault();

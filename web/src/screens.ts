@@ -6,7 +6,6 @@ import type { Batch } from "./api/job_lists.ts";
 import type { FieldError, IdentifyRequest, TuningRequest } from "./api/types.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
-import { rangeView } from "./range/view.ts";
 import type { RangeView } from "./range/view.ts";
 import { addressOfJob, formatRoute, parseRoute, showsJob } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
@@ -79,15 +78,18 @@ export function screens(
     return relay;
   }
 
-  /** Kept as well, with the design that it shows. */
-  function rangeScreen(): RangeView {
+  /** Kept as well, with the design that it shows; a file of its own, which most visits do not need. */
+  async function openRange(route: Extract<Route, { screen: "range" }>, focus: boolean): Promise<void> {
+    const { rangeView } = await import("./range/view.ts");
+    if (store.get().route !== route) return;
     range ??= rangeView(announce, {
       onExample(id) {
         history.replaceState(null, "", formatRoute({ screen: "range", example: id, job: null }));
       },
       onJob: (request) => flow.tune(request as TuningRequest),
     });
-    return range;
+    mount(range, "Range · Tunewright", focus);
+    range.open(route);
   }
 
   function openRecord(test: IdentifyRequest): void {
@@ -155,7 +157,8 @@ export function screens(
         const known = store.get().job;
         const job = known?.id === route.job && known.request ? known : await getJob(route.job);
         // A range is changed on its own screen.
-        if (isRangeRequest(job.request)) return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
+        if (isRangeRequest(job.request))
+          return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
         if (job.request) form.load(job.request);
       }
       if (route.screen === "example") {
@@ -217,12 +220,7 @@ export function screens(
       mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
       return;
     }
-    if (route.screen === "range") {
-      const screen = rangeScreen();
-      mount(screen, "Range · Tunewright", !first);
-      screen.open(route);
-      return;
-    }
+    if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") {
       const screen = relayScreen();
       mount(screen, "Relay test · Tunewright", !first);

@@ -125,7 +125,11 @@ test("equations show their runs, and with moved rows run again", async () => {
 
 test("files of recorded tests become points; faults stand at their rows", async () => {
   const csv = (K, T, L) => {
-    const rows = [...Array(200).keys()].map((t) => [t, t < 10 ? 0 : 1, t < 10 + L ? 0 : K * (1 - Math.exp((10 + L - t) / T))]);
+    const rows = [...Array(200).keys()].map((t) => [
+      t,
+      t < 10 ? 0 : 1,
+      t < 10 + L ? 0 : K * (1 - Math.exp((10 + L - t) / T)),
+    ]);
     return `t,u,y\n${rows.map((row) => row.join(",")).join("\n")}`;
   };
   await withPage("#/range/empty", {}, async (page) => {
@@ -216,10 +220,15 @@ for (const [name, options] of WINDOWS) {
         assert.ok((await overflow(page)) <= 0, `${address} is wider than the window`);
         assert.deepEqual(await accessibilityViolations(page), []);
         const small = await page
-          .locator(".range button:visible, .range input:visible:not(.visually-hidden), .range select:visible, .handle:visible")
+          .locator(
+            ".range button:visible, .range input:visible:not(.visually-hidden), .range select:visible, .handle:visible",
+          )
           .evaluateAll((list) =>
             list
-              .map((item) => [item.outerHTML.slice(0, 80), item.closest("label")?.getBoundingClientRect() ?? item.getBoundingClientRect()])
+              .map((item) => [
+                item.outerHTML.slice(0, 80),
+                item.closest("label")?.getBoundingClientRect() ?? item.getBoundingClientRect(),
+              ])
               .filter(([, box]) => box.width < 24 || box.height < 24)
               .map(([text]) => text),
           );

@@ -23,7 +23,13 @@ const loads: RangeRequest = {
   schedule: { controller: "PI", interpolation: "linear_in_gains" },
 };
 const cone: RangeRequest = {
-  plant: { type: "nonlinear", states: { h: 20 }, equations: { h: "q-h" }, input: { name: "q", nominal: 20 }, output: "h" },
+  plant: {
+    type: "nonlinear",
+    states: { h: 20 },
+    equations: { h: "q-h" },
+    input: { name: "q", nominal: 20 },
+    output: "h",
+  },
   range: { along: "parameter", parameter: "c", from: 10, to: 32, hold_output: false },
 };
 const noParts = {
@@ -35,12 +41,21 @@ const read = (texts: RangeTexts, parts = noParts) => readRange(texts, parts);
 test("a request of points comes back from the form as it was, defaults written out", () => {
   const { request, errors } = read(textsOf(loads));
   assert.deepEqual(errors, []);
-  assert.deepEqual(request, { ...loads, schedule: { controller: "PI", Ms: 1.4, Mt: 1.4, interpolation: "linear_in_gains", allowance: 0.05 } });
+  assert.deepEqual(request, {
+    ...loads,
+    schedule: { controller: "PI", Ms: 1.4, Mt: 1.4, interpolation: "linear_in_gains", allowance: 0.05 },
+  });
 });
 
 test("a plant that is typed over is a text, one that is not stays as it came", () => {
   const set = { type: "set", plants: [fopdt(1, 2, 3), fopdt(2, 2, 3)] };
-  const texts = textsOf({ ...loads, points: [{ at: 30, plant: set }, { at: 100, plant: fopdt(1, 8, 2) }] });
+  const texts = textsOf({
+    ...loads,
+    points: [
+      { at: 30, plant: set },
+      { at: 100, plant: fopdt(1, 8, 2) },
+    ],
+  });
   texts.points[1]!.text = " 2 e^(-3s)/(12s+1) ";
   assert.deepEqual(read(texts).request.points, [
     { at: 30, plant: set },
@@ -61,7 +76,10 @@ test("what is missing or no number is said at its place", () => {
   const way = textsOf(cone);
   way.way.parameter = "";
   way.way.to = "";
-  assert.deepEqual(read(way).errors.map((error) => error.pointer), ["/range/parameter", "/range/to"]);
+  assert.deepEqual(
+    read(way).errors.map((error) => error.pointer),
+    ["/range/parameter", "/range/to"],
+  );
 });
 
 test("records are read in one way for all rows, and only with them limits hold over what they leave open", () => {
@@ -89,7 +107,15 @@ test("equations with their way, and parts without a field, come back", () => {
   const { request } = read(textsOf(given));
   assert.deepEqual(request.range, cone.range);
   assert.equal(request.points, undefined);
-  assert.deepEqual(request.schedule, { aim: "mean", controller: "PID", Ms: 1.6, Mt: 1.4, interpolation: "linear_in_gains", allowance: 0.05, rows: 3 });
+  assert.deepEqual(request.schedule, {
+    aim: "mean",
+    controller: "PID",
+    Ms: 1.6,
+    Mt: 1.4,
+    interpolation: "linear_in_gains",
+    allowance: 0.05,
+    rows: 3,
+  });
   assert.equal("notify" in request || "runs" in request, false);
 });
 
@@ -112,7 +138,10 @@ test("a row moves between its neighbours, within the range, and keeps its settin
 
 test("keys move a handle by small and large steps and to its ends", () => {
   const at = (key: string, shift = false): number | null => keyedPlace(key, shift, 50, [31, 99], extent);
-  assert.deepEqual([at("ArrowRight"), at("ArrowLeft"), at("ArrowUp", true), at("PageDown")], [50.35, 49.65, 53.5, 46.5]);
+  assert.deepEqual(
+    [at("ArrowRight"), at("ArrowLeft"), at("ArrowUp", true), at("PageDown")],
+    [50.35, 49.65, 53.5, 46.5],
+  );
   assert.deepEqual([at("Home"), at("End"), at("a")], [31, 99, null]);
 });
 
@@ -123,15 +152,35 @@ const content: RangeContent = {
     { at: 30, plant: fopdt(4, 20, 4) },
     { at: 100, plant: fopdt(1, 8, 2) },
   ],
-  one: { controller: { form: "ideal", Kp: 0.36, Ti: 11.5, Td: 0 }, worst_relative_IAE: 7, mean_relative_IAE: 3, worst_at: 100, points: [] },
-  schedule: { interpolation: "linear_in_gains", hysteresis: 0, rows: [row(30), row(100)], holds_limits: true, within_allowance: true, worst_relative_IAE: 1.03 },
+  one: {
+    controller: { form: "ideal", Kp: 0.36, Ti: 11.5, Td: 0 },
+    worst_relative_IAE: 7,
+    mean_relative_IAE: 3,
+    worst_at: 100,
+    points: [],
+  },
+  schedule: {
+    interpolation: "linear_in_gains",
+    hysteresis: 0,
+    rows: [row(30), row(100)],
+    holds_limits: true,
+    within_allowance: true,
+    worst_relative_IAE: 1.03,
+  },
   curves: {
     at: [30, 65, 100],
     K: [4, 2, 1],
     T: [20, 12, 8],
     L: [0, 0, 0],
     one: { Ms: [1.4, 1.2, 1.1], Mt: [1, 1, 1], relative_IAE: [1.03, 3, 7] },
-    schedule: { Ms: [1.39, null, 1.4], Mt: [1, 1, 1], relative_IAE: [1.02, 1.03, 1.02], Kp: [0.4, 0.7, 1.3], Ti: [13, 9, 6], Td: [0, 0, 0] },
+    schedule: {
+      Ms: [1.39, null, 1.4],
+      Mt: [1, 1, 1],
+      relative_IAE: [1.02, 1.03, 1.02],
+      Kp: [0.4, 0.7, 1.3],
+      Ti: [13, 9, 6],
+      Td: [0, 0, 0],
+    },
   },
   worst: { schedule: [{ quantity: "Ms", at: 100, value: 1.4, limit: 1.4 }] },
   warnings: [],
@@ -139,10 +188,18 @@ const content: RangeContent = {
 
 test("while a hand moves a row the schedule is given, records stand for the models that they gave", () => {
   const rows = [row(30), row(90)];
-  const request: RangeRequest = { ...loads, points: [{ at: 30, record: { csv: "t,u,y" } }, loads.points![1]!], identify: { model: "auto" }, schedule: { Ms: 1.4, rows: 2 } };
+  const request: RangeRequest = {
+    ...loads,
+    points: [{ at: 30, record: { csv: "t,u,y" } }, loads.points![1]!],
+    identify: { model: "auto" },
+    schedule: { Ms: 1.4, rows: 2 },
+  };
   const asked = givenRequest(request, content, rows, false);
   assert.deepEqual(asked.schedule, { Ms: 1.4, given: rows });
-  assert.deepEqual([asked.points![0], asked.identify, asked.runs], [{ at: 30, plant: fopdt(4, 20, 4) }, undefined, false]);
+  assert.deepEqual(
+    [asked.points![0], asked.identify, asked.runs],
+    [{ at: 30, plant: fopdt(4, 20, 4) }, undefined, false],
+  );
   const region = givenRequest({ ...request, uncertainty: "identified" }, content, rows, false);
   assert.deepEqual(region.points, request.points);
 });
@@ -151,18 +208,44 @@ test("the plots show the design with its limits, then the moved rows beside the 
   const moved: RangeContent = { ...content, one: null, curves: { ...content.curves, at: [30, 50, 100], one: null } };
   const shown = { designed: content, moved: null, rows: content.schedule!.rows, Ms: 1.4, allowance: 0.05, units };
   const [Ms, IAE] = robustnessFrame(shown).panes;
-  assert.deepEqual(Ms!.traces.map((trace) => trace.name), ["schedule", "one setting"]);
-  assert.deepEqual(Ms!.marks!.map((mark) => mark.kind), ["upright", "upright", "level"]);
+  assert.deepEqual(
+    Ms!.traces.map((trace) => trace.name),
+    ["schedule", "one setting"],
+  );
+  assert.deepEqual(
+    Ms!.marks!.map((mark) => mark.kind),
+    ["upright", "upright", "level"],
+  );
   assert.ok(IAE!.y.range![1] > 7);
   const after = robustnessFrame({ ...shown, moved }).panes[0]!.traces;
-  assert.deepEqual(after.map((trace) => trace.x), [moved.curves.at, content.curves.at]);
+  assert.deepEqual(
+    after.map((trace) => trace.x),
+    [moved.curves.at, content.curves.at],
+  );
   // A PI has no derivative time to draw, a plant without dead time no dead time.
-  assert.deepEqual(settingsFrame(shown)!.panes.map((pane) => pane.y.label), ["Kp (%/°C)", "Ti (s)"]);
-  assert.deepEqual(plantFrame(shown)!.panes.map((pane) => pane.y.label), ["K (°C/%)", "T (s)"]);
+  assert.deepEqual(
+    settingsFrame(shown)!.panes.map((pane) => pane.y.label),
+    ["Kp (%/°C)", "Ti (s)"],
+  );
+  assert.deepEqual(
+    plantFrame(shown)!.panes.map((pane) => pane.y.label),
+    ["K (°C/%)", "T (s)"],
+  );
 });
 
 test("a run shows the target with y, or a parameter of its own; a run that ended early is shorter", () => {
-  const run = { y: [1, 2], u: [1, 1], at: [1, 2], Kp: [1, 1], IAE: 1, largest_error: 1, largest_bump: 0, switches: 0, limited: false, settled: true };
+  const run = {
+    y: [1, 2],
+    u: [1, 1],
+    at: [1, 2],
+    Kp: [1, 1],
+    IAE: 1,
+    largest_error: 1,
+    largest_bump: 0,
+    switches: 0,
+    limited: false,
+    settled: true,
+  };
   const passage = { name: "step up", horizon: 2, t: [0, 1, 2], target: [2, 2, 2], schedule: run, one: null };
   const names = (parameter: string | null) =>
     passageFrame(passage, parameter, units).panes.map((pane) => pane.traces.map((trace) => trace.name));
@@ -175,8 +258,13 @@ test("places, settings and verdicts in words", () => {
   assert.equal(placeWords(51.875, content.scheduling), "load 51.9 %");
   assert.equal(placeWords(20, { name: "at", from: 0, to: 1 }), "20");
   assert.equal(settingWords({ Kp: 0.4512345, Ti: 9.1, Td: 0 }, units), "Kp 0.45123, Ti 9.1 s");
-  assert.deepEqual(worstWords(content.worst.schedule, content.scheduling), ["Ms is largest at load 100 %: 1.40, limit 1.40."]);
-  assert.equal(handleWords(row(51.875, 0.553), 1, { designed: content, moved: null }), "Row 2 at load 51.875 %, Kp 0.553, largest Ms 1.40");
+  assert.deepEqual(worstWords(content.worst.schedule, content.scheduling), [
+    "Ms is largest at load 100 %: 1.40, limit 1.40.",
+  ]);
+  assert.equal(
+    handleWords(row(51.875, 0.553), 1, { designed: content, moved: null }),
+    "Row 2 at load 51.875 %, Kp 0.553, largest Ms 1.40",
+  );
   assert.equal(handVerdict({ ...content.schedule!, holds_limits: false }).level, "bad");
   assert.equal(handVerdict({ ...content.schedule!, within_allowance: false }).level, "warning");
   assert.match(handVerdict(content.schedule!).text, /^These 2 rows hold the limits everywhere.* 1\.03 times/);
@@ -185,5 +273,6 @@ test("places, settings and verdicts in words", () => {
 });
 
 test("addresses of a range lead back to themselves", () => {
-  for (const hash of ["#/range", "#/range/range-of-loads", "#/jobs/abc/range"]) assert.equal(formatRoute(parseRoute(hash)), hash);
+  for (const hash of ["#/range", "#/range/range-of-loads", "#/jobs/abc/range"])
+    assert.equal(formatRoute(parseRoute(hash)), hash);
 });

@@ -1,4 +1,5 @@
-// What an operating range looks like over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over time.
+// What an operating range looks like over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over
+// time.
 import type { Column, RangeContent, RangePassage, RangeTraces, ScheduleRow } from "../api/range.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
@@ -25,7 +26,9 @@ function traceOf(shown: RangeShown, quantity: "Ms" | "relative_IAE"): Trace[] {
   const { at, one } = shown.designed.curves;
   const scheduled = scheduledCurves(shown);
   return [
-    ...(scheduled.schedule ? [{ name: "schedule", look: 1 as const, x: scheduled.at, y: scheduled.schedule[quantity] }] : []),
+    ...(scheduled.schedule
+      ? [{ name: "schedule", look: 1 as const, x: scheduled.at, y: scheduled.schedule[quantity] }]
+      : []),
     ...(one ? [{ name: "one setting", look: 2 as const, x: at, y: one[quantity] }] : []),
   ];
 }
@@ -52,7 +55,13 @@ const uprights = (rows: readonly ScheduleRow[]): Mark[] =>
 function over(shown: RangeShown): Pick<Frame, "x" | "link" | "cursorLabel" | "cursorKind" | "ownLegend"> {
   const { name, unit, from, to } = shown.designed.scheduling;
   const label = withUnit(name, unit ?? "");
-  return { x: { kind: "linear", label, range: [from, to] }, link: LINK, cursorLabel: label, cursorKind: "linear", ownLegend: true };
+  return {
+    x: { kind: "linear", label, range: [from, to] },
+    link: LINK,
+    cursorLabel: label,
+    cursorKind: "linear",
+    ownLegend: true,
+  };
 }
 
 const largest = (traces: RangeTraces | null | undefined, quantity: "Ms" | "relative_IAE"): string => {
@@ -66,8 +75,14 @@ export function robustnessFrame(shown: RangeShown): Frame {
   const scheduled = scheduledCurves(shown).schedule;
   const { one } = shown.designed.curves;
   const said = [
-    ...(scheduled ? [`With the schedule Ms is at most ${largest(scheduled, "Ms")} and the IAE ${largest(scheduled, "relative_IAE")} times each place's own optimum.`] : []),
-    ...(one ? [`With one setting Ms is at most ${largest(one, "Ms")} and the IAE ${largest(one, "relative_IAE")} times.`] : []),
+    ...(scheduled
+      ? [
+          `With the schedule Ms is at most ${largest(scheduled, "Ms")} and the IAE ${largest(scheduled, "relative_IAE")} times each place's own optimum.`,
+        ]
+      : []),
+    ...(one
+      ? [`With one setting Ms is at most ${largest(one, "Ms")} and the IAE ${largest(one, "relative_IAE")} times.`]
+      : []),
   ];
   return {
     ...over(shown),
@@ -77,12 +92,18 @@ export function robustnessFrame(shown: RangeShown): Frame {
       {
         y: { kind: "linear", label: "Ms", range: rangeOfMs(Ms, shown.Ms) },
         traces: Ms,
-        marks: [...uprights(shown.rows), { kind: "level", value: shown.Ms, role: "limit", label: `limit ${formatNumber(shown.Ms)}` }],
+        marks: [
+          ...uprights(shown.rows),
+          { kind: "level", value: shown.Ms, role: "limit", label: `limit ${formatNumber(shown.Ms)}` },
+        ],
       },
       {
         y: { kind: "log", label: "IAE over optimum", range: rangeOfIAE(IAE) },
         traces: IAE,
-        marks: [...uprights(shown.rows), { kind: "level", value: 1 + shown.allowance, role: "limit", label: "allowance" }],
+        marks: [
+          ...uprights(shown.rows),
+          { kind: "level", value: 1 + shown.allowance, role: "limit", label: "allowance" },
+        ],
       },
     ],
     fileName: "range-robustness",
@@ -151,15 +172,23 @@ export function passageFrame(passage: RangePassage, parameter: string | null, un
     { name: "one setting", look: 2 as const, run: passage.one },
   ];
   const traces = (signal: "y" | "u" | "Kp"): Trace[] =>
-    runs.flatMap(({ name, look, run }) => (run ? [{ name, look, x: passage.t.slice(0, run[signal].length), y: run[signal] }] : []));
+    runs.flatMap(({ name, look, run }) =>
+      run ? [{ name, look, x: passage.t.slice(0, run[signal].length), y: run[signal] }] : [],
+    );
   const target: Trace = { name: parameter ?? "set point", look: "data", x: passage.t, y: passage.target };
   return {
     title: `Run: ${passage.name}`,
     description: `The equations over ${formatNumber(passage.horizon)} ${units.time}, with the settings changing on the way.`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
-      { y: { kind: "linear", label: withUnit("y", units.y) }, traces: [...traces("y"), ...(parameter === null ? [target] : [])], weight: 1.6 },
-      ...(parameter === null ? [] : [{ y: { kind: "linear" as const, label: parameter }, traces: [target], weight: 0.7 }]),
+      {
+        y: { kind: "linear", label: withUnit("y", units.y) },
+        traces: [...traces("y"), ...(parameter === null ? [target] : [])],
+        weight: 1.6,
+      },
+      ...(parameter === null
+        ? []
+        : [{ y: { kind: "linear" as const, label: parameter }, traces: [target], weight: 0.7 }]),
       { y: { kind: "linear", label: withUnit("u", units.u) }, traces: traces("u") },
       { y: { kind: "linear", label: withUnit("Kp", quotient(units.u, units.y)) }, traces: traces("Kp"), weight: 0.8 },
     ],

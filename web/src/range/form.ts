@@ -61,7 +61,11 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
     h("summary", {}, "How the records are read: columns, kind of test, model"),
     h("div", { class: "stack" }, reading.elements),
   );
-  const equations = equationFields(errors, () => mode() === "equations", () => undefined);
+  const equations = equationFields(
+    errors,
+    () => mode() === "equations",
+    () => undefined,
+  );
   const way = wayFields(errors, () => mode() === "equations");
   const ofPoints = h("div", { class: "stack" }, points.element, records);
   const ofEquations = h("div", { class: "stack", hidden: true }, equations.element, way.element);
@@ -147,7 +151,14 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
   return {
     element,
     read() {
-      const texts = { mode: mode(), ...labels.read(), points: points.read(), way: way.read(), terms: terms.read(), rest };
+      const texts = {
+        mode: mode(),
+        ...labels.read(),
+        points: points.read(),
+        way: way.read(),
+        terms: terms.read(),
+        rest,
+      };
       return readRange(texts, { equations: equations.read(), records: reading.read() });
     },
     load(request) {

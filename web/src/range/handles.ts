@@ -33,7 +33,8 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
   let box: PaneBox | null = null;
   let taken: number | null = null;
 
-  const placeUnder = (event: PointerEvent): number => box!.x.toValue(event.clientX - layer.getBoundingClientRect().left);
+  const placeUnder = (event: PointerEvent): number =>
+    box!.x.toValue(event.clientX - layer.getBoundingClientRect().left);
 
   function knobOf(index: number): HTMLElement {
     const knob = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Handle of row ${index + 1}` });
@@ -60,7 +61,13 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
     knob.addEventListener("keydown", (event) => {
       const row = shown?.rows[index];
       if (!row || event.ctrlKey || event.metaKey || event.altKey) return;
-      const to = keyedPlace(event.key, event.shiftKey, row.at, reachOf(shown!.rows, index, shown!.extent), shown!.extent);
+      const to = keyedPlace(
+        event.key,
+        event.shiftKey,
+        row.at,
+        reachOf(shown!.rows, index, shown!.extent),
+        shown!.extent,
+      );
       if (to === null) return;
       event.preventDefault();
       events.onMove(index, to, true);

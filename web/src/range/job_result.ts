@@ -20,9 +20,14 @@ export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: 
       const { schedule, one, why_null } = content;
       title.textContent = schedule ? `Schedule: ${counted(schedule.rows.length, "row")}` : "No schedule";
       body.replaceChildren(
-        ...(job.result?.partial ? [h("p", { class: "hint" }, "Stopped early: the best that was found until then.")] : []),
+        ...(job.result?.partial
+          ? [h("p", { class: "hint" }, "Stopped early: the best that was found until then.")]
+          : []),
         ...(schedule
-          ? [h("p", { class: "hint" }, `Between the rows: ${interpolationWords(schedule.interpolation)}.`), rowsTable(content, units)]
+          ? [
+              h("p", { class: "hint" }, `Between the rows: ${interpolationWords(schedule.interpolation)}.`),
+              rowsTable(content, units),
+            ]
           : [h("p", {}, why_null?.["schedule"] ?? "")]),
         ...(one ? [h("p", {}, `One setting for all of it: ${settingWords(settingsOfOne(one), units)}.`)] : []),
         h(
@@ -37,7 +42,10 @@ export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: 
 }
 
 function rowsTable({ schedule, scheduling }: RangeContent, units: UnitNames): HTMLElement {
-  const head = [withUnit(scheduling.name || "at", scheduling.unit ?? ""), ...SETTINGS.map((name) => settingHead(name, units))];
+  const head = [
+    withUnit(scheduling.name || "at", scheduling.unit ?? ""),
+    ...SETTINGS.map((name) => settingHead(name, units)),
+  ];
   const rows = schedule!.rows.map((row) =>
     h(
       "tr",
@@ -52,7 +60,15 @@ function rowsTable({ schedule, scheduling }: RangeContent, units: UnitNames): HT
     h(
       "table",
       { class: "figures" },
-      h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          head.map((text) => h("th", { scope: "col" }, text)),
+        ),
+      ),
       h("tbody", {}, rows),
     ),
   );

@@ -34,7 +34,10 @@ export function pointFields(errors: FormErrors, active: () => boolean, events: P
     ["At", "Plant"],
     events.onChange,
     ({ at, file }) => [at || "without a place", file].filter(Boolean).join(", "),
-    (texts, rows) => pointRow(texts ?? { at: "", text: "" }, errors, (row, part) => (active() ? `/points/${rows().indexOf(row)}/${part}` : null)),
+    (texts, rows) =>
+      pointRow(texts ?? { at: "", text: "" }, errors, (row, part) =>
+        active() ? `/points/${rows().indexOf(row)}/${part}` : null,
+      ),
   );
   const file = h("input", {
     type: "file",
@@ -44,11 +47,19 @@ export function pointFields(errors: FormErrors, active: () => boolean, events: P
     tabindex: -1,
     "aria-label": "CSV files of tests, one a point",
   });
-  const choose = h("button", { type: "button", class: "quiet", onclick: () => file.click() }, "Add recorded tests (CSV)");
+  const choose = h(
+    "button",
+    { type: "button", class: "quiet", onclick: () => file.click() },
+    "Add recorded tests (CSV)",
+  );
   const element = h(
     "div",
     { class: "range-points" },
-    h("p", { class: "hint" }, "A plant as a formula, 2 e^(-3s)/(12s+1), or as K=2 T=12 L=3. Files of recorded tests can be dropped here."),
+    h(
+      "p",
+      { class: "hint" },
+      "A plant as a formula, 2 e^(-3s)/(12s+1), or as K=2 T=12 L=3. Files of recorded tests can be dropped here.",
+    ),
     list.element,
     h("div", { class: "add-records" }, choose, file),
     status,
@@ -114,7 +125,8 @@ function pointRow(
   const row: Row<PointTexts> = {
     element: h("div", { class: "row point-row", role: "group" }, at.element, plant.element, seen),
     first: at.input,
-    texts: () => (record ? { ...given, at: at.input.value } : { ...given, at: at.input.value, text: plant.input.value }),
+    texts: () =>
+      record ? { ...given, at: at.input.value } : { ...given, at: at.input.value, text: plant.input.value },
     dispose() {
       errors.remove(at.control);
       errors.remove(plant.control);

@@ -61,7 +61,11 @@ function numberOf(text: string, name: string, pointer: string, faults: Faults): 
 }
 
 const named = <T extends Record<string, string>>(texts: T): Partial<T> =>
-  Object.fromEntries(Object.entries(texts).filter(([, text]) => text.trim() !== "").map(([key, text]) => [key, text.trim()])) as Partial<T>;
+  Object.fromEntries(
+    Object.entries(texts)
+      .filter(([, text]) => text.trim() !== "")
+      .map(([key, text]) => [key, text.trim()]),
+  ) as Partial<T>;
 
 /** Of a text that was changed it alone counts. */
 function plantOf(point: PointTexts): Plant | string {
@@ -74,7 +78,10 @@ function readPoints(texts: RangeTexts, records: ReadParts["records"], faults: Fa
     const at = numberOf(point.at, `The ${texts.scheduling.name || "place"} of row ${row + 1}`, `${pointer}/at`, faults);
     if (point.record) return { at, record: { ...point.record, ...records.record } };
     if (point.text.trim() === "")
-      faults.push({ pointer: `${pointer}/plant`, detail: `Row ${row + 1} has no plant. Write one, for example K=2 T=12 L=3.` });
+      faults.push({
+        pointer: `${pointer}/plant`,
+        detail: `Row ${row + 1} has no plant. Write one, for example K=2 T=12 L=3.`,
+      });
     return { at, plant: plantOf(point) };
   });
 }
@@ -98,7 +105,9 @@ function readTerms(texts: TermTexts, faults: Faults): NonNullable<RangeRequest["
     Ms: numberOf(texts.Ms, "Ms", "/schedule/Ms", faults),
     Mt: numberOf(texts.Mt, "Mt", "/schedule/Mt", faults),
     interpolation: texts.interpolation,
-    allowance: Number((numberOf(texts.allowance, "The allowance", "/schedule/allowance", faults) / 100).toPrecision(12)),
+    allowance: Number(
+      (numberOf(texts.allowance, "The allowance", "/schedule/allowance", faults) / 100).toPrecision(12),
+    ),
     ...(rows === "" ? {} : { rows: numberOf(rows, "The number of rows", "/schedule/rows", faults) }),
   };
 }
@@ -133,7 +142,9 @@ export function readRange(texts: RangeTexts, parts: ReadParts): { request: Range
 export function plantText(plant: Plant | string | undefined): string {
   if (typeof plant === "string") return plant;
   if (plant?.type !== "fopdt" || Object.keys(plant).some((key) => !["type", "K", "T", "L"].includes(key))) return "";
-  return ["K", "T", "L"].flatMap((name) => (typeof plant[name] === "number" ? [`${name}=${plant[name] as number}`] : [])).join(" ");
+  return ["K", "T", "L"]
+    .flatMap((name) => (typeof plant[name] === "number" ? [`${name}=${plant[name] as number}`] : []))
+    .join(" ");
 }
 
 function pointTexts({ at, plant, record }: RangePoint, index: number): PointTexts {
@@ -152,7 +163,18 @@ const written = (value: unknown, otherwise: string): string =>
 
 /** The texts that show a request; what a schedule was given is not part of a design. */
 export function textsOf(request: RangeRequest): RangeTexts {
-  const { name, units, scheduling, points, plant: _plant, range, identify: _identify, uncertainty, schedule, ...rest } = request;
+  const {
+    name,
+    units,
+    scheduling,
+    points,
+    plant: _plant,
+    range,
+    identify: _identify,
+    uncertainty,
+    schedule,
+    ...rest
+  } = request;
   const { controller, Ms, Mt, interpolation, allowance, rows, given: _given, ...kept } = schedule ?? {};
   const share = typeof allowance === "number" ? allowance : 0.05;
   // On what terms a job runs is no part of what is asked here.
@@ -187,6 +209,8 @@ export function textsOf(request: RangeRequest): RangeTexts {
 export function atSharedFields(errors: FieldError[]): FieldError[] {
   return errors.map(({ pointer, detail }) => {
     const [, row, below] = /^\/points\/(\d+)\/record\/(columns.*|time_unit|dt|kind)$/.exec(pointer) ?? [];
-    return row === undefined ? { pointer, detail } : { pointer: `/record/${below}`, detail: `Row ${Number(row) + 1}: ${detail}` };
+    return row === undefined
+      ? { pointer, detail }
+      : { pointer: `/record/${below}`, detail: `Row ${Number(row) + 1}: ${detail}` };
   });
 }

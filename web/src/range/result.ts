@@ -1,5 +1,5 @@
-// What a range's design shows: verdict, plots with the rows as handles, schedule, one setting, runs, points. A row that is
-// moved is answered while it moves.
+// What a range's design shows: verdict, plots with the rows as handles, schedule, one setting, runs, points. A row that
+// is moved is answered while it moves.
 import type { RangeContent, RangeRequest } from "../api/range.ts";
 import { plantFrame, robustnessFrame, settingsFrame } from "../charts/range.ts";
 import type { RangeShown } from "../charts/range.ts";
@@ -25,7 +25,10 @@ export interface RangeResultView {
 }
 
 /** `onAsked`: the curves that are shown were asked by this. */
-export function rangeResult(announce: (sentence: string) => void, onAsked: (request: RangeRequest | null) => void): RangeResultView {
+export function rangeResult(
+  announce: (sentence: string) => void,
+  onAsked: (request: RangeRequest | null) => void,
+): RangeResultView {
   let about: RangeRequest = {};
   let first: Plot | null = null;
   let held = false;

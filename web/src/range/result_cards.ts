@@ -22,7 +22,10 @@ export function showRangeVerdict(card: HTMLElement, content: RangeContent): void
   const finding = verdictOf(content);
   const [head, ...rest] = withMinus(finding.text).split(/(?<=\.)\s+(?=[A-Z])/);
   card.className = `verdict ${LEVEL_CLASS[finding.level]}`;
-  card.replaceChildren(h("h2", { "data-code": finding.code }, head), ...(rest.length > 0 ? [h("p", {}, rest.join(" "))] : []));
+  card.replaceChildren(
+    h("h2", { "data-code": finding.code }, head),
+    ...(rest.length > 0 ? [h("p", {}, rest.join(" "))] : []),
+  );
 }
 
 export function resultCards(): ResultCards {
@@ -42,7 +45,11 @@ export function resultCards(): ResultCards {
       warnings.hidden = remarks.length === 0;
       warnings.replaceChildren(
         h("h2", {}, remarks.length === 1 ? "1 note" : `${remarks.length} notes`),
-        h("ul", { class: "notes" }, remarks.map((remark) => h("li", {}, withMinus(remark.detail)))),
+        h(
+          "ul",
+          { class: "notes" },
+          remarks.map((remark) => h("li", {}, withMinus(remark.detail))),
+        ),
       );
     },
   };
@@ -52,8 +59,18 @@ function showOne(card: HTMLElement, content: RangeContent, units: UnitNames): vo
   const { one, scheduling } = content;
   const why = content.why_null?.["one"];
   card.hidden = !one && !why;
-  card.replaceChildren(h("h2", {}, "One setting for all of it"), ...(one ? oneSetting(one, content, units) : [h("p", {}, why ?? "")]));
-  if (one) card.append(h("ul", { class: "notes quiet-notes" }, worstWords(content.worst.one, scheduling).map((text) => h("li", {}, text))));
+  card.replaceChildren(
+    h("h2", {}, "One setting for all of it"),
+    ...(one ? oneSetting(one, content, units) : [h("p", {}, why ?? "")]),
+  );
+  if (one)
+    card.append(
+      h(
+        "ul",
+        { class: "notes quiet-notes" },
+        worstWords(content.worst.one, scheduling).map((text) => h("li", {}, text)),
+      ),
+    );
 }
 
 function oneSetting(one: OneSetting, { scheduling }: RangeContent, units: UnitNames): HTMLElement[] {
@@ -116,12 +133,25 @@ function showPoints(card: HTMLElement, content: RangeContent, units: UnitNames):
       h(
         "table",
         { class: "figures", "aria-labelledby": id },
-        h("thead", {}, h("tr", {}, head.map((text, index) => h("th", { scope: "col", class: wordy(index) }, text)))),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            head.map((text, index) => h("th", { scope: "col", class: wordy(index) }, text)),
+          ),
+        ),
         h(
           "tbody",
           {},
           rows.map(([at, ...cells]) =>
-            h("tr", {}, h("th", { scope: "row" }, at), cells.map((text, index) => h("td", { class: wordy(index + 1) }, text))),
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, at),
+              cells.map((text, index) => h("td", { class: wordy(index + 1) }, text)),
+            ),
           ),
         ),
       ),

@@ -22,7 +22,12 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
   const choice = choiceField({ label: "Run", choices: [], pointer: () => null }, new FormErrors());
   const facts = h("div", { class: "scroll", role: "region", "aria-label": "Figures of the run", tabindex: 0 });
   const again = h("button", { type: "button", onclick: () => onAgain() }, "Run the rows as they stand");
-  const old = h("div", { class: "trouble", hidden: true }, h("p", {}, "The rows were moved; these runs are still the design's."), h("p", { class: "actions" }, again));
+  const old = h(
+    "div",
+    { class: "trouble", hidden: true },
+    h("p", {}, "The rows were moved; these runs are still the design's."),
+    h("p", { class: "actions" }, again),
+  );
   const notes = h("ul", { class: "notes quiet-notes" });
   const plots = plotGrid(announce);
   const element = h(
@@ -51,7 +56,13 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
           "tbody",
           {},
           schedule.map(([name, value], index) =>
-            h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, value), passage.one ? h("td", {}, one[index]![1]) : null),
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, name),
+              h("td", {}, value),
+              passage.one ? h("td", {}, one[index]![1]) : null,
+            ),
           ),
         ),
       ),

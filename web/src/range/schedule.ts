@@ -37,7 +37,13 @@ const STEP = 0.005;
 const FAR_STEP = 0.05;
 
 /** Where a key takes a handle; null: it is none of its keys. */
-export function keyedPlace(key: string, shift: boolean, at: number, reach: [number, number], { from, to }: Extent): number | null {
+export function keyedPlace(
+  key: string,
+  shift: boolean,
+  at: number,
+  reach: [number, number],
+  { from, to }: Extent,
+): number | null {
   const arrow = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[key];
   const page = { PageUp: 1, PageDown: -1 }[key];
   if (key === "Home") return reach[0];
@@ -46,11 +52,17 @@ export function keyedPlace(key: string, shift: boolean, at: number, reach: [numb
   return arrow ? at + arrow * (shift ? FAR_STEP : STEP) * (to - from) : null;
 }
 
-export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean => JSON.stringify(a) === JSON.stringify(b);
+export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean =>
+  JSON.stringify(a) === JSON.stringify(b);
 
-/** The question that follows a hand. Records have found their models: these are asked about, except where limits hold over
-    what each record leaves open. */
-export function givenRequest(request: RangeRequest, designed: RangeContent, rows: ScheduleRow[], runs: boolean): RangeRequest {
+/** The question that follows a hand. Records have found their models: these are asked about, except where limits hold
+    over what each record leaves open. */
+export function givenRequest(
+  request: RangeRequest,
+  designed: RangeContent,
+  rows: ScheduleRow[],
+  runs: boolean,
+): RangeRequest {
   const { rows: _rows, ...schedule } = request.schedule ?? {};
   const asked: RangeRequest = { ...request, schedule: { ...schedule, given: rows }, runs };
   if (!request.points || request.uncertainty === "identified") return asked;

@@ -35,8 +35,18 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
   const holds = h("p", { class: "verdict-line" });
   const heads = h("tr", {});
   const body = h("tbody", {});
-  const table = h("table", { class: "figures schedule" }, h("caption", { class: "visually-hidden" }, "Rows of the schedule"), h("thead", {}, heads), body);
-  const scroll = h("div", { class: "scroll", role: "region", "aria-label": "Rows of the schedule", tabindex: 0 }, table);
+  const table = h(
+    "table",
+    { class: "figures schedule" },
+    h("caption", { class: "visually-hidden" }, "Rows of the schedule"),
+    h("thead", {}, heads),
+    body,
+  );
+  const scroll = h(
+    "div",
+    { class: "scroll", role: "region", "aria-label": "Rows of the schedule", tabindex: 0 },
+    table,
+  );
   const worst = h("ul", { class: "notes quiet-notes" });
   const back = h("button", { type: "button", hidden: true, onclick: () => events.onBack() }, "Back to the design");
   const element = h(
@@ -78,7 +88,11 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
     });
     body.replaceChildren(
       ...cells.map((row, index) => {
-        const line = h("tr", {}, COLUMNS.map((name) => h("td", {}, row[name].element)));
+        const line = h(
+          "tr",
+          {},
+          COLUMNS.map((name) => h("td", {}, row[name].element)),
+        );
         line.addEventListener("change", () => take(index));
         return line;
       }),
@@ -116,7 +130,11 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
       holds.className = `verdict-line ${!schedule.holds_limits ? "bad" : schedule.within_allowance ? "good" : "warn"}`;
       heads.replaceChildren(
         ...COLUMNS.map((name) =>
-          h("th", { scope: "col" }, name === "at" ? withUnit(scheduling.name || "at", scheduling.unit ?? "") : settingHead(name, units)),
+          h(
+            "th",
+            { scope: "col" },
+            name === "at" ? withUnit(scheduling.name || "at", scheduling.unit ?? "") : settingHead(name, units),
+          ),
         ),
       );
       write(next);
@@ -133,9 +151,18 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
 const pointerOf = (index: number, name: Column): string => `/schedule/given/${index}/${name}`;
 
 const cellOf = (index: number, name: Column, errors: FormErrors): Field<HTMLInputElement> =>
-  textField({ label: `${name === "at" ? "Place" : name} of row ${index + 1}`, bare: true, pointer: () => pointerOf(index, name) }, errors);
+  textField(
+    {
+      label: `${name === "at" ? "Place" : name} of row ${index + 1}`,
+      bare: true,
+      pointer: () => pointerOf(index, name),
+    },
+    errors,
+  );
 
 function holdWords({ holds_limits, within_allowance }: NonNullable<RangeContent["schedule"]>): string {
   if (!holds_limits) return "The limits do not hold everywhere.";
-  return within_allowance ? "Limits hold everywhere, within the allowance." : "Limits hold everywhere; the IAE is above the allowance.";
+  return within_allowance
+    ? "Limits hold everywhere, within the allowance."
+    : "Limits hold everywhere; the IAE is above the allowance.";
 }

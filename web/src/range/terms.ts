@@ -18,20 +18,37 @@ export function termFields(errors: FormErrors): TermFields {
   const field = (name: string, label: string, hint: string, placeholder = "") =>
     textField({ label, hint, placeholder, pointer: () => `/schedule/${name}` }, errors);
   const controller = choiceField(
-    { label: "Controller", choices: [["PID", "PID"], ["PI", "PI"]], pointer: () => "/schedule/controller" },
+    {
+      label: "Controller",
+      choices: [
+        ["PID", "PID"],
+        ["PI", "PI"],
+      ],
+      pointer: () => "/schedule/controller",
+    },
     errors,
   );
   const Ms = field("Ms", "Ms", "at most");
   const Mt = field("Mt", "Mt", "at most");
   const interpolation = choiceField(
-    { label: "Between the rows", hint: "as your controller does it", choices: INTERPOLATIONS, pointer: () => "/schedule/interpolation" },
+    {
+      label: "Between the rows",
+      hint: "as your controller does it",
+      choices: INTERPOLATIONS,
+      pointer: () => "/schedule/interpolation",
+    },
     errors,
   );
   const rows = field("rows", "Rows", "empty: the fewest", "fewest");
   const allowance = field("allowance", "Allowance", "IAE above the optimum");
   allowance.setUnit("%");
   const box = h("input", { type: "checkbox", id: uniqueId("region") });
-  const region = h("label", { class: "check", for: box.id, hidden: true }, box, "Hold the limits for every model that the records allow");
+  const region = h(
+    "label",
+    { class: "check", for: box.id, hidden: true },
+    box,
+    "Hold the limits for every model that the records allow",
+  );
   const element = h(
     "fieldset",
     { class: "range-terms" },
@@ -86,7 +103,10 @@ const ALONG = [
 export function wayFields(errors: FormErrors, active: () => boolean): WayFields {
   const own = (name: string) => (): string | null => (active() ? `/range/${name}` : null);
   const along = choiceField({ label: "Along", choices: ALONG, pointer: own("along") }, errors);
-  const parameter = textField({ label: "Parameter", hint: "its name in the equations", pointer: own("parameter") }, errors);
+  const parameter = textField(
+    { label: "Parameter", hint: "its name in the equations", pointer: own("parameter") },
+    errors,
+  );
   const from = textField({ label: "From", pointer: own("from") }, errors);
   const to = textField({ label: "To", pointer: own("to") }, errors);
   const box = h("input", { type: "checkbox", id: uniqueId("hold") });
@@ -152,7 +172,12 @@ export function labelFields(errors: FormErrors): LabelFields {
       "details",
       {},
       h("summary", {}, "Name of the loop, units"),
-      h("div", { class: "fields" }, name.element, Object.values(units).map((item) => item.element)),
+      h(
+        "div",
+        { class: "fields" },
+        name.element,
+        Object.values(units).map((item) => item.element),
+      ),
     ),
     read: () => ({
       name: name.input.value,

@@ -48,11 +48,23 @@ export function handVerdict(schedule: Schedule): Finding {
   const rows = counted(schedule.rows.length, "row");
   const IAE = schedule.worst_relative_IAE;
   if (!schedule.holds_limits)
-    return { code: "hand-exceeds", level: "bad", text: `With these ${rows} the limits do not hold everywhere in the range.` };
+    return {
+      code: "hand-exceeds",
+      level: "bad",
+      text: `With these ${rows} the limits do not hold everywhere in the range.`,
+    };
   const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each place's own optimum.`;
   return schedule.within_allowance
-    ? { code: "hand-holds", level: "good", text: `These ${rows} hold the limits everywhere, within the allowance.${cost}` }
-    : { code: "hand-costs", level: "warning", text: `These ${rows} hold the limits, but cost more than the allowance.${cost}` };
+    ? {
+        code: "hand-holds",
+        level: "good",
+        text: `These ${rows} hold the limits everywhere, within the allowance.${cost}`,
+      }
+    : {
+        code: "hand-costs",
+        level: "warning",
+        text: `These ${rows} hold the limits, but cost more than the allowance.${cost}`,
+      };
 }
 
 export function verdictOf(content: RangeContent): Finding {
@@ -61,7 +73,11 @@ export function verdictOf(content: RangeContent): Finding {
   return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range." };
 }
 
-const QUANTITIES: Record<WorstPlace["quantity"], string> = { Ms: "Ms", Mt: "Mt", relative_IAE: "IAE over the own optimum" };
+const QUANTITIES: Record<WorstPlace["quantity"], string> = {
+  Ms: "Ms",
+  Mt: "Mt",
+  relative_IAE: "IAE over the own optimum",
+};
 
 /** "Ms is largest at load 30 %: 1.40, limit 1.40." */
 export function worstWords(places: WorstPlace[] | undefined, scheduling: RangeContent["scheduling"]): string[] {

@@ -91,8 +91,8 @@ Answer preview_file(std::string_view bytes);
 
 /// The same for a CSV file as it is, in any encoding, without a request around it.
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
-Answer parse_plant_call(std::string_view body);                       ///< POST /v1/plants/parse
-Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
+Answer parse_plant_call(std::string_view body);                                   ///< POST /v1/plants/parse
+Answer relay_call(std::string_view body, const RunControl& control);              ///< POST /v1/experiments/relay
 Answer range_experiments_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/range
 
 std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for

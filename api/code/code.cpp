@@ -40,9 +40,13 @@ std::variant<ControllerCode, Problem> written_entry(const ChosenEntry& found, co
 }
 
 Problem no_schedule() {
-    return {404, "not-found", "Not Found",
+    return {404,
+            "not-found",
+            "Not Found",
             "This is no answer about an operating range with a schedule. Give what `range` or a succeeded job about a "
-            "range has answered.", {}, {}};
+            "range has answered.",
+            {},
+            {}};
 }
 
 }  // namespace

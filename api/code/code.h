@@ -20,13 +20,13 @@ struct ControllerCode {
 };
 
 /// The controller number `index` (a decimal, from 0; "": the best of the result's ranking, or the schedule of a range).
-/// Problems: 400 not JSON; 404 no result, no such controller, or an entry without one; 422 parameters with every fault, a
-/// time unit that has no seconds, no sample time to propose.
+/// Problems: 400 not JSON; 404 no result, no such controller, or an entry without one; 422 parameters with every fault,
+/// a time unit that has no seconds, no sample time to propose.
 std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words);
 
-/// The schedule of an answer about an operating range: a program with one more input, the scheduling variable. Problems:
-/// as above; 404 no such answer or one without a schedule; 422 rows that one program cannot follow.
+/// The schedule of an answer about an operating range: a program with one more input, the scheduling variable.
+/// Problems: as above; 404 no such answer or one without a schedule; 422 rows that one program cannot follow.
 std::variant<ControllerCode, Problem> schedule_code(const ResultSource& source, const CodeWords& words);
 
 }  // namespace tunewright::api

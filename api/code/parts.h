@@ -1,5 +1,5 @@
-// The two ends of a program: what may be asked of it (the parameters of the call, which are the options of the command),
-// and what it says of where it comes from.
+// The two ends of a program: what may be asked of it (the parameters of the call, which are the options of the
+// command), and what it says of where it comes from.
 #pragma once
 
 #include <optional>

@@ -2,7 +2,6 @@
 #include "api/contract/preview.h"
 #include "api/contract/product/product.h"
 #include "api/contract/range/range_result.h"
-#include "api/contract/range/range_result.h"
 #include "api/contract/relay.h"
 #include "api/contract/reports/frontier.h"
 #include "api/contract/request.h"

@@ -52,7 +52,7 @@ const ScheduleRow& leading_row(const Schedule& schedule);
 /// `law`: its rules and sample time; its gains are taken from the leading row. `named`: "level in cm", for the reader.
 /// Rows: times in seconds. Errors: those of pid_algorithm; unsupported for a velocity form, for a Kp that changes its
 /// sign, and for rows of which some have a filter and others none.
-Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid& law,
-                                      const CodeOptions& options, const std::string& named);
+Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid& law, const CodeOptions& options,
+                                      const std::string& named);
 
 }  // namespace tunewright::code

@@ -100,12 +100,13 @@ std::string example_argument(const Declaration& input) {
 }  // namespace
 
 std::string print_c(const Program& program, const Provenance& provenance) {
-    const std::vector<std::string> call{"Call, for each controller:",
-                                        "    tunewright_pid pid;",
-                                        "    tunewright_pid_init(&pid);",
-                                        "and then every Ts seconds:",
-                                        "    u = tunewright_pid_step(&pid, " + example_arguments(program, example_argument) + ");",
-                                        "Settings are fields of the struct: pid." + example_setting(program) + " = 2.0;"};
+    const std::vector<std::string> call{
+        "Call, for each controller:",
+        "    tunewright_pid pid;",
+        "    tunewright_pid_init(&pid);",
+        "and then every Ts seconds:",
+        "    u = tunewright_pid_step(&pid, " + example_arguments(program, example_argument) + ");",
+        "Settings are fields of the struct: pid." + example_setting(program) + " = 2.0;"};
     std::string head = "/*\n";
     for (const std::string& line : head_lines(program, provenance, call))
         head += line.empty() ? " *\n" : " * " + line + "\n";

@@ -147,7 +147,8 @@ std::vector<Declaration> of_role(const Program& program, Role role) {
 
 std::string example_setting(const Program& program) {
     const auto settings = of_role(program, Role::parameter);
-    return std::ranges::any_of(settings, [](const Declaration& setting) { return setting.name == "Kp"; }) ? "Kp" : "u_max";
+    return std::ranges::any_of(settings, [](const Declaration& setting) { return setting.name == "Kp"; }) ? "Kp"
+                                                                                                          : "u_max";
 }
 
 std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument) {

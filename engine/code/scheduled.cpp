@@ -17,10 +17,9 @@ struct FollowedSetting {
     const char* name;
     double ScheduleRow::*member;
 };
-constexpr std::array kFollowed = {
-    FollowedSetting{"Kp", &ScheduleRow::Kp}, FollowedSetting{"Ti", &ScheduleRow::Ti},
-    FollowedSetting{"Td", &ScheduleRow::Td}, FollowedSetting{"Tf", &ScheduleRow::Tf},
-    FollowedSetting{"b", &ScheduleRow::b}};
+constexpr std::array kFollowed = {FollowedSetting{"Kp", &ScheduleRow::Kp}, FollowedSetting{"Ti", &ScheduleRow::Ti},
+                                  FollowedSetting{"Td", &ScheduleRow::Td}, FollowedSetting{"Tf", &ScheduleRow::Tf},
+                                  FollowedSetting{"b", &ScheduleRow::b}};
 
 Expr variable_of(Role role, const char* name) { return Expr(Expression{Type::real, Place{role, name}}); }
 
@@ -41,9 +40,8 @@ public:
 private:
     /// Behind the measurement, before what belongs to manual.
     Expr declare_input() {
-        const Expr input = program_.declare({.role = Role::input,
-                                             .name = kSchedulingInput,
-                                             .comment = "the scheduling variable, as the rows have it"});
+        const Expr input = program_.declare(
+            {.role = Role::input, .name = kSchedulingInput, .comment = "the scheduling variable, as the rows have it"});
         auto& all = program_.variables;
         const auto after = std::ranges::find(all, std::string("measurement"), &Declaration::name) + 1;
         std::rotate(after, all.end() - 1, all.end());
@@ -73,17 +71,15 @@ private:
 
     void add_steps() {
         const double half = 0.5 * schedule_.hysteresis;
-        const Expr row = program_.declare({.role = Role::state,
-                                           .type = Type::integer,
-                                           .name = "schedule_row",
-                                           .comment = "the row in use, from 0"});
+        const Expr row = program_.declare(
+            {.role = Role::state, .type = Type::integer, .name = "schedule_row", .comment = "the row in use, from 0"});
         const std::size_t count = schedule_.rows.size();
         for (std::size_t k = 1; k < count; ++k)
-            body_.push_back(when(both(row < whole(int(k)), at_ > schedule_.rows[k].at + half),
-                                 {assign(row, whole(int(k)))}));
+            body_.push_back(
+                when(both(row<whole(int(k)), at_> schedule_.rows[k].at + half), {assign(row, whole(int(k)))}));
         for (std::size_t k = count - 1; k > 0; --k)
-            body_.push_back(when(both(row >= whole(int(k)), at_ < schedule_.rows[k].at - half),
-                                 {assign(row, whole(int(k) - 1))}));
+            body_.push_back(
+                when(both(row >= whole(int(k)), at_ < schedule_.rows[k].at - half), {assign(row, whole(int(k) - 1))}));
         const Block first = row_as_it_is(0);
         body_.insert(body_.end(), first.begin(), first.end());
         for (std::size_t k = 1; k < count; ++k) body_.push_back(when(row >= whole(int(k)), row_as_it_is(k)));
@@ -132,9 +128,8 @@ std::string how(const Schedule& schedule) {
 /// What the program cannot follow: it has one action, and a filter or none.
 std::optional<Error> row_fault(const Schedule& schedule) {
     const auto same = [&](auto property) {
-        return std::ranges::all_of(schedule.rows, [&](const ScheduleRow& row) {
-            return property(row) == property(schedule.rows.front());
-        });
+        return std::ranges::all_of(
+            schedule.rows, [&](const ScheduleRow& row) { return property(row) == property(schedule.rows.front()); });
     };
     if (!same([](const ScheduleRow& row) { return row.Kp < 0; }))
         return Error{ErrorKind::unsupported, "rows",
@@ -181,8 +176,9 @@ Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid
     Following(*program, schedule).add();
     for (std::string& note : program->notes)
         if (note.starts_with("Changes:"))
-            note = "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c "
-                   "only with a restart; the other settings are the schedule's.";
+            note =
+                "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c "
+                "only with a restart; the other settings are the schedule's.";
     program->notes.insert(program->notes.begin(), schedule_note(schedule, named));
     return program;
 }

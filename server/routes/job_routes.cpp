@@ -17,7 +17,6 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-
 Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
     return guarded([&] {
         const std::optional<JobView> view = jobs.find(id);

@@ -12,6 +12,7 @@ export function header(store: Store): HTMLElement {
     start: h("a", { href: "#/" }, "Start"),
     identify: h("a", { href: "#/identify" }, "Identify"),
     relay: h("a", { href: "#/relay" }, "Relay test"),
+    range: h("a", { href: "#/range" }, "Range"),
     design: h("a", { href: "#/", hidden: true }, "Design"),
     compare: h("a", { href: "#/", hidden: true }, "Compare"),
     jobs: h("a", { href: "#/jobs" }, "Jobs"),

@@ -7,6 +7,8 @@ export type Route =
   | { screen: "edit"; job: string }
   /** A recorded test: of that job, or the one at hand. */
   | { screen: "identify"; job: string | null }
+  /** An operating range: of an example, of that job, or what stands there. */
+  | { screen: "range"; example: string; job: string | null }
   | { screen: "relay"; plant: string; values: Record<string, string> }
   /** `values`: where its sliders stand, where that is not the proposal. */
   | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
@@ -36,6 +38,7 @@ export function parseRoute(hash: string): Route {
   if (parts[0] === "new" && parts[1]) return { screen: "new", plant: parts[1], values };
   if (parts[0] === "examples" && parts[1]) return { screen: "example", id: parts[1] };
   if (parts[0] === "identify") return { screen: "identify", job: null };
+  if (parts[0] === "range") return { screen: "range", example: parts[1] ?? "", job: null };
   if (parts[0] === "relay") return { screen: "relay", plant: parts[1] ?? "", values };
   if (parts[0] === "jobs" && !parts[1]) return { screen: "jobs", text: values["q"] ?? "" };
   if (parts[0] === "batches" && parts[1]) return { screen: "batch", id: parts[1], sort: values["sort"] ?? "" };
@@ -51,6 +54,7 @@ export function parseRoute(hash: string): Route {
       };
     }
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
+    if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
     const { entry, ...turned } = values;
     return {
@@ -76,6 +80,9 @@ export function formatRoute(route: Route): string {
     }
     case "identify":
       return route.job === null ? "#/identify" : `#/jobs/${encodeURIComponent(route.job)}/identify`;
+    case "range":
+      if (route.job !== null) return `#/jobs/${encodeURIComponent(route.job)}/range`;
+      return route.example === "" ? "#/range" : `#/range/${encodeURIComponent(route.example)}`;
     case "example":
       return `#/examples/${encodeURIComponent(route.id)}`;
     case "edit":

@@ -1,11 +1,13 @@
 // Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
 import { sentenceOf } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
+import { isRangeRequest } from "./api/range.ts";
 import type { Batch } from "./api/job_lists.ts";
-import type { FieldError, IdentifyRequest } from "./api/types.ts";
+import type { FieldError, IdentifyRequest, TuningRequest } from "./api/types.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
-import { formatRoute, parseRoute, showsJob } from "./routes.ts";
+import type { RangeView } from "./range/view.ts";
+import { addressOfJob, formatRoute, parseRoute, showsJob } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import { batchView } from "./views/batch.ts";
@@ -36,10 +38,11 @@ export function screens(
   let view: View | null = null;
   let start: StartView | null = null;
   let relay: RelayView | null = null;
+  let range: RangeView | null = null;
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
-      if (view && view !== start && view !== relay) view.dispose();
+      if (view && view !== start && view !== relay && view !== range) view.dispose();
       view = next;
       stage.replaceChildren(next.element);
       window.scrollTo(0, 0);
@@ -73,6 +76,20 @@ export function screens(
       },
     });
     return relay;
+  }
+
+  /** Kept as well, with the design that it shows; a file of its own, which most visits do not need. */
+  async function openRange(route: Extract<Route, { screen: "range" }>, focus: boolean): Promise<void> {
+    const { rangeView } = await import("./range/view.ts");
+    if (store.get().route !== route) return;
+    range ??= rangeView(announce, {
+      onExample(id) {
+        history.replaceState(null, "", formatRoute({ screen: "range", example: id, job: null }));
+      },
+      onJob: (request) => flow.tune(request as TuningRequest),
+    });
+    mount(range, "Range · Tunewright", focus);
+    range.open(route);
   }
 
   function openRecord(test: IdentifyRequest): void {
@@ -139,6 +156,9 @@ export function screens(
       if (route.screen === "edit") {
         const known = store.get().job;
         const job = known?.id === route.job && known.request ? known : await getJob(route.job);
+        // A range is changed on its own screen.
+        if (isRangeRequest(job.request))
+          return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
         if (job.request) form.load(job.request);
       }
       if (route.screen === "example") {
@@ -200,6 +220,7 @@ export function screens(
       mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
       return;
     }
+    if (route.screen === "range") return void openRange(route, !first);
     if (route.screen === "relay") {
       const screen = relayScreen();
       mount(screen, "Relay test · Tunewright", !first);
@@ -228,6 +249,9 @@ export function screens(
         "",
         formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn }),
       );
+    // A range has no league table.
+    if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))
+      return location.replace(addressOfJob(route.job, "design"));
     const name = workspace.job?.name || workspace.job?.request?.name;
     const screen = route.screen === "design" ? "Design" : "Compare";
     document.title = name ? `${name} · ${screen} · Tunewright` : `${screen} · Tunewright`;

@@ -69,7 +69,9 @@ Json test_record_schema(SchemaBook&) {
             {"required", {"kind", "t", "u", "y", "u0", "y0"}}};
 }
 
-const NonlinearRelayTest* relay_of(const range::PlaceTest& place) { return std::get_if<NonlinearRelayTest>(&place.test); }
+const NonlinearRelayTest* relay_of(const range::PlaceTest& place) {
+    return std::get_if<NonlinearRelayTest>(&place.test);
+}
 
 const Description<range::PlaceTest>& place_test_contract() {
     static const auto description = [] {
@@ -79,12 +81,10 @@ const Description<range::PlaceTest>& place_test_contract() {
         Description<P> d("RangeTest", "The test at one place.");
         d.field(
              "at", {}, [](const P& p, Writer& out) { out.number(p.rest.at); }, number_word, "The place.")
-            .field(
-                "u", {}, [](const P& p, Writer& out) { out.number(p.rest.u); }, number_word,
-                "The steady input there, absolute.", {.unit = "u"})
-            .field(
-                "y", {}, [](const P& p, Writer& out) { out.number(p.rest.y); }, number_word,
-                "The steady output there, absolute.", {.unit = "y"})
+            .field("u", {}, [](const P& p, Writer& out) { out.number(p.rest.u); }, number_word,
+                   "The steady input there, absolute.", {.unit = "u"})
+            .field("y", {}, [](const P& p, Writer& out) { out.number(p.rest.y); }, number_word,
+                   "The steady output there, absolute.", {.unit = "y"})
             .field("size", &P::size, only_answered(number()), "Of u, as used.", {.unit = "u"})
             .field("record", {}, write_test_record, test_record_schema,
                    "The test in deviations from rest, ready to be sent as a point's record.")

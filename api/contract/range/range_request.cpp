@@ -26,8 +26,9 @@ void check_point_source(const Json& value, GivenRangePoint&, Reader& reader) {
     if (plant && record)
         reader.fault_at("record", "record and plant are both given; a point has one of them. Remove one.");
     if (!plant && !record)
-        reader.fault("The point has neither plant nor record; give one, such as "
-                     "{\"at\": 30, \"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}}.");
+        reader.fault(
+            "The point has neither plant nor record; give one, such as "
+            "{\"at\": 30, \"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}}.");
 }
 
 const Description<GivenRangePoint>& range_point_contract() {
@@ -47,14 +48,17 @@ const Description<GivenRangePoint>& range_point_contract() {
 void check_range_source(const Json& value, RangeRequest&, Reader& reader) {
     const bool points = value.contains("points"), plant = value.contains("plant");
     if (points && plant)
-        reader.fault_at("plant", "plant and points are both given: equations know every place by themselves. Remove "
-                                 "one of them.");
+        reader.fault_at("plant",
+                        "plant and points are both given: equations know every place by themselves. Remove "
+                        "one of them.");
     if (!points && !plant)
-        reader.fault("points is missing; give two or more, such as [{\"at\": 30, \"plant\": \"4 e^(-4s)/(20s+1)\"}, "
-                     "{\"at\": 100, \"plant\": \"e^(-2s)/(8s+1)\"}], or equations as plant with a range.");
+        reader.fault(
+            "points is missing; give two or more, such as [{\"at\": 30, \"plant\": \"4 e^(-4s)/(20s+1)\"}, "
+            "{\"at\": 100, \"plant\": \"e^(-2s)/(8s+1)\"}], or equations as plant with a range.");
     if (plant && !value.contains("range"))
-        reader.fault_at("range", "range is missing; equations need the way through their steady states, such as "
-                                 "{\"along\": \"output\", \"from\": 10, \"to\": 40}.");
+        reader.fault_at("range",
+                        "range is missing; equations need the way through their steady states, such as "
+                        "{\"along\": \"output\", \"from\": 10, \"to\": 40}.");
     if (points && value.contains("range"))
         reader.fault_at("range", "range belongs to equations; points say themselves where they lie. Remove it.");
 }
@@ -160,10 +164,11 @@ const Description<GivenWay>& way_contract() {
                 if (way.along == parameter && !way.parameter)
                     reader.fault_at("parameter", "parameter is missing; along a parameter of the equations name it.");
                 if (way.along != parameter && way.parameter)
-                    reader.fault_at("parameter", "parameter belongs to along \"parameter\"; remove it, or choose that.");
+                    reader.fault_at("parameter",
+                                    "parameter belongs to along \"parameter\"; remove it, or choose that.");
                 if (!(way.from < way.to))
-                    reader.fault_at("to", "to is " + shown(way.to) + " and from " + shown(way.from) +
-                                              "; to must be > from.");
+                    reader.fault_at("to",
+                                    "to is " + shown(way.to) + " and from " + shown(way.from) + "; to must be > from.");
             });
         return d;
     }();
@@ -173,8 +178,9 @@ const Description<GivenWay>& way_contract() {
 void follow_way(RangeSubject& subject, Reader& reader) {
     const auto* equations = std::get_if<NonlinearPlant>(&*subject.plant);
     if (equations == nullptr)
-        return reader.fault_at("plant", "A range along steady states needs equations, a plant of type nonlinear. For "
-                                        "linear plants give points.");
+        return reader.fault_at("plant",
+                               "A range along steady states needs equations, a plant of type nonlinear. For "
+                               "linear plants give points.");
     const GivenWay& way = *subject.way;
     auto branch = range::SteadyBranch::follow({.plant = *equations,
                                                .along = way.along,
@@ -203,11 +209,13 @@ const Description<RangeRequest>& range_request_contract() {
                    "Plants or records, ascending in `at`; exactly one of points and plant.")
             .field("plant", &R::plant, maybe(plant_model_or_text()),
                    "Equations, with `range`; exactly one of points and plant.")
-            .field("range", &R::way, maybe(object(way_contract())), "Of equations: the way through their steady states.")
+            .field("range", &R::way, maybe(object(way_contract())),
+                   "Of equations: the way through their steady states.")
             .field("identify", &R::identify, object(identify_contract()), "How records become models.")
-            .field("uncertainty", &R::over_region, maybe(choice<bool>({{"none", false}, {"identified", true}})),
-                   "identified: limits hold over each record's 95 % confidence region, as they do for records where it is "
-                   "not given; none: on the models alone.")
+            .field(
+                "uncertainty", &R::over_region, maybe(choice<bool>({{"none", false}, {"identified", true}})),
+                "identified: limits hold over each record's 95 % confidence region, as they do for records where it is "
+                "not given; none: on the models alone.")
             .field("schedule", &R::schedule, object(schedule_wish_contract()),
                    "Limits, and how the controller moves between its rows.", {.no_default = true})
             .field("runs", &R::runs, boolean(), "With equations: simulate passages across the range.")
@@ -216,8 +224,7 @@ const Description<RangeRequest>& range_request_contract() {
             .field("priority", &R::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
                    "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
             .field("notify", &R::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.")
-            .refuse("record",
-                    "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
+            .refuse("record", "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
             .refuse("tune", "A range is designed by its own search; limits and kind of controller stand in schedule.")
             .check_presence(check_range_source)
             .check(check_range)
@@ -232,9 +239,8 @@ const Description<RangeRequest>& range_request_contract() {
 }
 
 bool is_range_request(const Json& request) {
-    return request.is_object() &&
-           (request.contains("points") || request.contains("range") || request.contains("scheduling") ||
-            request.contains("schedule"));
+    return request.is_object() && (request.contains("points") || request.contains("range") ||
+                                   request.contains("scheduling") || request.contains("schedule"));
 }
 
 }  // namespace tunewright::api

@@ -90,8 +90,7 @@ const Description<range::ScheduleDesign>& schedule_contract() {
             .field("within_allowance", &S::within_allowance, only_answered(boolean()),
                    "The IAE lies everywhere within the allowance of the place's own optimum.")
             .field(
-                "worst_relative_IAE", {},
-                [](const S& s, Writer& out) { out.number(s.worst_relative_IAE); },
+                "worst_relative_IAE", {}, [](const S& s, Writer& out) { out.number(s.worst_relative_IAE); },
                 [](SchemaBook&) {
                     return Json{{"type", {"number", "null"}}};
                 },

@@ -51,8 +51,8 @@ protected:
     std::vector<Warning> warnings_;
 };
 
-/// Every fault of the points' places, `where` = "points" or "points/k/at": fewer than 2 or more than 20, not finite, not
-/// ascending strictly.
+/// Every fault of the points' places, `where` = "points" or "points/k/at": fewer than 2 or more than 20, not finite,
+/// not ascending strictly.
 std::vector<Error> place_faults(const std::vector<double>& places);
 
 /// Models between given points. Points ascend strictly in `at`.

@@ -54,7 +54,8 @@ ScheduledRun run_of(LinearisingResponse response, const NonlinearSystem& system,
 
 Expected<LinearisingPassage> run_linearising(const SteadyBranch& branch, const Schedule& schedule,
                                              const Profile& profile, const RunOptions& options) {
-    if (branch.range().along == Along::parameter) return none("A parameter moves, which the nonlinear controller knows.");
+    if (branch.range().along == Along::parameter)
+        return none("A parameter moves, which the nonlinear controller knows.");
     if (profile.size() != 2 || profile[0].t != 0 || profile[1].t != 0)
         return none("It is run through single steps of the set point.");
     const auto start = rest_at(branch, profile.front().value);
@@ -64,11 +65,13 @@ Expected<LinearisingPassage> run_linearising(const SteadyBranch& branch, const S
     const auto degree = relative_degree(*system);
     if (!degree) return none(degree.error().message);
     if (!zero_dynamics(*system).stable)
-        return none("The plant's zero dynamics are unstable at the start: a controller that linearises it lets its "
-                    "states grow without bound.");
+        return none(
+            "The plant's zero dynamics are unstable at the start: a controller that linearises it lets its "
+            "states grow without bound.");
     const auto tau = slowest_loop(branch, schedule);
     if (!tau) return tau.error();
-    const TargetResponse target = target_of_poles(std::vector<std::complex<double>>(std::size_t(*degree), -*degree / *tau));
+    const TargetResponse target =
+        target_of_poles(std::vector<std::complex<double>>(std::size_t(*degree), -*degree / *tau));
     const RunControl control{.stop = options.stop, .progress = {}, .now_ms = {}};
     LinearisingResponse response =
         simulate_linearising(*system, target, profile.back().value - profile.front().value,

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "engine/range/equations/steady_branch.h"
 #include "engine/controller/schedule/schedule.h"
+#include "engine/range/equations/steady_branch.h"
 
 namespace tunewright::range {
 

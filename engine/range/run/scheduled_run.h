@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/range/equations/steady_branch.h"
 #include "engine/controller/schedule/schedule.h"
+#include "engine/range/equations/steady_branch.h"
 #include "engine/warning.h"
 
 namespace tunewright::range {

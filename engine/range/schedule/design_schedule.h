@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/controller/schedule/schedule.h"
 #include "engine/expected.h"
 #include "engine/range/one_setting.h"
 #include "engine/range/schedule/own_optima.h"
-#include "engine/controller/schedule/schedule.h"
 #include "engine/warning.h"
 
 namespace tunewright::range {

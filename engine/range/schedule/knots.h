@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "engine/range/schedule/own_optima.h"
 #include "engine/controller/schedule/schedule.h"
+#include "engine/range/schedule/own_optima.h"
 #include "engine/range/search/joint_search.h"
 
 namespace tunewright::range {

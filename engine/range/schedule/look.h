@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "engine/controller/schedule/schedule.h"
 #include "engine/expected.h"
 #include "engine/range/schedule/own_optima.h"
-#include "engine/controller/schedule/schedule.h"
 #include "engine/range/search/places.h"
 
 namespace tunewright::range {

@@ -76,13 +76,12 @@ private:
     bool stopped() const { return control_.stop.stop_requested(); }
 
     void tell(const char* message) const {
-        if (control_.progress)
-            control_.progress({.fraction = 1, .stage = "evaluate", .message = message, .best = {}});
+        if (control_.progress) control_.progress({.fraction = 1, .stage = "evaluate", .message = message, .best = {}});
     }
 
     bool has_records() const {
-        return std::ranges::any_of(
-            question_.points, [](const auto& point) { return std::holds_alternative<Record>(point.content); });
+        return std::ranges::any_of(question_.points,
+                                   [](const auto& point) { return std::holds_alternative<Record>(point.content); });
     }
 
     std::optional<Error> find_model() {
@@ -167,8 +166,7 @@ private:
             options.samples = kRunSamples;
             options.stop = control_.stop;
             RangePassage run{.passage = std::move(passage), .one = {}, .schedule = {}, .nonlinear = {}};
-            auto scheduled =
-                run_schedule(*question_.branch, design.schedule->schedule, run.passage.profile, options);
+            auto scheduled = run_schedule(*question_.branch, design.schedule->schedule, run.passage.profile, options);
             if (!scheduled) return scheduled.error();
             run.schedule = std::move(*scheduled);
             if (design.one) {
@@ -177,7 +175,8 @@ private:
                 if (!plain) return plain.error();
                 run.one = std::move(*plain);
             }
-            auto nonlinear = run_linearising(*question_.branch, design.schedule->schedule, run.passage.profile, options);
+            auto nonlinear =
+                run_linearising(*question_.branch, design.schedule->schedule, run.passage.profile, options);
             if (nonlinear)
                 run.nonlinear = std::move(*nonlinear);
             else

@@ -1,5 +1,5 @@
-// A loop over its whole operating range: points with their plants or records, or equations, in; one setting, a schedule,
-// their curves and their runs out.
+// A loop over its whole operating range: points with their plants or records, or equations, in; one setting, a
+// schedule, their curves and their runs out.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ struct RangeQuestion {
     bool over_region = false;  ///< limits hold over each record's 95 % confidence region
     range::RangeOptions options;
     std::vector<ScheduleRow> given;  ///< a schedule to judge in place of a design, ascending; empty: none
-    bool runs = true;                       ///< of equations: simulate passages across the range
+    bool runs = true;                ///< of equations: simulate passages across the range
 };
 
 /// The plant at a point of the range, and how it is known.

@@ -105,7 +105,8 @@ TEST(RangeJob, IsTheCallWithItsTermsAndTheSameForEverySpellingOfAPlant) {
     ASSERT_TRUE(std::holds_alternative<PreparedJob>(prepared));
     const auto& job = std::get<PreparedJob>(prepared);
     EXPECT_EQ(job.name, "TIC-7");
-    const JobOutcome outcome = run_job(job, {}), stored = run_job(StoredRequest{job.request_json, job.request_hash}, {});
+    const JobOutcome outcome = run_job(job, {}),
+                     stored = run_job(StoredRequest{job.request_json, job.request_hash}, {});
     ASSERT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     EXPECT_EQ(outcome.result_json, stored.result_json);
     EXPECT_EQ(outcome.method, "range");
@@ -185,18 +186,22 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"PointsOutOfOrder", "/points/1/at", "must ascend", [](Json& r) { r["points"][1]["at"] = 10; }},
         Refused{"AStructureOfItsOwn", "/points/1/plant", "differ in structure",
                 [](Json& r) { r["points"][1]["plant"] = "2 e^(-3s)/((12s+1)(2s+1))"; }},
-        Refused{"APointWithoutAPlant", "/points/2", "neither plant nor record", [](Json& r) { r["points"][2].erase("plant"); }},
-        Refused{"OnePointAlone", "/points", "2 to 20",
-                [](Json& r) { r["points"] = Json::array({r["points"][0]}); }},
+        Refused{"APointWithoutAPlant", "/points/2", "neither plant nor record",
+                [](Json& r) { r["points"][2].erase("plant"); }},
+        Refused{"OnePointAlone", "/points", "2 to 20", [](Json& r) { r["points"] = Json::array({r["points"][0]}); }},
         Refused{"PointsAndEquations", "/plant", "Remove one", [](Json& r) { r["plant"] = "1/(s+1)"; }},
-        Refused{"RegionWithoutRecords", "/uncertainty", "needs records", [](Json& r) { r["uncertainty"] = "identified"; }},
+        Refused{"RegionWithoutRecords", "/uncertainty", "needs records",
+                [](Json& r) { r["uncertainty"] = "identified"; }},
         Refused{"RowsOutOfOrder", "/schedule/given/1/at", "Sort them",
                 [](Json& r) {
                     r["schedule"]["given"] = {{{"at", 60}, {"Kp", 1}, {"Ti", 9}}, {{"at", 30}, {"Kp", 1}, {"Ti", 9}}};
                 }},
         Refused{"TooManyRows", "/schedule/rows", "<= 20", [](Json& r) { r["schedule"]["rows"] = 21; }},
         Refused{"AnUnknownParameter", "/range/parameter", "kk",
-                [](Json& r) { r["range"] = {{"along", "parameter"}, {"parameter", "kk"}, {"from", 1}, {"to", 2}}; }, true},
+                [](Json& r) {
+                    r["range"] = {{"along", "parameter"}, {"parameter", "kk"}, {"from", 1}, {"to", 2}};
+                },
+                true},
         Refused{"AnEmptyRange", "/range/to", "> from", [](Json& r) { r["range"]["to"] = 5; }, true},
         Refused{"EquationsWithoutARange", "/range", "range is missing", [](Json& r) { r.erase("range"); }, true},
         Refused{"BeyondTheInput", "/range/to", "limits", [](Json& r) { r["range"]["to"] = 200; }, true}),
@@ -218,17 +223,18 @@ TEST(RangeCall, ARecordThatIsNotIdentifiableNamesItsPoint) {
 }
 
 TEST(RangeCall, AFoldInTheRangeIsNamedWithItsPlace) {
-    const Json request = {{"plant",
-                           {{"type", "nonlinear"},
-                            {"states", {{"CA", 8.564}, {"T", 311.2}}},
-                            {"parameters", {{"k0", 34930800}, {"E", 11843}, {"Rg", 1.987}, {"CAf", 10}, {"Tf", 298},
-                                            {"J", 11.92}, {"UA", 0.3}}},
-                            {"equations", {{"CA", "CAf - CA - k0*exp(-E/(Rg*T))*CA"},
-                                           {"T", "Tf - T + J*k0*exp(-E/(Rg*T))*CA + UA*(Tc - T)"}}},
-                            {"input", {{"name", "Tc"}, {"nominal", 298}, {"min", 200}, {"max", 400}}},
-                            {"output", "T"},
-                            {"L", 0.02}}},
-                          {"range", {{"along", "input"}, {"from", 290}, {"to", 320}}}};
+    const Json request = {
+        {"plant",
+         {{"type", "nonlinear"},
+          {"states", {{"CA", 8.564}, {"T", 311.2}}},
+          {"parameters",
+           {{"k0", 34930800}, {"E", 11843}, {"Rg", 1.987}, {"CAf", 10}, {"Tf", 298}, {"J", 11.92}, {"UA", 0.3}}},
+          {"equations",
+           {{"CA", "CAf - CA - k0*exp(-E/(Rg*T))*CA"}, {"T", "Tf - T + J*k0*exp(-E/(Rg*T))*CA + UA*(Tc - T)"}}},
+          {"input", {{"name", "Tc"}, {"nominal", 298}, {"min", 200}, {"max", 400}}},
+          {"output", "T"},
+          {"L", 0.02}}},
+        {"range", {{"along", "input"}, {"from", 290}, {"to", 320}}}};
     const Answer answer = range_call(request.dump(), {});
     ASSERT_EQ(answer.status, 422) << answer.body;
     EXPECT_THAT(answer.body, HasSubstr("turn back at Tc"));

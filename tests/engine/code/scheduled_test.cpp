@@ -1,5 +1,5 @@
-// The program with a schedule: executed as it stands, beside the controller of reference.h with the settings of each call
-// interpolated here.
+// The program with a schedule: executed as it stands, beside the controller of reference.h with the settings of each
+// call interpolated here.
 #include "engine/code/algorithm.h"
 
 #include <gmock/gmock.h>
@@ -65,8 +65,7 @@ private:
 
 Gains gains_of(const ScheduleRow& row) { return {row.Kp, row.Kp / row.Ti, row.Kp * row.Td, row.b}; }
 
-constexpr Interpolation kAll[] = {Interpolation::steps, Interpolation::linear_in_gains,
-                                  Interpolation::linear_in_times};
+constexpr Interpolation kAll[] = {Interpolation::steps, Interpolation::linear_in_gains, Interpolation::linear_in_times};
 
 TEST(ScheduledProgram, ComputesTheLawWithTheSettingsOfThePlaceThroughLimitsAndManual) {
     for (const Interpolation how : kAll)

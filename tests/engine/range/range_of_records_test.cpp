@@ -37,8 +37,7 @@ RangeQuestion tests_of(unsigned seed, bool over_region) {
     RangeQuestion question;
     question.scheduling = {"load", "%"};
     question.over_region = over_region;
-    for (const double at : {10.0, 30.0, 50.0, 70.0, 90.0})
-        question.points.push_back({at, test_at(at, random)});
+    for (const double at : {10.0, 30.0, 50.0, 70.0, 90.0}) question.points.push_back({at, test_at(at, random)});
     return question;
 }
 
@@ -48,7 +47,9 @@ double worst_on_the_plant(const Schedule& schedule) {
     for (int i = 0; i < 200; ++i) {
         const double at = 10 + 80 * (i + 0.5) / 200;
         const Fopdt plant = plant_at(at);
-        const auto response = [&](range_tests::Complex s) { return plant.K * std::exp(-plant.L * s) / (1.0 + plant.T * s); };
+        const auto response = [&](range_tests::Complex s) {
+            return plant.K * std::exp(-plant.L * s) / (1.0 + plant.T * s);
+        };
         const auto peaks = range_tests::dense_peaks(response, settings_at(schedule, at), 1e-3, 1e2, 6000);
         EXPECT_TRUE(peaks.stable) << at;
         worst = std::max({worst, peaks.Ms, peaks.Mt});

@@ -24,6 +24,8 @@ export interface Outline extends JobFigures {
   excess_percent?: number | null;
   today?: JobFigures;
   error?: string;
+  /** Of a job about an operating range. */
+  range?: { scheduling: string; points: number; rows: number };
 }
 
 export interface ListedJob {

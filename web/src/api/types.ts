@@ -1,5 +1,6 @@
 // The part of the HTTP contract that the page uses. Quantities that are infinite or undefined are null; their object says why.
 import type { AsEntered, Implement, Implemented, SettingValue, Span } from "./products.ts";
+import type { RangeContent } from "./range.ts";
 import type { Reports } from "./reports.ts";
 
 export type WhyNull = Record<string, string>;
@@ -302,6 +303,8 @@ export interface Result {
   operating_point?: OperatingPoint;
   linear_model?: Plant;
   controllers: Entry[];
+  /** Of a job about an operating range, which has this in the place of controllers. */
+  range?: RangeContent;
   /** Over all entries: which to take. */
   verdict?: Finding[];
   ranking?: number[];

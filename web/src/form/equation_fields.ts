@@ -8,6 +8,8 @@ import type { Field } from "./controls.ts";
 import type { Control, FormErrors } from "./errors.ts";
 import { pointers, readEquations, SINGLE_FIELDS, writeEquations } from "./equations.ts";
 import type { EquationTexts, ParameterTexts, SingleField, StateTexts } from "./equations.ts";
+import { rowList } from "./row_list.ts";
+import type { Row } from "./row_list.ts";
 
 export interface EquationFields {
   element: HTMLElement;
@@ -19,13 +21,6 @@ export interface EquationFields {
   setUnits(units: UnitNames): void;
 }
 
-interface Row<Texts> {
-  element: HTMLElement;
-  first: HTMLElement;
-  texts(): Texts;
-  dispose(): void;
-}
-
 /** `active`: whether a request that is sent now is about these equations. */
 export function equationFields(errors: FormErrors, active: () => boolean, onChange: () => void): EquationFields {
   const own = (pointer: () => string) => (): string | null => (active() ? pointer() : null);
@@ -34,12 +29,14 @@ export function equationFields(errors: FormErrors, active: () => boolean, onChan
     "state",
     ["State", "Value near", "Its change over time"],
     onChange,
+    nameOf,
     (texts, rows) => stateRow(texts, errors, own, (row) => rows().indexOf(row)),
   );
   const parameters = rowList<ParameterTexts>(
     "parameter",
     ["Parameter", "Number or expression"],
     onChange,
+    nameOf,
     (texts, rows) => parameterRow(texts, errors, own, (row) => rows().indexOf(row)),
   );
   const element = h(
@@ -94,6 +91,9 @@ export function equationFields(errors: FormErrors, active: () => boolean, onChan
   };
 }
 
+/** What a row is called where it is taken away. */
+const nameOf = ({ name }: { name: string }): string => name || "without a name";
+
 type Own = (pointer: () => string) => () => string | null;
 
 function singleFields(errors: FormErrors, own: Own): Record<SingleField, Field<Control["input"]>> {
@@ -106,68 +106,6 @@ function singleFields(errors: FormErrors, own: Own): Record<SingleField, Field<C
     max: field("max", "Upper limit", "absolute; empty is none", "none"),
     output: field("output", "Output", "what is measured: a state or an expression"),
     L: field("L", "Dead time", "of the input; empty is 0", "0"),
-  };
-}
-
-interface RowList<Texts> {
-  element: HTMLElement;
-  texts(): Texts[];
-  show(texts: Texts[]): void;
-}
-
-/** Rows under a line of headings, with a button that adds one. Whoever takes a row away stands on the next one. */
-function rowList<Texts extends { name: string }>(
-  what: "state" | "parameter",
-  headings: string[],
-  onChange: () => void,
-  make: (texts: Texts | null, rows: () => Row<Texts>[]) => Row<Texts>,
-): RowList<Texts> {
-  let rows: Row<Texts>[] = [];
-  const list = h("div", { class: "rows" });
-  const head = h(
-    "div",
-    { class: `row-head ${what}-row`, "aria-hidden": "true" },
-    headings.map((text) => h("span", {}, text)),
-  );
-  const add = h(
-    "button",
-    { type: "button", class: "quiet", onclick: () => append(null).first.focus() },
-    `Add a ${what}`,
-  );
-
-  function append(texts: Texts | null): Row<Texts> {
-    const row = make(texts, () => rows);
-    const remove = h("button", { type: "button", class: "quiet remove", title: `Take this ${what} away` }, "×");
-    const name = (): void =>
-      remove.setAttribute("aria-label", `Remove ${what} ${row.texts().name || "without a name"}`);
-    remove.addEventListener("click", () => {
-      const index = rows.indexOf(row);
-      row.dispose();
-      row.element.remove();
-      rows = rows.filter((other) => other !== row);
-      head.hidden = rows.length === 0;
-      ((rows[index] ?? rows[index - 1])?.first ?? add).focus();
-      onChange();
-    });
-    row.element.addEventListener("input", name);
-    name();
-    row.element.append(remove);
-    list.append(row.element);
-    rows.push(row);
-    head.hidden = false;
-    return row;
-  }
-
-  return {
-    element: h("div", {}, head, list, add),
-    texts: () => rows.map((row) => row.texts()),
-    show(next) {
-      for (const row of rows) row.dispose();
-      rows = [];
-      list.replaceChildren();
-      head.hidden = true;
-      for (const texts of next) append(texts);
-    },
   };
 }
 

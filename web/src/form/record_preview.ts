@@ -14,6 +14,14 @@ const ROLES: Record<PreviewColumn["guess"], string> = {
 
 const SEPARATORS: Record<string, string> = { tab: "tabs", blanks: "blanks" };
 
+const LARGEST_BYTES = 8 * 1024 * 1024;
+
+/** Why a file cannot be sent; "" where it can. */
+export const tooLarge = ({ name, size }: File): string =>
+  size > LARGEST_BYTES
+    ? `${name} has ${(size / 1024 / 1024).toFixed(1)} MiB; 8 MiB is the most that can be sent. Cut the record to the test itself.`
+    : "";
+
 /** One sentence: rows, form, encoding, times. */
 export function formWords(preview: Preview): string {
   const form =

@@ -4,6 +4,7 @@ import { h, uniqueId } from "../dom.ts";
 export interface Tabs {
   element: HTMLElement;
   selected(): string;
+  select(id: string): void;
 }
 
 export function tabs(
@@ -51,5 +52,5 @@ export function tabs(
   }
 
   mark();
-  return { element: h("div", { class: "tabbed" }, bar, panel), selected: () => selected };
+  return { element: h("div", { class: "tabbed" }, bar, panel), selected: () => selected, select };
 }

@@ -23,6 +23,12 @@ export interface Plot {
 /** A point that is a handle was taken and moved to there, in the axes' units; `released`: it was let go. */
 export type OnDrag = (x: number, y: number, released: boolean) => void;
 
+/** Elements that stand on the drawing, over its upper left corner, and follow its layout. */
+export interface PlotHandles {
+  element: HTMLElement;
+  place(layout: Layout): void;
+}
+
 /** Says a sentence to those who cannot see the plot. */
 export type Announce = (sentence: string) => void;
 
@@ -33,7 +39,12 @@ const HANDLE_PX = 14;
 const TOUCH_PX = 28;
 const NAME_PX = 9;
 
-export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | null = null): Plot {
+export function createPlot(
+  first: Frame,
+  announce: Announce,
+  onDrag: OnDrag | null = null,
+  handles: PlotHandles | null = null,
+): Plot {
   let given = first;
   let other = false;
   const chosen = (): Frame => (other ? (given.alternative ?? given) : given);
@@ -103,6 +114,7 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
     { class: "card plot", "aria-labelledby": title.id },
     h("header", {}, title, legend, h("div", { class: "tools" }, resetButton, otherButton, tableButton, exportMenu)),
     description,
+    handles?.element ?? null,
     svg,
     h("p", { class: "keys", "aria-hidden": "true" }, "← → cursor   + − zoom   0 all   T table"),
     table,
@@ -118,6 +130,7 @@ export function createPlot(first: Frame, announce: Announce, onDrag: OnDrag | nu
     setAttribute(svg, "viewBox", `0 0 ${width} ${height}`);
     layout = layoutFrame(frame, width, height, view, held ? layout : null);
     write(drawLayout(frame, layout, clip));
+    handles?.place(layout);
     resetButton.hidden = view.x === null && view.y.every((range) => range === null);
     drawCursor();
   }

@@ -153,7 +153,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     if (workspace.jobTrouble) complain(workspace.jobTrouble);
     else trouble.hidden = true;
     title.show(job);
-    const result = job?.result && job.result.controllers.length > 0 ? job.result : null;
+    const result = job?.result && (job.result.controllers?.length ?? 0) > 0 ? job.result : null;
     progress.element.hidden = !job || isFinal(job.status);
     failure.hidden = !job || !isFinal(job.status) || result !== null;
     league.hidden = !job || !isFinal(job.status) || result === null;

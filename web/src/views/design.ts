@@ -1,4 +1,5 @@
 // Design: the verdict, the settings to enter, the figures and the plots of a job; its progress while it runs.
+import { isRangeRequest } from "../api/range.ts";
 import { isFinal } from "../api/types.ts";
 import type { Job, Result, TuningRequest } from "../api/types.ts";
 import { defaultDrawn, drawnEntries, entryNames } from "../charts/drawn.ts";
@@ -9,6 +10,8 @@ import { h } from "../dom.ts";
 import { withLambda } from "../form/tuning_request.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
+import { rangeJobCard } from "../range/job_result.ts";
+import { showRangeVerdict } from "../range/result_cards.ts";
 import { formatRoute } from "../routes.ts";
 import { shown } from "../store.ts";
 import type { Store, Workspace } from "../store.ts";
@@ -57,6 +60,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const title = titleCard("Design", announce, league, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
+  const range = rangeJobCard();
   const progress = progressCard(announce, () => void cancel());
   const settings = settingsCard(announce);
   let mainFigures: HTMLElement = h("div", {});
@@ -96,7 +100,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
   );
   const below = h("div", { class: "below" }, model, ...reportsAt("above"), notes, more);
-  const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element);
+  const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
   const element = h("main", { class: "design", id: "main" }, title.element, headRight);
   const bodyParts = [turned.controls, main, turned.front, aside, below];
 
@@ -210,11 +214,16 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     cures.show(job);
     if (!job) return;
     league.href = formatRoute({ screen: "compare", job: job.id, sort: workspace.sort, rows: workspace.drawn });
-    league.hidden = (job.result?.controllers.length ?? 0) < 2;
-    all.hidden = !league.hidden;
+    league.hidden = (job.result?.controllers?.length ?? 0) < 2;
+    all.hidden = !league.hidden || isRangeRequest(job.request);
+    range.element.hidden = !job.result?.range;
     finished = null;
     if (!isFinal(job.status)) {
       progress.show(job);
+    } else if (job.result?.range) {
+      showRangeVerdict(verdict, job.result.range);
+      range.show(job, job.result.range);
+      announce(verdict.textContent ?? "");
     } else if (job.result && job.result.controllers.length > 0) {
       finished = { job, result: job.result };
       showResult(job, job.result, workspace);

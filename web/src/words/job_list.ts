@@ -25,6 +25,7 @@ const shownFactor = (value: number): string => (value === 1 ? "" : formatParamet
 /** "2 e^(−3s)/(10s + 1)"; of plants without a short formula their kind. */
 export function shortPlant(outline: Outline | undefined): string {
   const plant = outline?.plant;
+  if (outline?.range) return rangeOutline(outline.range);
   if (!plant) return DASH;
   const below = denominator(plant);
   if (below === null || typeof plant["K"] !== "number")
@@ -32,6 +33,9 @@ export function shortPlant(outline: Outline | undefined): string {
   const delay = plant.L ? ` e^(−${shownFactor(plant.L)}s)` : "";
   return `${formatParameter(plant["K"])}${delay}${below === "" ? "" : `/${below}`}`;
 }
+
+const rangeOutline = ({ scheduling, points }: NonNullable<Outline["range"]>): string =>
+  `${points} points${scheduling ? ` over ${scheduling}` : ""}`;
 
 function denominator(plant: Plant): string | null {
   if (plant.type === "fopdt") return lag(plant["T"]);

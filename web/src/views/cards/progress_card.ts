@@ -11,6 +11,7 @@ export interface ProgressCard {
 const STAGES: Record<string, string> = {
   identify: "Finding a model",
   tune: "Searching for the best controller",
+  schedule: "Searching for the schedule",
   evaluate: "Computing the figures",
 };
 

@@ -7,7 +7,7 @@ import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { csvOf, recordFields } from "../../form/record_fields.ts";
 import type { Identify } from "../../form/record_fields.ts";
-import { previewPanel } from "../../form/record_preview.ts";
+import { previewPanel, tooLarge } from "../../form/record_preview.ts";
 import { recordText } from "../../form/record_text.ts";
 
 export interface RecordCard {
@@ -15,8 +15,6 @@ export interface RecordCard {
   read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
   load(record: RecordedTest, identify: Identify | undefined): void;
 }
-
-const LARGEST_BYTES = 8 * 1024 * 1024;
 
 export interface RecordCardEvents {
   /** Look at the record first: also what a file that arrives does. */
@@ -86,8 +84,9 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
 
   async function take(chosen: File | undefined): Promise<void> {
     if (!chosen) return;
-    if (chosen.size > LARGEST_BYTES) {
-      status.textContent = `${chosen.name} has ${(chosen.size / 1024 / 1024).toFixed(1)} MiB; 8 MiB is the most that can be sent. Cut the record to the test itself.`;
+    const large = tooLarge(chosen);
+    if (large) {
+      status.textContent = large;
       return;
     }
     errors.clear();

@@ -1,4 +1,5 @@
 // What a job is about: its name, its plant, and ways to go on from it. Head of every screen that shows a job.
+import { isRangeRequest } from "../../api/range.ts";
 import type { Job, Plant } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { Child } from "../../dom.ts";
@@ -6,6 +7,7 @@ import { plantFormula } from "../../form/formula.ts";
 import { formatRoute } from "../../routes.ts";
 import { unitNames } from "../../words/numbers.ts";
 import { plantTitle, plantWords } from "../../words/plant.ts";
+import { rangeWords } from "../../words/range.ts";
 import { reportLink } from "../report_link.ts";
 import { requestMenu } from "../request_menu.ts";
 
@@ -41,9 +43,12 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       const request = job.request;
       const plant = job.result?.model?.plant ?? request?.plant;
       heading.textContent = job.name || request?.name || screen;
-      plantLine.textContent = plant
-        ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
-        : "from a recorded test";
+      const range = isRangeRequest(request) ? request : null;
+      plantLine.textContent = range
+        ? rangeWords(range)
+        : plant
+          ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
+          : "from a recorded test";
       const shown = plant && !job.result?.model && hasFormulaOnly(plant) ? [plantFormula(plant, "div", true)] : [];
       formula.replaceChildren(...shown);
       formula.hidden = shown.length === 0;
@@ -51,7 +56,8 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       editLink.href = formatRoute({ screen: "edit", job: job.id });
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
-      report.show(job.result ? job.id : null);
+      // The service has no report of a range.
+      report.show(job.result && !range ? job.id : null);
     },
   };
 }

@@ -5,7 +5,7 @@ import { reasonOf } from "../../words/league.ts";
 import { withMinus } from "../../words/numbers.ts";
 
 /** The classes of the levels; a note looks like any text. */
-const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
+export const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
 
 /** Of results that were kept before the service had verdicts. */
 const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an older version: tune again for a verdict." };

@@ -1,0 +1,120 @@
+// Handles of a schedule's rows on a plot: each a slider along the axis, for the pointer, the finger and the keys.
+import type { RangeTraces, ScheduleRow } from "../api/range.ts";
+import { interpolate } from "../charts/rimc.ts";
+import { h, setAttribute } from "../dom.ts";
+import type { Layout, PaneBox } from "../plot/layout.ts";
+import type { PlotHandles } from "../plot/plot.ts";
+import { keyedPlace, reachOf } from "./schedule.ts";
+import type { Extent } from "./schedule.ts";
+
+export interface HandlesShown {
+  rows: readonly ScheduleRow[];
+  extent: Extent;
+  /** The curve that they ride on: of the first pane. */
+  curve: { at: readonly number[]; value: RangeTraces["Ms"] } | null;
+  /** What is heard of each. */
+  words(row: ScheduleRow, index: number): string;
+}
+
+export interface RangeHandles extends PlotHandles {
+  show(shown: HandlesShown): void;
+}
+
+export interface HandleEvents {
+  onHold(held: boolean): void;
+  /** A row was brought to that place, or nearer to it; `released`: it was let go, or moved by a key. */
+  onMove(index: number, at: number, released: boolean): void;
+}
+
+export function rangeHandles(events: HandleEvents): RangeHandles {
+  const layer = h("div", { class: "handles" });
+  let knobs: HTMLElement[] = [];
+  let shown: HandlesShown | null = null;
+  let box: PaneBox | null = null;
+  let taken: number | null = null;
+
+  const placeUnder = (event: PointerEvent): number =>
+    box!.x.toValue(event.clientX - layer.getBoundingClientRect().left);
+
+  function knobOf(index: number): HTMLElement {
+    const knob = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Handle of row ${index + 1}` });
+    knob.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0 || !box) return;
+      event.preventDefault();
+      knob.focus();
+      knob.setPointerCapture(event.pointerId);
+      taken = index;
+      events.onHold(true);
+    });
+    knob.addEventListener("pointermove", (event) => {
+      if (taken === index) events.onMove(index, placeUnder(event), false);
+    });
+    const release = (event: PointerEvent): void => {
+      if (taken !== index) return;
+      taken = null;
+      events.onHold(false);
+      // A touch that the browser takes away ends where the handle stands.
+      events.onMove(index, event.type === "pointerup" ? placeUnder(event) : shown!.rows[index]!.at, true);
+    };
+    knob.addEventListener("pointerup", release);
+    knob.addEventListener("pointercancel", release);
+    knob.addEventListener("keydown", (event) => {
+      const row = shown?.rows[index];
+      if (!row || event.ctrlKey || event.metaKey || event.altKey) return;
+      const to = keyedPlace(
+        event.key,
+        event.shiftKey,
+        row.at,
+        reachOf(shown!.rows, index, shown!.extent),
+        shown!.extent,
+      );
+      if (to === null) return;
+      event.preventDefault();
+      events.onMove(index, to, true);
+    });
+    return knob;
+  }
+
+  /** On the curve; where that is not known, or out of sight, at the edge. */
+  function heightOf(row: ScheduleRow): number {
+    const at = shown?.curve ? interpolate(shown.curve.at, shown.curve.value, row.at) : null;
+    const y = at === null ? box!.top : box!.y.toPixel(at);
+    return Math.min(box!.top + box!.height, Math.max(box!.top, y));
+  }
+
+  function arrange(): void {
+    if (!shown || !box) return;
+    const at = box;
+    shown.rows.forEach((row, index) => {
+      const knob = knobs[index]!;
+      const x = at.x.toPixel(row.at);
+      knob.hidden = x < at.left - 1 || x > at.left + at.width + 1;
+      knob.style.left = `${x}px`;
+      knob.style.top = `${heightOf(row)}px`;
+    });
+  }
+
+  return {
+    element: layer,
+    place(layout: Layout) {
+      box = layout.boxes[0] ?? null;
+      arrange();
+    },
+    show(next) {
+      shown = next;
+      if (knobs.length !== next.rows.length) {
+        knobs = next.rows.map((_, index) => knobOf(index));
+        layer.replaceChildren(...knobs);
+      }
+      next.rows.forEach((row, index) => {
+        const knob = knobs[index]!;
+        const [lo, hi] = reachOf(next.rows, index, next.extent);
+        setAttribute(knob, "aria-valuemin", String(lo));
+        setAttribute(knob, "aria-valuemax", String(hi));
+        setAttribute(knob, "aria-valuenow", String(row.at));
+        setAttribute(knob, "aria-valuetext", next.words(row, index));
+      });
+      arrange();
+    },
+  };
+}

@@ -1,0 +1,75 @@
+// A job about an operating range, on the job's screen: its schedule as a table and the way to its own screen.
+import type { RangeContent } from "../api/range.ts";
+import type { Job } from "../api/types.ts";
+import { h, uniqueId } from "../dom.ts";
+import { formatRoute } from "../routes.ts";
+import { formatSetting, unitNames, withUnit } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
+import { counted, interpolationWords, settingHead, settingsOfOne, settingWords } from "../words/range.ts";
+
+const SETTINGS = ["Kp", "Ti", "Td", "Tf", "b"] as const;
+
+export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: RangeContent): void } {
+  const title = h("h2", { id: uniqueId("range-job") });
+  const body = h("div", { class: "stack" });
+  const element = h("section", { class: "card range-job", "aria-labelledby": title.id, hidden: true }, title, body);
+  return {
+    element,
+    show(job, content) {
+      const units = unitNames(job.request?.units);
+      const { schedule, one, why_null } = content;
+      title.textContent = schedule ? `Schedule: ${counted(schedule.rows.length, "row")}` : "No schedule";
+      body.replaceChildren(
+        ...(job.result?.partial
+          ? [h("p", { class: "hint" }, "Stopped early: the best that was found until then.")]
+          : []),
+        ...(schedule
+          ? [
+              h("p", { class: "hint" }, `Between the rows: ${interpolationWords(schedule.interpolation)}.`),
+              rowsTable(content, units),
+            ]
+          : [h("p", {}, why_null?.["schedule"] ?? "")]),
+        ...(one ? [h("p", {}, `One setting for all of it: ${settingWords(settingsOfOne(one), units)}.`)] : []),
+        h(
+          "p",
+          { class: "actions" },
+          h("a", { href: formatRoute({ screen: "range", example: "", job: job.id }) }, "Open in Range"),
+          h("span", { class: "hint" }, "curves over the range, rows to move, runs"),
+        ),
+      );
+    },
+  };
+}
+
+function rowsTable({ schedule, scheduling }: RangeContent, units: UnitNames): HTMLElement {
+  const head = [
+    withUnit(scheduling.name || "at", scheduling.unit ?? ""),
+    ...SETTINGS.map((name) => settingHead(name, units)),
+  ];
+  const rows = schedule!.rows.map((row) =>
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, formatSetting(row.at)),
+      SETTINGS.map((name) => h("td", {}, formatSetting(row[name]))),
+    ),
+  );
+  return h(
+    "div",
+    { class: "scroll", role: "region", "aria-label": "Rows of the schedule", tabindex: 0 },
+    h(
+      "table",
+      { class: "figures" },
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          head.map((text) => h("th", { scope: "col" }, text)),
+        ),
+      ),
+      h("tbody", {}, rows),
+    ),
+  );
+}

@@ -1,0 +1,156 @@
+// What a range's design shows: verdict, plots with the rows as handles, schedule, one setting, runs, points. A row that
+// is moved is answered while it moves.
+import type { RangeContent, RangeRequest } from "../api/range.ts";
+import { plantFrame, robustnessFrame, settingsFrame } from "../charts/range.ts";
+import type { RangeShown } from "../charts/range.ts";
+import { h } from "../dom.ts";
+import { plotGrid } from "../plot/grid.ts";
+import { createPlot } from "../plot/plot.ts";
+import type { Plot } from "../plot/plot.ts";
+import { unitNames } from "../words/numbers.ts";
+import { handOn } from "./hand.ts";
+import { rangeHandles } from "./handles.ts";
+import { resultCards, showRangeVerdict } from "./result_cards.ts";
+import { runsCard } from "./runs_card.ts";
+import { handleWords } from "./schedule.ts";
+import { scheduleCard } from "./schedule_card.ts";
+
+export interface RangeResultView {
+  element: HTMLElement;
+  show(request: RangeRequest, content: RangeContent): void;
+  /** The verdict as it stands, to be spoken. */
+  sentence(): string;
+  clear(): void;
+  dispose(): void;
+}
+
+/** `onAsked`: the curves that are shown were asked by this. */
+export function rangeResult(
+  announce: (sentence: string) => void,
+  onAsked: (request: RangeRequest | null) => void,
+): RangeResultView {
+  let about: RangeRequest = {};
+  let first: Plot | null = null;
+  let held = false;
+  const cards = resultCards();
+  const hand = handOn({
+    onRows: follow,
+    onCurves(settled) {
+      draw();
+      showMoving();
+      // What is not under the eye waits until the hand lets go.
+      if (!settled || held) return;
+      showCards();
+      announce(sentence());
+    },
+    onBusy: (busy) => element.toggleAttribute("data-follows", busy),
+    onError: (error) => schedule.complain(error),
+  });
+  const handles = rangeHandles({
+    onHold(now) {
+      held = now;
+      first?.hold(now);
+      plots.hold(now);
+    },
+    onMove: hand.move,
+  });
+  const schedule = scheduleCard({ onChange: hand.change, onBack: hand.back });
+  const plots = plotGrid(announce);
+  const runs = runsCard(announce, hand.runAgain);
+  const slot = h("div", { class: "range-first" });
+  const element = h(
+    "div",
+    { class: "range-results", hidden: true },
+    cards.verdict,
+    slot,
+    h("div", { class: "range-cards" }, schedule.element, cards.one),
+    plots.element,
+    runs.element,
+    cards.points,
+    cards.warnings,
+  );
+
+  function drawn(): RangeShown {
+    const { designed, moved } = hand.shown()!;
+    return {
+      designed,
+      moved,
+      rows: hand.rows(),
+      Ms: about.schedule?.Ms ?? DEFAULT_MS,
+      allowance: about.schedule?.allowance ?? DEFAULT_ALLOWANCE,
+      units: unitNames(about.units),
+    };
+  }
+
+  function draw(): void {
+    const shown = drawn();
+    showHandles(shown);
+    const frame = robustnessFrame(shown);
+    if (first) first.update(frame);
+    else {
+      first = createPlot(frame, announce, null, handles);
+      first.element.classList.add("tall");
+      slot.replaceChildren(first.element);
+    }
+    plots.show("settings", settingsFrame(shown));
+    plots.show("plant", plantFrame(shown));
+  }
+
+  function showHandles(shown: RangeShown): void {
+    const { curves, scheduling } = shown.moved ?? shown.designed;
+    handles.show({
+      rows: shown.rows,
+      extent: scheduling,
+      curve: curves.schedule ? { at: curves.at, value: curves.schedule.Ms } : null,
+      words: (row, index) => handleWords(row, index, shown),
+    });
+  }
+
+  /** At once, before the answer: the handle, its line, its place in the table. */
+  function follow(): void {
+    const shown = drawn();
+    showHandles(shown);
+    first?.update(robustnessFrame(shown));
+    schedule.follow(shown.rows);
+  }
+
+  function showMoving(): void {
+    const { designed, moved, rows, units } = drawn();
+    showRangeVerdict(cards.verdict, moved ?? designed);
+    schedule.show(moved ?? designed, rows, moved !== null, units);
+  }
+
+  function showCards(): void {
+    const { designed, moved, units } = drawn();
+    cards.show(designed, moved, units);
+    const parameter = about.range?.along === "parameter" ? (about.range.parameter ?? null) : null;
+    runs.show(designed, moved, parameter, units);
+    onAsked(hand.asked());
+  }
+
+  const sentence = (): string => cards.verdict.textContent ?? "";
+
+  return {
+    element,
+    show(request, content) {
+      about = request;
+      element.hidden = false;
+      hand.start(request, content);
+      draw();
+      showMoving();
+      showCards();
+    },
+    sentence,
+    clear() {
+      element.hidden = true;
+    },
+    dispose() {
+      first?.dispose();
+      plots.dispose();
+      runs.dispose();
+    },
+  };
+}
+
+const DEFAULT_MS = 1.4;
+const DEFAULT_ALLOWANCE = 0.05;

@@ -1,0 +1,91 @@
+// The runs of equations across their range: one passage at a time, by the schedule and by one setting.
+import type { RangeContent, RangePassage } from "../api/range.ts";
+import { passageFrame } from "../charts/range.ts";
+import { h, uniqueId } from "../dom.ts";
+import { choiceField } from "../form/controls.ts";
+import { FormErrors } from "../form/errors.ts";
+import { plotGrid } from "../plot/grid.ts";
+import { swatch } from "../plot/marks.ts";
+import { withMinus } from "../words/numbers.ts";
+import type { UnitNames } from "../words/numbers.ts";
+import { runFacts } from "../words/range.ts";
+
+export interface RunsCard {
+  element: HTMLElement;
+  /** Of moved rows the runs are those of the last time they were made; `parameter`: what moves, if it is one. */
+  show(designed: RangeContent, moved: RangeContent | null, parameter: string | null, units: UnitNames): void;
+  dispose(): void;
+}
+
+export function runsCard(announce: (sentence: string) => void, onAgain: () => void): RunsCard {
+  const title = h("h2", { id: uniqueId("runs") }, "Across the range, on the equations");
+  const choice = choiceField({ label: "Run", choices: [], pointer: () => null }, new FormErrors());
+  const facts = h("div", { class: "scroll", role: "region", "aria-label": "Figures of the run", tabindex: 0 });
+  const again = h("button", { type: "button", onclick: () => onAgain() }, "Run the rows as they stand");
+  const old = h(
+    "div",
+    { class: "trouble", hidden: true },
+    h("p", {}, "The rows were moved; these runs are still the design's."),
+    h("p", { class: "actions" }, again),
+  );
+  const notes = h("ul", { class: "notes quiet-notes" });
+  const plots = plotGrid(announce);
+  const element = h(
+    "section",
+    { class: "card range-runs", "aria-labelledby": title.id, hidden: true },
+    h("div", { class: "stack" }, title, choice.element, old, facts, notes),
+    plots.element,
+  );
+  let passages: RangePassage[] = [];
+  let about: { parameter: string | null; units: UnitNames } = { parameter: null, units: { time: "s", u: "", y: "" } };
+
+  function draw(): void {
+    const passage = passages[Number(choice.input.value) || 0];
+    plots.show("run", passage ? passageFrame(passage, about.parameter, about.units) : null);
+    if (!passage) return;
+    const [schedule, one] = [runFacts(passage.schedule, about.units), runFacts(passage.one, about.units)];
+    const head = (name: string, look: 1 | 2): HTMLElement => h("th", { scope: "col" }, swatch(look), name);
+    const remarks = (passage.schedule?.warnings ?? []).map((remark) => h("li", {}, withMinus(remark.detail)));
+    notes.replaceChildren(...remarks);
+    facts.replaceChildren(
+      h(
+        "table",
+        { class: "figures" },
+        h("thead", {}, h("tr", {}, h("td", {}), head("schedule", 1), passage.one ? head("one setting", 2) : null)),
+        h(
+          "tbody",
+          {},
+          schedule.map(([name, value], index) =>
+            h(
+              "tr",
+              {},
+              h("th", { scope: "row" }, name),
+              h("td", {}, value),
+              passage.one ? h("td", {}, one[index]![1]) : null,
+            ),
+          ),
+        ),
+      ),
+    );
+  }
+
+  choice.input.addEventListener("change", draw);
+  return {
+    element,
+    show(designed, moved, parameter, units) {
+      about = { parameter, units };
+      const base = designed.runs ?? [];
+      // Of moved rows there is no run with one setting: that stays the design's.
+      passages = moved?.runs
+        ? moved.runs.map((run) => ({ ...run, one: base.find(({ name }) => name === run.name)?.one ?? null }))
+        : base;
+      element.hidden = passages.length === 0;
+      old.hidden = !moved || moved.runs !== undefined;
+      const names = passages.map(({ name }) => name);
+      if (names.join() !== [...choice.input.options].map((option) => option.text).join())
+        choice.input.replaceChildren(...names.map((name, index) => h("option", { value: index }, name)));
+      draw();
+    },
+    dispose: plots.dispose,
+  };
+}

@@ -1,0 +1,88 @@
+// A schedule in the hand: where its rows may go, what is asked while one moves, and what is said of it. No DOM.
+import type { RangeContent, RangeRequest, ScheduleRow } from "../api/range.ts";
+import { formatNumber } from "../words/numbers.ts";
+import { placeWords } from "../words/range.ts";
+
+/** The least distance of two rows, as a part of the range. */
+const APART = 0.005;
+
+export interface Extent {
+  from: number;
+  to: number;
+}
+
+/** Where a row may stand: within the range, between its neighbours. */
+export function reachOf(rows: readonly ScheduleRow[], index: number, { from, to }: Extent): [number, number] {
+  const gap = APART * (to - from);
+  const before = rows[index - 1];
+  const after = rows[index + 1];
+  return [before ? before.at + gap : from, after ? after.at - gap : to];
+}
+
+/** No more digits than a hand can set. */
+const settable = (at: number, { from, to }: Extent): number => {
+  const decimals = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(to - from))));
+  return Number(at.toFixed(decimals));
+};
+
+/** The rows with one of them at another place, or as near to it as its neighbours let it; its settings stay. */
+export function movedRow(rows: readonly ScheduleRow[], index: number, at: number, extent: Extent): ScheduleRow[] {
+  const [lo, hi] = reachOf(rows, index, extent);
+  const place = Math.min(hi, Math.max(lo, settable(at, extent)));
+  return rows.map((row, other) => (other === index ? { ...row, at: place } : row));
+}
+
+/** Steps of the keys: an arrow, and Shift with it or a page. */
+const STEP = 0.005;
+const FAR_STEP = 0.05;
+
+/** Where a key takes a handle; null: it is none of its keys. */
+export function keyedPlace(
+  key: string,
+  shift: boolean,
+  at: number,
+  reach: [number, number],
+  { from, to }: Extent,
+): number | null {
+  const arrow = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[key];
+  const page = { PageUp: 1, PageDown: -1 }[key];
+  if (key === "Home") return reach[0];
+  if (key === "End") return reach[1];
+  if (page) return at + page * FAR_STEP * (to - from);
+  return arrow ? at + arrow * (shift ? FAR_STEP : STEP) * (to - from) : null;
+}
+
+export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean =>
+  JSON.stringify(a) === JSON.stringify(b);
+
+/** The question that follows a hand. Records have found their models: these are asked about, except where limits hold
+    over what each record leaves open. */
+export function givenRequest(
+  request: RangeRequest,
+  designed: RangeContent,
+  rows: ScheduleRow[],
+  runs: boolean,
+): RangeRequest {
+  const { rows: _rows, ...schedule } = request.schedule ?? {};
+  const asked: RangeRequest = { ...request, schedule: { ...schedule, given: rows }, runs };
+  if (!request.points || request.uncertainty === "identified") return asked;
+  const { identify: _identify, ...known } = asked;
+  const points = request.points.map((point, index) =>
+    point.record ? { at: point.at, plant: designed.points[index]!.plant } : point,
+  );
+  return { ...known, points };
+}
+
+/** What a design says of one setting stays; the schedule and its curves are those of the rows in the hand. */
+export interface ShownRange {
+  designed: RangeContent;
+  /** Of the rows that were moved; null: none was. */
+  moved: RangeContent | null;
+}
+
+/** What is heard of a handle. */
+export function handleWords(row: ScheduleRow, index: number, { designed, moved }: ShownRange): string {
+  const worst = (moved ?? designed).worst.schedule?.find((place) => place.quantity === "Ms");
+  const Ms = worst ? `, largest Ms ${formatNumber(worst.value)}` : "";
+  return `Row ${index + 1} at ${placeWords(row.at, designed.scheduling, 5)}, Kp ${formatNumber(row.Kp)}${Ms}`;
+}

@@ -1,0 +1,111 @@
+// What an operating range comes to, in words: how its schedule stands, its settings, its points, its runs.
+import type { OneSetting, RangeContent, RangeRequest, RangeRun, Schedule, WorstPlace } from "../api/range.ts";
+import type { Finding } from "../api/types.ts";
+import { DASH, formatNumber, formatSetting, product, quotient, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+
+export const INTERPOLATIONS = [
+  ["linear_in_gains", "linear in Kp, 1/Ti, Td"],
+  ["linear_in_times", "linear in Kp, Ti, Td"],
+  ["steps", "steps with hysteresis"],
+] as const;
+
+export const interpolationWords = (id: string): string => INTERPOLATIONS.find(([known]) => known === id)?.[1] ?? id;
+
+/** A place with the name and the unit of what it is of: "load 60 %"; of a variable without a name the number. */
+export function placeWords(at: number, { name, unit }: RangeContent["scheduling"], digits = 3): string {
+  const named = name === "" || name === "at" ? "" : `${name} `;
+  return `${named}${formatSetting(Number(at.toPrecision(digits)))}${unit ? ` ${unit}` : ""}`;
+}
+
+export const counted = (count: number, what: string): string => `${count} ${what}${count === 1 ? "" : "s"}`;
+
+type Settings = Pick<OneSetting["controller"], "Kp" | "Ti" | "Td"> & { Tf?: number | null };
+
+export const settingsOfOne = ({ controller }: OneSetting): Settings => ({
+  Kp: controller.Kp,
+  Ti: controller.Ti,
+  Td: controller.Td,
+  Tf: controller.filter?.Tf ?? 0,
+});
+
+/** Heading and unit of a setting's column. */
+export function settingHead(name: string, units: UnitNames): string {
+  if (name === "Kp") return withUnit(name, quotient(units.u, units.y));
+  return name === "b" ? name : withUnit(name, units.time);
+}
+
+/** "Kp 0.451, Ti 9.1 s, Td 1.2 s": a zero derivative is none. */
+export function settingWords(settings: Settings, units: UnitNames): string {
+  const times = (["Ti", "Td", "Tf"] as const).flatMap((name) =>
+    settings[name] ? [`${name} ${formatSetting(settings[name])} ${units.time}`] : [],
+  );
+  return [`Kp ${formatSetting(settings.Kp)}`, ...times].join(", ");
+}
+
+/** A schedule that was moved by hand has no verdict of the service: how it stands is said from what it answers. */
+export function handVerdict(schedule: Schedule): Finding {
+  const rows = counted(schedule.rows.length, "row");
+  const IAE = schedule.worst_relative_IAE;
+  if (!schedule.holds_limits)
+    return {
+      code: "hand-exceeds",
+      level: "bad",
+      text: `With these ${rows} the limits do not hold everywhere in the range.`,
+    };
+  const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each place's own optimum.`;
+  return schedule.within_allowance
+    ? {
+        code: "hand-holds",
+        level: "good",
+        text: `These ${rows} hold the limits everywhere, within the allowance.${cost}`,
+      }
+    : {
+        code: "hand-costs",
+        level: "warning",
+        text: `These ${rows} hold the limits, but cost more than the allowance.${cost}`,
+      };
+}
+
+export function verdictOf(content: RangeContent): Finding {
+  if (content.verdict) return content.verdict;
+  if (content.schedule) return handVerdict(content.schedule);
+  return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range." };
+}
+
+const QUANTITIES: Record<WorstPlace["quantity"], string> = {
+  Ms: "Ms",
+  Mt: "Mt",
+  relative_IAE: "IAE over the own optimum",
+};
+
+/** "Ms is largest at load 30 %: 1.40, limit 1.40." */
+export function worstWords(places: WorstPlace[] | undefined, scheduling: RangeContent["scheduling"]): string[] {
+  return (places ?? []).map(
+    ({ quantity, at, value, limit }) =>
+      `${QUANTITIES[quantity]} is largest at ${placeWords(at, scheduling)}: ${formatNumber(value)}, limit ${formatNumber(limit)}.`,
+  );
+}
+
+/** What a range's job is about, for its head. */
+export function rangeWords(request: RangeRequest): string {
+  const { name, unit } = request.scheduling ?? {};
+  const over = name ? ` over ${withUnit(name, unit ?? "")}` : "";
+  if (request.points) return `operating range${over}: ${counted(request.points.length, "point")}`;
+  const way = request.range;
+  return way ? `operating range${over} of equations, ${way.from} to ${way.to}` : `operating range${over}`;
+}
+
+/** Figures of a run, by name. */
+export function runFacts(run: RangeRun | null | undefined, units: UnitNames): [string, string][] {
+  const value = (figure: number | undefined): string => (run ? formatNumber(figure) : DASH);
+  const yes = (is: boolean | undefined): string => (run ? (is ? "yes" : "no") : DASH);
+  return [
+    [withUnit("IAE", product(units.y, units.time)), value(run?.IAE)],
+    [withUnit("Largest error", units.y), value(run?.largest_error)],
+    [withUnit("Largest bump", units.u), value(run?.largest_bump)],
+    ["Switches", run ? String(run.switches) : DASH],
+    ["Met a limit", yes(run?.limited)],
+    ["Settled", run?.ended ? `ended early: ${run.ended}` : yes(run?.settled)],
+  ];
+}

@@ -142,7 +142,7 @@ test("files of recorded tests become points; faults stand at their rows", async 
     await page.getByText("2 problems to fix").waitFor();
     await cell(page, "Place").nth(0).fill("30");
     await cell(page, "Place").nth(1).fill("100");
-    await page.getByLabel("Hold the limits for every model").check();
+    assert.ok(await page.getByLabel("Hold the limits for every model").isChecked());
     const asked = answered(page);
     await page.getByRole("button", { name: "Design", exact: true }).click();
     const sent = (await asked).request().postDataJSON();
@@ -150,6 +150,13 @@ test("files of recorded tests become points; faults stand at their rows", async 
     assert.ok(sent.points[0].record.csv.startsWith("t,u,y"));
     await verdict(page).waitFor();
     assert.match(await page.getByRole("region", { name: "Figures at each point" }).innerText(), /fit 100 %|fit 99/);
+    // Under the hand the models answer, then the records for themselves.
+    const quick = answered(page, (request) => request.schedule.given && request.points[0].plant);
+    const whole = answered(page, (request) => request.schedule.given && request.points[0].record);
+    await handle(page, 1).focus();
+    await page.keyboard.press("ArrowRight");
+    await Promise.all([quick, whole]);
+    await page.getByRole("heading", { name: "Schedule, moved by hand" }).waitFor();
   });
 });
 

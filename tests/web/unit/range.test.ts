@@ -8,7 +8,14 @@ import type { RangeTexts } from "../../../web/src/range/request.ts";
 import { givenRequest, handleWords, keyedPlace, movedRow, reachOf } from "../../../web/src/range/schedule.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
-import { handVerdict, placeWords, rangeWords, settingWords, worstWords } from "../../../web/src/words/range.ts";
+import {
+  handVerdict,
+  placeWords,
+  rangeWords,
+  runFacts,
+  settingWords,
+  worstWords,
+} from "../../../web/src/words/range.ts";
 
 const units = unitNames({ time: "s", u: "%", y: "degC" });
 const fopdt = (K: number, T: number, L: number) => ({ type: "fopdt", K, T, L });
@@ -90,6 +97,10 @@ test("records are read in one way for all rows, and only with them limits hold o
   const { request } = read(texts, parts);
   assert.deepEqual(request.points![0], { at: 30, record: { csv: "t,u,y", time_unit: "min" } });
   assert.deepEqual([request.uncertainty, request.identify], ["identified", { model: "fopdt" }]);
+  // The service's own default is no part of what is sent.
+  texts.terms.identified = false;
+  assert.equal(read(texts, parts).request.uncertainty, "none");
+  assert.equal(textsOf(loads).terms.identified, true);
   assert.deepEqual(
     atSharedFields([
       { pointer: "/points/1/record/columns/u", detail: "No such column." },
@@ -192,16 +203,20 @@ test("while a hand moves a row the schedule is given, records stand for the mode
     ...loads,
     points: [{ at: 30, record: { csv: "t,u,y" } }, loads.points![1]!],
     identify: { model: "auto" },
+    uncertainty: "none",
     schedule: { Ms: 1.4, rows: 2 },
   };
-  const asked = givenRequest(request, content, rows, false);
+  const asked = givenRequest(request, content, rows, { runs: false, quick: false });
   assert.deepEqual(asked.schedule, { Ms: 1.4, given: rows });
   assert.deepEqual(
     [asked.points![0], asked.identify, asked.runs],
     [{ at: 30, plant: fopdt(4, 20, 4) }, undefined, false],
   );
-  const region = givenRequest({ ...request, uncertainty: "identified" }, content, rows, false);
-  assert.deepEqual(region.points, request.points);
+  // Over what they leave open they are asked about themselves, but not under the hand.
+  const region = { ...request, uncertainty: "identified" };
+  assert.deepEqual(givenRequest(region, content, rows, { runs: false, quick: false }).points, request.points);
+  const quick = givenRequest(region, content, rows, { runs: false, quick: true });
+  assert.deepEqual([quick.points, quick.uncertainty], [asked.points, undefined]);
 });
 
 test("the plots show the design with its limits, then the moved rows beside the one setting of the design", () => {
@@ -252,6 +267,12 @@ test("a run shows the target with y, or a parameter of its own; a run that ended
   assert.deepEqual(names(null), [["schedule", "set point"], ["schedule"], ["schedule"]]);
   assert.deepEqual(names("c"), [["schedule"], ["c"], ["schedule"], ["schedule"]]);
   assert.deepEqual(passageFrame(passage, null, units).panes[0]!.traces[0]!.x, [0, 1]);
+  // A nonlinear controller runs beside it; it has no gain to draw.
+  const nonlinear = { y: [1, 2, 2], u: [1, 1, 1], tau: 3, IAE: 0.5, limited: false, settled: true };
+  const beside = passageFrame({ ...passage, nonlinear }, null, units).panes.map((pane) => pane.traces.length);
+  assert.deepEqual(beside, [3, 2, 1]);
+  assert.deepEqual(runFacts(nonlinear, units)[0], ["IAE (°C s)", "0.500"]);
+  assert.deepEqual(runFacts(nonlinear, units)[3], ["Switches", "–"]);
 });
 
 test("places, settings and verdicts in words", () => {

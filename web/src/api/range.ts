@@ -125,6 +125,17 @@ export interface RangeRun {
   warnings?: Notice[];
 }
 
+/** By a nonlinear controller that knows the equations. */
+export interface NonlinearRun {
+  y: Column;
+  u: Column;
+  tau: number;
+  IAE: number;
+  limited: boolean;
+  settled: boolean;
+  ended?: string;
+}
+
 export interface RangePassage {
   name: string;
   horizon: number;
@@ -132,6 +143,8 @@ export interface RangePassage {
   target: Column;
   one?: RangeRun | null;
   schedule?: RangeRun | null;
+  nonlinear?: NonlinearRun | null;
+  why_null?: WhyNull;
 }
 
 export interface RangeContent {

@@ -1,6 +1,6 @@
 // What an operating range looks like over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over
 // time.
-import type { Column, RangeContent, RangePassage, RangeTraces, ScheduleRow } from "../api/range.ts";
+import type { Column, RangeContent, RangePassage, RangeRun, RangeTraces, ScheduleRow } from "../api/range.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
 import { formatNumber, quotient, withUnit } from "../words/numbers.ts";
@@ -165,16 +165,23 @@ export function plantFrame(shown: RangeShown): Frame | null {
   };
 }
 
-/** A passage across the range: the output with its target, the input, the gain in use. `parameter`: what moves is one. */
-export function passageFrame(passage: RangePassage, parameter: string | null, units: UnitNames): Frame {
+/** What ran a passage, each with its name and look; a nonlinear controller has no gain. */
+export function runsOf(passage: RangePassage): { name: string; look: 1 | 2 | 3; run: Partial<RangeRun> }[] {
   const runs = [
     { name: "schedule", look: 1 as const, run: passage.schedule },
     { name: "one setting", look: 2 as const, run: passage.one },
+    { name: "nonlinear", look: 3 as const, run: passage.nonlinear },
   ];
+  return runs.flatMap(({ name, look, run }) => (run ? [{ name, look, run }] : []));
+}
+
+/** A passage across the range: the output with its target, the input, the gain in use. `parameter`: what moves is one. */
+export function passageFrame(passage: RangePassage, parameter: string | null, units: UnitNames): Frame {
   const traces = (signal: "y" | "u" | "Kp"): Trace[] =>
-    runs.flatMap(({ name, look, run }) =>
-      run ? [{ name, look, x: passage.t.slice(0, run[signal].length), y: run[signal] }] : [],
-    );
+    runsOf(passage).flatMap(({ name, look, run }) => {
+      const values = run[signal];
+      return values ? [{ name, look, x: passage.t.slice(0, values.length), y: values }] : [];
+    });
   const target: Trace = { name: parameter ?? "set point", look: "data", x: passage.t, y: passage.target };
   return {
     title: `Run: ${passage.name}`,

@@ -2,7 +2,7 @@
 import { latest } from "../api/latest.ts";
 import { designRange } from "../api/range.ts";
 import type { RangeContent, RangeRequest, ScheduleRow } from "../api/range.ts";
-import { givenRequest, movedRow, sameRows } from "./schedule.ts";
+import { givenRequest, movedRow, overRegion, sameRows } from "./schedule.ts";
 import type { ShownRange } from "./schedule.ts";
 
 export interface Hand {
@@ -53,7 +53,13 @@ export function handOn(events: HandEvents): Hand {
   });
 
   function ask(settled: boolean, runs = false): void {
-    if (design) calls.send({ request: givenRequest(design.request, design.content, rows, runs), settled });
+    if (!design) return;
+    const { request, content } = design;
+    const send = (quick: boolean, last: boolean): void =>
+      calls.send({ request: givenRequest(request, content, rows, { runs: runs && !quick, quick }), settled: last });
+    const later = settled && overRegion(request);
+    if (later || !settled) send(true, false);
+    if (settled) send(false, true);
   }
 
   function restore(): void {

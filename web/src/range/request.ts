@@ -133,7 +133,8 @@ export function readRange(texts: RangeTexts, parts: ReadParts): { request: Range
     request.range = readWay(texts.way, errors);
   }
   if (withRecords) request.identify = parts.records.identify;
-  if (withRecords && texts.terms.identified) request.uncertainty = "identified";
+  // Said either way: the service has a default of its own.
+  if (withRecords) request.uncertainty = texts.terms.identified ? "identified" : "none";
   request.schedule = { ...kept, ...readTerms(texts.terms, errors) };
   return { request, errors };
 }
@@ -199,7 +200,7 @@ export function textsOf(request: RangeRequest): RangeTexts {
       interpolation: interpolation ?? "linear_in_gains",
       rows: written(rows, ""),
       allowance: plainSetting(100 * share),
-      identified: uncertainty === "identified",
+      identified: uncertainty !== "none",
     },
     rest: { ...others, ...(Object.keys(kept).length > 0 ? { schedule: kept } : {}) },
   };

@@ -1,6 +1,6 @@
 // The runs of equations across their range: one passage at a time, by the schedule and by one setting.
 import type { RangeContent, RangePassage } from "../api/range.ts";
-import { passageFrame } from "../charts/range.ts";
+import { passageFrame, runsOf } from "../charts/range.ts";
 import { h, uniqueId } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -16,6 +16,9 @@ export interface RunsCard {
   show(designed: RangeContent, moved: RangeContent | null, parameter: string | null, units: UnitNames): void;
   dispose(): void;
 }
+
+const NONLINEAR =
+  "The nonlinear controller knows the equations and their states: what the schedule lacks to it is the most that any controller could add.";
 
 export function runsCard(announce: (sentence: string) => void, onAgain: () => void): RunsCard {
   const title = h("h2", { id: uniqueId("runs") }, "Across the range, on the equations");
@@ -43,25 +46,34 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
     const passage = passages[Number(choice.input.value) || 0];
     plots.show("run", passage ? passageFrame(passage, about.parameter, about.units) : null);
     if (!passage) return;
-    const [schedule, one] = [runFacts(passage.schedule, about.units), runFacts(passage.one, about.units)];
-    const head = (name: string, look: 1 | 2): HTMLElement => h("th", { scope: "col" }, swatch(look), name);
-    const remarks = (passage.schedule?.warnings ?? []).map((remark) => h("li", {}, withMinus(remark.detail)));
-    notes.replaceChildren(...remarks);
+    const runs = runsOf(passage);
+    const remarks = (passage.schedule?.warnings ?? []).map((remark) => withMinus(remark.detail));
+    if (passage.nonlinear) remarks.push(NONLINEAR);
+    notes.replaceChildren(...remarks.map((text) => h("li", {}, text)));
+    const columns = runs.map(({ run }) => runFacts(run, about.units));
     facts.replaceChildren(
       h(
         "table",
         { class: "figures" },
-        h("thead", {}, h("tr", {}, h("td", {}), head("schedule", 1), passage.one ? head("one setting", 2) : null)),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("td", {}),
+            runs.map(({ name, look }) => h("th", { scope: "col" }, swatch(look), name)),
+          ),
+        ),
         h(
           "tbody",
           {},
-          schedule.map(([name, value], index) =>
+          (columns[0] ?? []).map(([name], row) =>
             h(
               "tr",
               {},
               h("th", { scope: "row" }, name),
-              h("td", {}, value),
-              passage.one ? h("td", {}, one[index]![1]) : null,
+              columns.map((column) => h("td", {}, column[row]![1])),
             ),
           ),
         ),

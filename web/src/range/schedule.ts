@@ -55,18 +55,21 @@ export function keyedPlace(
 export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean =>
   JSON.stringify(a) === JSON.stringify(b);
 
-/** The question that follows a hand. Records have found their models: these are asked about, except where limits hold
-    over what each record leaves open. */
+/** Whether limits hold over what each record leaves open, which takes longer than a hand waits. */
+export const overRegion = ({ points, uncertainty }: RangeRequest): boolean =>
+  uncertainty !== "none" && Boolean(points?.some((point) => point.record));
+
+/** The question about given rows. `quick`: of records the models that they gave are asked about, as a hand needs it. */
 export function givenRequest(
   request: RangeRequest,
   designed: RangeContent,
   rows: ScheduleRow[],
-  runs: boolean,
+  { runs, quick }: { runs: boolean; quick: boolean },
 ): RangeRequest {
   const { rows: _rows, ...schedule } = request.schedule ?? {};
   const asked: RangeRequest = { ...request, schedule: { ...schedule, given: rows }, runs };
-  if (!request.points || request.uncertainty === "identified") return asked;
-  const { identify: _identify, ...known } = asked;
+  if (!request.points || (overRegion(request) && !quick)) return asked;
+  const { identify: _identify, uncertainty: _uncertainty, ...known } = asked;
   const points = request.points.map((point, index) =>
     point.record ? { at: point.at, plant: designed.points[index]!.plant } : point,
   );

@@ -96,16 +96,15 @@ export function rangeWords(request: RangeRequest): string {
   return way ? `operating range${over} of equations, ${way.from} to ${way.to}` : `operating range${over}`;
 }
 
-/** Figures of a run, by name. */
-export function runFacts(run: RangeRun | null | undefined, units: UnitNames): [string, string][] {
-  const value = (figure: number | undefined): string => (run ? formatNumber(figure) : DASH);
-  const yes = (is: boolean | undefined): string => (run ? (is ? "yes" : "no") : DASH);
+/** Figures of a run, by name; what it has not is a dash. */
+export function runFacts(run: Partial<RangeRun>, units: UnitNames): [string, string][] {
+  const yes = (is: boolean | undefined): string => (is === undefined ? DASH : is ? "yes" : "no");
   return [
-    [withUnit("IAE", product(units.y, units.time)), value(run?.IAE)],
-    [withUnit("Largest error", units.y), value(run?.largest_error)],
-    [withUnit("Largest bump", units.u), value(run?.largest_bump)],
-    ["Switches", run ? String(run.switches) : DASH],
-    ["Met a limit", yes(run?.limited)],
-    ["Settled", run?.ended ? `ended early: ${run.ended}` : yes(run?.settled)],
+    [withUnit("IAE", product(units.y, units.time)), formatNumber(run.IAE)],
+    [withUnit("Largest error", units.y), formatNumber(run.largest_error)],
+    [withUnit("Largest bump", units.u), formatNumber(run.largest_bump)],
+    ["Switches", run.switches === undefined ? DASH : String(run.switches)],
+    ["Met a limit", yes(run.limited)],
+    ["Settled", run.ended ? `ended early: ${run.ended}` : yes(run.settled)],
   ];
 }

@@ -1,6 +1,7 @@
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/product/product.h"
+#include "api/contract/range/range_request.h"
 #include "api/contract/range/range_result.h"
 #include "api/contract/relay.h"
 #include "api/contract/reports/frontier.h"

@@ -44,6 +44,8 @@ Html robustness_section(const ReportSubject& subject);
 Html plant_section(const ReportSubject& subject);
 Html method_section(const ReportSubject& subject);
 Html assumptions_section(const ReportSubject& subject);
+/// All that a report says of an operating range but its head and its request.
+Html range_sections(const ReportSubject& subject);
 /// The request whole, as a file to take out, as text and as a command. `origin`: of the service.
 Html request_section(const Json& request, const std::string& origin);
 

@@ -3,6 +3,7 @@
 #include "api/embed/files.h"
 #include "api/json/digest.h"
 #include "api/report/figures.h"
+#include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
@@ -12,14 +13,18 @@ const std::string& stylesheet() {
     return text;
 }
 
-Html head_of(const ReportSubject& subject, const ReportWords& words, const std::string& title) {
-    std::string line = text_at(subject.entry.at("title"));
-    if (line.empty()) line = text_at(subject.entry.at("method"));
+std::string method_of(const ReportSubject& subject) {
+    const std::string title = text_at(subject.entry.at("title"));
+    return "Controller settings by: " + (title.empty() ? text_at(subject.entry.at("method")) : title);
+}
+
+Html head_of(const ReportSubject& subject, const ReportWords& words, const std::string& title,
+             const std::string& about) {
     std::string origin;
     for (const auto& [name, value] :
          {std::pair{"Date ", words.date}, {"job ", words.job}, {"Tunewright ", text_at(subject.result.at("version"))}})
         if (!value.empty()) origin += (origin.empty() ? "" : " · ") + std::string(name) + value;
-    Html out = element("h1", title) + element("p", "Controller settings by: " + line) + element("p", origin);
+    Html out = element("h1", title) + element("p", about) + element("p", origin);
     const std::string hash = text_at(subject.result.at("request_hash"));
     if (!hash.empty()) out += element("p", "Request " + hash, {{"class", "hash"}});
     return element("header", out);
@@ -45,27 +50,58 @@ std::string page(const std::string& title, const Html& body) {
            "\n";
 }
 
+/// What a whole job in the source says counts where the caller says nothing.
+ReportWords said_of(const ChosenEntry& found, const ReportWords& words) {
+    return {.job = words.job.empty() ? found.job : words.job,
+            .name = words.name.empty() ? found.name : words.name,
+            .date = words.date.empty() ? found.date : words.date,
+            .origin = words.origin};
+}
+
+std::string title_of(const ReportSubject& subject, const ReportWords& said) {
+    const std::string name = said.name.empty() ? text_at(subject.request.at("name")) : said.name;
+    return name.empty() ? "Tuning report" : name + ": tuning report";
+}
+
+bool is_of_range(const Json& result) {
+    return result.is_object() && result.contains("range") && result["range"].is_object();
+}
+
+std::string range_report(ChosenEntry& found, const ReportWords& words) {
+    const ReportWords said = said_of(found, words);
+    const Json document = document_of(found);
+    const ReportSubject subject = subject_of_range(document);
+    const std::string title = title_of(subject, said);
+    const Place scheduling = subject.entry.at("scheduling");
+    const auto end = [&](const char* name) { return tunewright::text(scheduling.at(name).value().get<double>(), 6); };
+    const std::string about = "Operating range: " + text_at(scheduling.at("name")) + " from " + end("from") + " to " +
+                              end("to") + " " + text_at(scheduling.at("unit"));
+    return page(title, head_of(subject, said, title, about) + range_sections(subject) + signatures() +
+                           request_section(document.at("request"), said.origin));
+}
+
 }  // namespace
 
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words) try {
+    if (index.empty()) {
+        ChosenEntry range;
+        if (auto problem = read_result(source, range)) return *std::move(problem);
+        if (is_of_range(range.result)) return range_report(range, words);
+    }
     auto chosen = choose_entry(source, index);
     if (auto* problem = std::get_if<Problem>(&chosen)) return std::move(*problem);
     auto& found = std::get<ChosenEntry>(chosen);
     const std::size_t number = index.empty() ? best_proposal(found) : found.index;
-    const ReportWords said{.job = words.job.empty() ? found.job : words.job,
-                           .name = words.name.empty() ? found.name : words.name,
-                           .date = words.date.empty() ? found.date : words.date,
-                           .origin = words.origin};
+    const ReportWords said = said_of(found, words);
     const Json document = document_of(found);
     const ReportSubject subject = subject_of(document, number);
-
-    const std::string name = said.name.empty() ? text_at(subject.request.at("name")) : said.name;
-    const std::string title = name.empty() ? "Tuning report" : name + ": tuning report";
-    return page(title, head_of(subject, said, title) + verdict_section(subject) + settings_section(subject) +
-                           figures_section(subject) + responses_section(subject) + robustness_section(subject) +
-                           plant_section(subject) + method_section(subject) + assumptions_section(subject) +
-                           signatures() + request_section(document.at("request"), said.origin));
+    const std::string title = title_of(subject, said);
+    return page(title, head_of(subject, said, title, method_of(subject)) + verdict_section(subject) +
+                           settings_section(subject) + figures_section(subject) + responses_section(subject) +
+                           robustness_section(subject) + plant_section(subject) + method_section(subject) +
+                           assumptions_section(subject) + signatures() +
+                           request_section(document.at("request"), said.origin));
 } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
     return not_a_result();
 }

@@ -21,6 +21,7 @@ struct ReportWords {
     std::string origin;  ///< where the service answers, "http://host:8080"
 };
 
+/// Of a controller, or of an operating range where the source answers about one and `index` is "".
 /// HTML without scripts, well formed as XML. `index`: number of the controller in the result; "" for the first of the
 /// ranking that is not today's. 404 where there is no such controller, or it has none; 400 and 422 for texts that are
 /// no JSON.

@@ -38,25 +38,41 @@ std::vector<double> numbers_at(const Place& place) {
     return out;
 }
 
-ReportSubject subject_of(const Json& document, std::size_t index) {
+namespace {
+
+ReportSubject subject_at(const Json& document, std::string_view part) {
     const Place root{document, ""}, result = root.at("result");
-    const Place controllers = result.at("controllers");
     Json units = result.at("units").value();
     if (!units.is_object()) units = root.at("request").at("units").value();
-    ReportSubject subject{.result = result,
-                          .request = root.at("request"),
-                          .entry = controllers.at(index),
+    return {.result = result,
+            .request = root.at("request"),
+            .entry = result.at(part),
+            .today = {},
+            .time = label(units, "time", "s"),
+            .u = label(units, "u", ""),
+            .y = label(units, "y", "")};
+}
+
+}  // namespace
+
+ReportSubject subject_of(const Json& document, std::size_t index) {
+    const ReportSubject all = subject_at(document, "controllers");
+    ReportSubject subject{.result = all.result,
+                          .request = all.request,
+                          .entry = all.entry.at(index),
                           .today = {},
-                          .time = label(units, "time", "s"),
-                          .u = label(units, "u", ""),
-                          .y = label(units, "y", "")};
-    for (std::size_t i = 0; i < controllers.value().size(); ++i) {
-        const Place other = controllers.at(i);
+                          .time = all.time,
+                          .u = all.u,
+                          .y = all.y};
+    for (std::size_t i = 0; i < all.entry.value().size(); ++i) {
+        const Place other = all.entry.at(i);
         if (i != index && text_at(other.at("method")) == "baseline" && other.at("controller").exists())
             subject.today.emplace(other);
     }
     return subject;
 }
+
+ReportSubject subject_of_range(const Json& document) { return subject_at(document, "range"); }
 
 std::size_t best_proposal(const ChosenEntry& found) {
     const Json& controllers = found.result.at("controllers");

@@ -40,6 +40,9 @@ struct ReportSubject {
 /// Of the document's controller number `index`.
 ReportSubject subject_of(const Json& document, std::size_t index);
 
+/// Of the document's operating range, which is the entry then.
+ReportSubject subject_of_range(const Json& document);
+
 /// The first of the ranking that is not what runs today; that, where it stands alone.
 std::size_t best_proposal(const ChosenEntry& found);
 

@@ -1,6 +1,7 @@
 // POST /v1/range and jobs about a range: answers against the document and each other.
 #include <gmock/gmock.h>
 
+#include "api/report/report.h"
 #include "tests/api/support.h"
 
 namespace tunewright::api {
@@ -116,6 +117,22 @@ TEST(RangeJob, IsTheCallWithItsTermsAndTheSameForEverySpellingOfAPlant) {
     EXPECT_EQ(result["range"]["schedule"], answered(three_loads())["range"]["schedule"]);
     request["points"][1]["plant"] = {{"type", "fopdt"}, {"K", 2}, {"T", 12}, {"L", 3}};
     EXPECT_EQ(std::get<PreparedJob>(prepare_job(request.dump())).request_hash, job.request_hash);
+}
+
+TEST(RangeJob, HasAReportWithItsSettingsRunsAndRequest) {
+    const auto prepared = std::get<PreparedJob>(prepare_job(cone().dump()));
+    const JobOutcome outcome = run_job(prepared, {});
+    const Json range = Json::parse(outcome.result_json)["range"];
+    const auto report = report_html({outcome.result_json, prepared.request_json}, "", {.name = "cone"});
+    ASSERT_TRUE(std::holds_alternative<std::string>(report));
+    const std::string& page = std::get<std::string>(report);
+    EXPECT_THAT(page, HasSubstr("cone: tuning report"));
+    EXPECT_THAT(page, HasSubstr(range["verdict"]["text"].get<std::string>()));
+    for (std::size_t k = 0; k < range["schedule"]["rows"].size(); ++k)
+        EXPECT_THAT(page, HasSubstr("data-at=\"/result/range/schedule/rows/" + std::to_string(k) + "/Kp\""));
+    EXPECT_THAT(page, HasSubstr("Nonlinear controller"));
+    EXPECT_THAT(page, HasSubstr("<pre id=\"request\">"));
+    EXPECT_TRUE(std::holds_alternative<Problem>(report_html({outcome.result_json}, "0", {})));
 }
 
 TEST(RangeJob, TellsItsProgressAndKeepsTheBestSoFarWhenItIsStopped) {

@@ -197,7 +197,7 @@ test("a design that takes long can be stopped, and asked for again", async () =>
   });
 });
 
-test("a range as a job shows its schedule, has no report and no league table, and opens in Range without another design", async () => {
+test("a range as a job shows its schedule and its report, has no league table, and opens in Range without another design", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();
     await page.getByRole("button", { name: "Send as a job" }).click();
@@ -205,7 +205,10 @@ test("a range as a job shows its schedule, has no report and no league table, an
     const { id, result } = await jobOf(page);
     assert.equal(await page.getByRole("region", { name: "Verdict" }).innerText(), result.range.verdict.text);
     assert.equal(await page.locator(".range-job tbody tr").count(), result.range.schedule.rows.length);
-    assert.equal(await page.getByRole("link", { name: "Report" }).count(), 0);
+    const [report] = await Promise.all([page.waitForEvent("popup"), page.getByRole("link", { name: "Report" }).click()]);
+    await report.getByRole("heading", { name: "Over the range" }).waitFor();
+    assert.equal(await report.getByText(result.range.verdict.text).count(), 1);
+    await report.close();
     assert.deepEqual(await accessibilityViolations(page), []);
     await page.getByRole("link", { name: "Compare", exact: true }).click();
     await page.waitForURL(/\/design$/);

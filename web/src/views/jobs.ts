@@ -122,7 +122,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     const list: HTMLElement[] = [
       h("a", { href: formatRoute({ screen: "edit", job: job.id }), "aria-label": `Duplicate ${name}` }, "Duplicate"),
     ];
-    if (job.status === "succeeded" && !job.outline?.range) {
+    if (job.status === "succeeded") {
       const report = reportLink();
       report.show(job.id);
       report.element.setAttribute("aria-label", `Report of ${name}`);

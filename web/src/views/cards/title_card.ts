@@ -56,8 +56,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       editLink.href = formatRoute({ screen: "edit", job: job.id });
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
-      // The service has no report of a range.
-      report.show(job.result && !range ? job.id : null);
+      report.show(job.result ? job.id : null);
     },
   };
 }

@@ -123,7 +123,8 @@ Html curves_of(const ReportSubject& s) {
         add_curve(plot, curves, curves.at(member), "Plant", Line::second);
         out += drawn(plot);
     }
-    return section("Over the range", out + element("p", text_at(s.entry.at("stated"))));
+    return section("Over the range",
+                   element("div", out, {{"class", "figures"}}) + element("p", text_at(s.entry.at("stated"))));
 }
 
 Html points_of(const ReportSubject& s) {
@@ -144,7 +145,7 @@ Html points_of(const ReportSubject& s) {
 }
 
 Html run_of(const Place& run, const ReportSubject& s) {
-    Html out = element("h3", text_at(run.at("name")));
+    Html drawings;
     for (const auto& [signal, unit] : {std::pair{"y", s.y}, std::pair{"u", s.u}}) {
         Plot plot{.title = signal, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
         for (const auto& [member, name, line] :
@@ -161,9 +162,9 @@ Html run_of(const Place& run, const ReportSubject& s) {
                                    .line = Line::setpoint,
                                    .x = numbers_at(run.at("t")),
                                    .y = numbers_at(run.at("target"))});
-        out += drawn(plot);
+        drawings += drawn(plot);
     }
-    return out;
+    return element("h3", text_at(run.at("name"))) + element("div", drawings, {{"class", "figures"}});
 }
 
 Html runs_of(const ReportSubject& s) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/range/range_plants.h"
@@ -95,6 +97,39 @@ TEST(ScheduledRun, PassesTheWholeRangeWithLessErrorThanOneSetting) {
         const double allowed = passage.name == "step down" ? 1.05 : 1.0;
         EXPECT_LT(with->IAE, allowed * without->IAE) << passage.name;
     }
+}
+
+TEST(LinearisingRun, IsTheFirstOrderLagOfItsTimeBehindTheDeadTime) {
+    NonlinearPlant tank = conical_tank(20);  // another level than the start's: the law begins where the run does
+    tank.input.min = -1e6;
+    tank.input.max = 1e6;
+    const auto branch = SteadyBranch::follow({.plant = tank, .along = Along::output, .from = 10, .to = 32});
+    ASSERT_TRUE(branch);
+    const Schedule schedule = tank_schedule(Interpolation::linear_in_gains);
+    const auto passage = run_linearising(*branch, schedule, {{0, 12}, {0, 15}}, {.horizon = 60, .samples = 241});
+    ASSERT_TRUE(passage) << passage.error().message;
+    // K of the tank is 2 sqrt(h)/c: the slowest row in closed form.
+    double tau = 0;
+    for (const ScheduleRow& row : schedule.rows) tau = std::max(tau, row.Ti / (row.Kp * 2 * std::sqrt(row.at) / 40));
+    EXPECT_NEAR(passage->tau, tau, 1e-6 * tau);
+    const double L = 2;
+    for (std::size_t k = 0; k < passage->run.t.size(); ++k) {
+        const double t = passage->run.t[k];
+        EXPECT_NEAR(passage->run.y[k], t < L ? 12 : 15 - 3 * std::exp(-(t - L) / tau), 1e-6) << t;
+    }
+    EXPECT_NEAR(passage->run.IAE, 3 * (L + tau), 0.01);
+    EXPECT_TRUE(passage->run.settled);
+}
+
+TEST(LinearisingRun, SaysWhereThereIsNone) {
+    const SteadyBranch branch = tank_branch();
+    const Schedule schedule = tank_schedule(Interpolation::linear_in_gains);
+    const auto ramp = run_linearising(branch, schedule, {{0, 12}, {50, 15}}, {.horizon = 60});
+    ASSERT_FALSE(ramp);
+    EXPECT_NE(ramp.error().message.find("single steps"), std::string::npos);
+    const auto along = SteadyBranch::follow(
+        {.plant = conical_tank(20), .along = Along::parameter, .parameter = "c", .from = 30, .to = 50});
+    EXPECT_FALSE(run_linearising(*along, schedule, {{0, 30}, {0, 50}}, {.horizon = 60}));
 }
 
 TEST(ScheduledRun, AlongAParameterHoldsTheOutputWhileItMoves) {

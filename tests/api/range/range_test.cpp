@@ -123,7 +123,8 @@ TEST(RangeJob, HasAReportWithItsSettingsRunsAndRequest) {
     const auto prepared = std::get<PreparedJob>(prepare_job(cone().dump()));
     const JobOutcome outcome = run_job(prepared, {});
     const Json range = Json::parse(outcome.result_json)["range"];
-    const auto report = report_html({outcome.result_json, prepared.request_json}, "", {.name = "cone"});
+    const auto report = report_html({outcome.result_json, prepared.request_json}, "",
+                                    {.job = "", .name = "cone", .date = "", .origin = ""});
     ASSERT_TRUE(std::holds_alternative<std::string>(report));
     const std::string& page = std::get<std::string>(report);
     EXPECT_THAT(page, HasSubstr("cone: tuning report"));
@@ -222,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"AnEmptyRange", "/range/to", "> from", [](Json& r) { r["range"]["to"] = 5; }, true},
         Refused{"EquationsWithoutARange", "/range", "range is missing", [](Json& r) { r.erase("range"); }, true},
         Refused{"BeyondTheInput", "/range/to", "limits", [](Json& r) { r["range"]["to"] = 200; }, true}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& one) { return one.param.name; });
 
 TEST(RangeCall, ARecordThatIsNotIdentifiableNamesItsPoint) {
     Json request = three_loads();

@@ -205,6 +205,8 @@ test("a range as a job shows its schedule and its report, has no league table, a
     const { id, result } = await jobOf(page);
     assert.equal(await page.getByRole("region", { name: "Verdict" }).innerText(), result.range.verdict.text);
     assert.equal(await page.locator(".range-job tbody tr").count(), result.range.schedule.rows.length);
+    await page.getByText("Controller as code").click();
+    await page.getByRole("region", { name: "Source text" }).getByText("scheduling : LREAL").waitFor();
     const [report] = await Promise.all([page.waitForEvent("popup"), page.getByRole("link", { name: "Report" }).click()]);
     await report.getByRole("heading", { name: "Over the range" }).waitFor();
     assert.equal(await report.getByText(result.range.verdict.text).count(), 1);

@@ -136,8 +136,8 @@ export type Language = "st" | "c" | "python";
 
 export interface CodeQuestion {
   job: string;
-  /** Of the entry in the result. */
-  index: number;
+  /** Of the entry in the result; the schedule of a range. */
+  index: number | "schedule";
   language: Language;
   sample_time?: number | undefined;
   u_min?: number | undefined;
@@ -147,7 +147,8 @@ export interface CodeQuestion {
 export function codePath({ job, index, ...question }: CodeQuestion): string {
   const query = new URLSearchParams();
   for (const [name, value] of Object.entries(question)) if (value !== undefined) query.set(name, String(value));
-  return `v1/jobs/${encodeURIComponent(job)}/controllers/${index}/code?${query.toString()}`;
+  const part = index === "schedule" ? index : `controllers/${index}`;
+  return `v1/jobs/${encodeURIComponent(job)}/${part}/code?${query.toString()}`;
 }
 
 export const getCode = (question: CodeQuestion): Promise<TextFile> => getText(codePath(question));

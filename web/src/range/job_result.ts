@@ -3,16 +3,25 @@ import type { RangeContent } from "../api/range.ts";
 import type { Job } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";
+import { codeCard } from "../views/cards/code_card.ts";
 import { formatSetting, unitNames, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { counted, interpolationWords, settingHead, settingsOfOne, settingWords } from "../words/range.ts";
 
 const SETTINGS = ["Kp", "Ti", "Td", "Tf", "b"] as const;
 
-export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: RangeContent): void } {
+export interface RangeJobCard {
+  element: HTMLElement;
+  show(job: Job, content: RangeContent): void;
+  dispose(): void;
+}
+
+export function rangeJobCard(announce: (sentence: string) => void): RangeJobCard {
   const title = h("h2", { id: uniqueId("range-job") });
   const body = h("div", { class: "stack" });
-  const element = h("section", { class: "card range-job", "aria-labelledby": title.id, hidden: true }, title, body);
+  const code = codeCard(announce);
+  const settings = h("section", { class: "card range-job", "aria-labelledby": title.id }, title, body);
+  const element = h("div", { class: "stack", hidden: true }, settings, code.element);
   return {
     element,
     show(job, content) {
@@ -37,7 +46,10 @@ export function rangeJobCard(): { element: HTMLElement; show(job: Job, content: 
           h("span", { class: "hint" }, "curves over the range, rows to move, runs"),
         ),
       );
+      const name = content.scheduling.name || "at";
+      code.show(schedule ? { job: job.id, index: "schedule", name, units } : null);
     },
+    dispose: code.dispose,
   };
 }
 

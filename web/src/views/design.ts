@@ -60,7 +60,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const title = titleCard("Design", announce, league, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
-  const range = rangeJobCard();
+  const range = rangeJobCard(announce);
   const progress = progressCard(announce, () => void cancel());
   const settings = settingsCard(announce);
   let mainFigures: HTMLElement = h("div", {});
@@ -250,6 +250,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       turned.dispose();
       for (const card of reports) card.dispose();
       own.dispose();
+      range.dispose();
       plots.dispose();
     },
   };

@@ -17,7 +17,7 @@ import { copyButton } from "../copy.ts";
 
 export interface CodeSubject {
   job: string;
-  index: number;
+  index: number | "schedule";
   name: string;
   units: UnitNames;
 }
@@ -130,7 +130,8 @@ export function codeCard(announce: (sentence: string) => void): CodeCard {
       subject = next;
       element.hidden = !next;
       if (!next) return;
-      whose.textContent = `The controller of ${next.name} as a program of its own, for a controller without a PID block or a simulation. All times in it are in seconds.`;
+      const what = next.index === "schedule" ? `The schedule over ${next.name}` : `The controller of ${next.name}`;
+      whose.textContent = `${what} as a program of its own, for a controller without a PID block or a simulation. All times in it are in seconds.`;
       period.setUnit(next.units.time);
       low.setUnit(next.units.u);
       high.setUnit(next.units.u);

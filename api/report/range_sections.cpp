@@ -24,9 +24,9 @@ Html verdict_of(const ReportSubject& s) {
     if (s.result.at("partial").value() == true)
         out += element("p", "The search was stopped before its end; this is the best that it had found.");
     std::vector<Html> remarks;
-    for (const Json& warning : s.entry.at("warnings").value()) remarks.push_back(warning.value("detail", ""));
+    for (const Json& warning : s.entry.at("warnings").value()) remarks.emplace_back(warning.value("detail", ""));
     for (const Json& reason : s.entry.at("why_null").value())
-        if (reason.is_string()) remarks.push_back(reason.get<std::string>());
+        if (reason.is_string()) remarks.emplace_back(reason.get<std::string>());
     return section("Verdict", out + list(remarks));
 }
 

@@ -57,7 +57,7 @@ double worst_on_the_plant(const Schedule& schedule) {
     return worst;
 }
 
-/// More than the build runs where TUNEWRIGHT_SEEDS says so: docs/correctness.md has the figures of 100.
+/// More than the build runs where TUNEWRIGHT_SEEDS says so: docs/correctness.md has what 100 of them gave.
 unsigned seeds(unsigned otherwise) {
     const char* wanted = std::getenv("TUNEWRIGHT_SEEDS");
     return wanted == nullptr ? otherwise : static_cast<unsigned>(std::atoi(wanted));

@@ -4,6 +4,7 @@ import type { Job } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";
 import { codeCard } from "../views/cards/code_card.ts";
+import type { CodeCard } from "../views/cards/code_card.ts";
 import { formatSetting, unitNames, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { counted, interpolationWords, settingHead, settingsOfOne, settingWords } from "../words/range.ts";
@@ -19,9 +20,9 @@ export interface RangeJobCard {
 export function rangeJobCard(announce: (sentence: string) => void): RangeJobCard {
   const title = h("h2", { id: uniqueId("range-job") });
   const body = h("div", { class: "stack" });
-  const code = codeCard(announce);
+  let code: CodeCard | null = null; // made for the first range: most jobs are about one loop
   const settings = h("section", { class: "card range-job", "aria-labelledby": title.id }, title, body);
-  const element = h("div", { class: "stack", hidden: true }, settings, code.element);
+  const element = h("div", { class: "stack", hidden: true }, settings);
   return {
     element,
     show(job, content) {
@@ -47,9 +48,10 @@ export function rangeJobCard(announce: (sentence: string) => void): RangeJobCard
         ),
       );
       const name = content.scheduling.name || "at";
+      if (!code) element.append((code = codeCard(announce)).element);
       code.show(schedule ? { job: job.id, index: "schedule", name, units } : null);
     },
-    dispose: code.dispose,
+    dispose: () => code?.dispose(),
   };
 }
 

@@ -33,22 +33,6 @@ std::variant<std::size_t, Problem> index_of(const Json& result, std::string_view
                      count_of(controllers));
 }
 
-std::optional<Problem> find_entry(std::string_view index, ChosenEntry& found) {
-    const bool holds = found.result.is_object() && found.result.contains("controllers") &&
-                       found.result["controllers"].is_array() && !found.result["controllers"].empty();
-    if (!holds) return not_a_result();
-    const auto number = index_of(found.result, index);
-    if (const auto* problem = std::get_if<Problem>(&number)) return *problem;
-    found.index = std::get<std::size_t>(number);
-    const Json& entry = found.entry();
-    if (entry.is_object() && entry.contains("controller")) return std::nullopt;
-    const std::string method = entry.is_object() ? entry.value("method", "") : "";
-    const Json::json_pointer detail("/error/detail");
-    return not_found("Number " + std::to_string(found.index) + (method.empty() ? "" : " (" + method + ")") +
-                     " has no controller: " +
-                     (entry.contains(detail) ? entry.at(detail).get<std::string>() : "the method found none."));
-}
-
 }  // namespace
 
 std::optional<Problem> read_result(const ResultSource& source, ChosenEntry& found) {
@@ -68,6 +52,22 @@ std::optional<Problem> read_result(const ResultSource& source, ChosenEntry& foun
         found.result = Json(found.result["result"]);
     }
     return std::nullopt;
+}
+
+std::optional<Problem> find_entry(std::string_view index, ChosenEntry& found) {
+    const bool holds = found.result.is_object() && found.result.contains("controllers") &&
+                       found.result["controllers"].is_array() && !found.result["controllers"].empty();
+    if (!holds) return not_a_result();
+    const auto number = index_of(found.result, index);
+    if (const auto* problem = std::get_if<Problem>(&number)) return *problem;
+    found.index = std::get<std::size_t>(number);
+    const Json& entry = found.entry();
+    if (entry.is_object() && entry.contains("controller")) return std::nullopt;
+    const std::string method = entry.is_object() ? entry.value("method", "") : "";
+    const Json::json_pointer detail("/error/detail");
+    return not_found("Number " + std::to_string(found.index) + (method.empty() ? "" : " (" + method + ")") +
+                     " has no controller: " +
+                     (entry.contains(detail) ? entry.at(detail).get<std::string>() : "the method found none."));
 }
 
 bool has_schedule(const Json& result) {

@@ -32,6 +32,9 @@ std::variant<ChosenEntry, Problem> choose_entry(const ResultSource& source, std:
 /// A result alone, or a job with its request, whatever it answers. Problems: 400 not JSON.
 std::optional<Problem> read_result(const ResultSource& source, ChosenEntry& found);
 
+/// The second half of choose_entry, of what read_result has read.
+std::optional<Problem> find_entry(std::string_view index, ChosenEntry& found);
+
 /// Whether it answers about an operating range, and has a schedule.
 bool has_schedule(const Json& result);
 

@@ -54,12 +54,11 @@ Problem no_schedule() {
 std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words) {
     try {
-        auto chosen = choose_entry(source, index);
-        if (const auto* found = std::get_if<ChosenEntry>(&chosen)) return written_entry(*found, words);
-        ChosenEntry range;
-        if (index.empty() && !read_result(source, range) && has_schedule(range.result))
-            return written_schedule(range, words);
-        return std::get<Problem>(std::move(chosen));
+        ChosenEntry found;
+        if (auto problem = read_result(source, found)) return *std::move(problem);
+        if (index.empty() && has_schedule(found.result)) return written_schedule(found, words);
+        if (auto problem = find_entry(index, found)) return *std::move(problem);
+        return written_entry(found, words);
     } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
         return not_a_result();
     }

@@ -84,14 +84,10 @@ std::string range_report(ChosenEntry& found, const ReportWords& words) {
 
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words) try {
-    if (index.empty()) {
-        ChosenEntry range;
-        if (auto problem = read_result(source, range)) return *std::move(problem);
-        if (is_of_range(range.result)) return range_report(range, words);
-    }
-    auto chosen = choose_entry(source, index);
-    if (auto* problem = std::get_if<Problem>(&chosen)) return std::move(*problem);
-    auto& found = std::get<ChosenEntry>(chosen);
+    ChosenEntry found;
+    if (auto problem = read_result(source, found)) return *std::move(problem);
+    if (index.empty() && is_of_range(found.result)) return range_report(found, words);
+    if (auto problem = find_entry(index, found)) return *std::move(problem);
     const std::size_t number = index.empty() ? best_proposal(found) : found.index;
     const ReportWords said = said_of(found, words);
     const Json document = document_of(found);

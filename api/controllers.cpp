@@ -91,6 +91,20 @@ Answer controller_settings_call(std::string_view id, std::string_view body) {
     return {200, out.take()};
 }
 
+Answer controller_schedule_call(std::string_view id, std::string_view body) {
+    const Product* product = product::find(id);
+    if (!product) return no_such_controller(id);
+    const auto decoded = read_body(body, schedule_settings_request_contract());
+    if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
+    const auto& request = std::get<ScheduleSettingsRequest>(decoded);
+    const Schedule schedule{.interpolation = request.interpolation, .rows = rows_of(request.rows)};
+    auto converted = product::to_settings(*product, schedule, request.context, request.nearest);
+    if (!converted) return refusal(to_problem(converted.error()));
+    Writer out;
+    schedule_settings_answer_contract().write({product, *std::move(converted)}, out);
+    return {200, out.take()};
+}
+
 Answer controller_twin_call(std::string_view id, std::string_view body) {
     const Product* product = product::find(id);
     if (!product) return no_such_controller(id);

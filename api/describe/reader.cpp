@@ -69,9 +69,7 @@ std::string shown(const Json& value) {
     if (value.is_structured() && value.size() > kLength) return value.is_array() ? "[...]" : "{...}";
     std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (text.size() <= kLength) return text;
-    std::size_t end = kLength;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    return text.substr(0, end) + "...";
+    return std::string(whole_characters(text, kLength)) + "...";
 }
 
 std::string kind_of(const Json& value) {

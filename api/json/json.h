@@ -35,6 +35,9 @@ std::string indented(std::string_view text);
 /// stand. Everything else is passed on as it is spelled.
 std::string without_members(std::string_view json, std::initializer_list<std::string_view> names);
 
+/// The first `bytes` of UTF-8, or as many of them as hold whole characters.
+std::string_view whole_characters(std::string_view text, std::size_t bytes);
+
 /// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
 std::string canonical(const Json& value);
 

@@ -68,6 +68,8 @@ std::string openapi_json() {
         product_contract().schema(book);
         settings_request_contract().schema(book);
         settings_answer_contract().schema(book);
+        schedule_settings_request_contract().schema(book);
+        schedule_settings_answer_contract().schema(book);
         twin_request_contract().schema(book);
         twin_answer_contract().schema(book);
         Json& schemas = document["components"]["schemas"];

@@ -11,11 +11,8 @@ constexpr std::size_t kMostItems = 20, kMostText = 400;
 /// Long lists and texts cut, with what was left out in words.
 Json shortened(const Json& value) {
     if (value.is_string() && value.get_ref<const std::string&>().size() > kMostText) {
-        std::string text = value.get<std::string>();
-        const std::size_t all = text.size();
-        std::size_t end = kMostText;
-        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-        return text.substr(0, end) + "... (" + std::to_string(all) + " bytes)";
+        const auto& text = value.get_ref<const std::string&>();
+        return std::string(whole_characters(text, kMostText)) + "... (" + std::to_string(text.size()) + " bytes)";
     }
     if (value.is_array()) {
         Json out = Json::array();

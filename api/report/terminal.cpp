@@ -80,7 +80,7 @@ std::vector<std::size_t> order_of(const Json& result) {
 std::string title_of(const Json& entry) {
     std::string title = words(entry.value("title", Json()));
     if (title.empty()) title = words(entry.value("method", Json()));
-    if (letters(title) > kWidestTitle) title = title.substr(0, kWidestTitle - 3) + "...";
+    if (letters(title) > kWidestTitle) title = std::string(whole_characters(title, kWidestTitle - 3)) + "...";
     return title;
 }
 

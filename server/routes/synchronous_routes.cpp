@@ -163,6 +163,7 @@ void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, co
     add("/v1/experiments/relay", of_body(api::relay_call), kRelayTime);
     add("/v1/experiments/range", of_body(api::range_experiments_call), kRangeTime);
     add("/v1/controllers/{id}/settings", of_product(api::controller_settings_call), kConversionTime);
+    add("/v1/controllers/{id}/schedule", of_product(api::controller_schedule_call), kConversionTime);
     add("/v1/controllers/{id}/controller", of_product(api::controller_twin_call), kConversionTime);
 }
 

@@ -106,6 +106,80 @@ TEST(Controllers, SettingsComeInFullPrecisionAsTypedAndWithWhatTheyDo) {
     EXPECT_NEAR(deltav["realised"]["filter"]["Tf"], 3.84037, 5e-6);
 }
 
+const Json kRows = {{{"at", 20}, {"Kp", 3}, {"Ti", 90}, {"Td", 15}, {"Tf", 0}, {"b", 1}},
+                    {{"at", 60}, {"Kp", 1.5}, {"Ti", 120}, {"Td", 20}, {"Tf", 0}, {"b", 1}},
+                    {{"at", 80}, {"Kp", 1}, {"Ti", 150}, {"Td", 25}, {"Tf", 0}, {"b", 1}},
+                    {{"at", 90}, {"Kp", 0.8}, {"Ti", 160}, {"Td", 26}, {"Tf", 0}, {"b", 1}}};
+
+Json schedule_request(const Json& more = Json::object()) {
+    Json request = with({{"rows", kRows}, {"interpolation", "steps"}});
+    request.erase("controller");
+    request.update(more);
+    return request;
+}
+Json schedule_of(const std::string& id, const Json& more = Json::object()) {
+    return answered(controller_schedule_call(id, schedule_request(more).dump()));
+}
+std::vector<std::string> codes(const Json& notes) {
+    std::vector<std::string> all;
+    for (const Json& note : notes) all.push_back(note["code"]);
+    return all;
+}
+
+TEST(ControllerSchedule, EachRowIsTypedAsItWouldBeAlone) {
+    for (const auto& product : product::catalogue()) {
+        const Json body = schedule_of(std::string(product.id), {{"nearest", true}});
+        EXPECT_EQ(schema_faults(body, "ScheduleSettingsAnswer"), Faults{}) << product.id;
+        ASSERT_EQ(body["rows"].size(), 4U) << product.id;
+        for (std::size_t k = 0; k < 4; ++k) {
+            Json row = kRows[k];
+            row.erase("at");
+            row.erase("Tf");
+            const Json alone = settings_of(std::string(product.id), with({{"controller", row}, {"nearest", true}}));
+            EXPECT_EQ(body["rows"][k]["at"], kRows[k]["at"]);
+            const Json& typing = body["rows"][k]["typing"];
+            for (const char* part : {"settings", "as_typed", "realised", "units"})
+                EXPECT_EQ(typing[part], alone[part]) << product.id << " row " << k << " " << part;
+            // A note is told at the row or for all of them, once.
+            for (const Json& note : alone["notes"]) {
+                const auto count = [&](const Json& in) { return std::count(in.begin(), in.end(), note); };
+                EXPECT_EQ(count(typing["notes"]) + count(body["notes"]), 1) << product.id << note;
+            }
+        }
+    }
+}
+
+TEST(ControllerSchedule, SaysWhatTheProductDoesBetweenTheRows) {
+    EXPECT_EQ(codes(schedule_of("emerson_deltav_standard")["notes"])[0], "too-many-rows");
+    EXPECT_THAT(codes(schedule_of("labview_pid")["notes"]), testing::Not(testing::Contains("interpolation")));
+    const Json linear = schedule_of("labview_pid", {{"interpolation", "linear_in_gains"}});
+    EXPECT_EQ(codes(linear["notes"])[0], "interpolation");
+    EXPECT_THAT(linear["notes"][0]["detail"].get<std::string>(),
+                HasSubstr("Design it with \"interpolation\": \"steps\""));
+    EXPECT_THAT(codes(schedule_of("simulink_pid_ideal", {{"interpolation", "linear_in_gains"}})["notes"]),
+                testing::Not(testing::Contains("interpolation")));
+    EXPECT_EQ(codes(schedule_of("simulink_pid_parallel", {{"interpolation", "linear_in_gains"}})["notes"])[0],
+              "interpolation");
+    EXPECT_EQ(codes(schedule_of("arduino_pid_v1", {{"nearest", true}})["notes"])[0], "no-gain-scheduling");
+    EXPECT_EQ(answered(controller_json("emerson_deltav_series"))["gain_scheduling"]["sets"], 3);
+    EXPECT_EQ(answered(controller_json("labview_pid"))["gain_scheduling"]["interpolation"], "steps");
+    EXPECT_FALSE(answered(controller_json("marlin")).contains("gain_scheduling"));
+}
+
+TEST(ControllerSchedule, WhatCannotBeIsNamedAtItsRow) {
+    Json rows = kRows;
+    rows[2]["Ti"] = 40;  // below 4 Td: complex zeros, which a series form cannot have
+    const auto series = [&](const Json& more) {
+        return controller_schedule_call("emerson_deltav_series", schedule_request(more).dump());
+    };
+    EXPECT_EQ(refused(series({{"rows", rows}}), "/rows/2").type, "not-representable");
+    EXPECT_EQ(series({{"rows", rows}, {"nearest", true}}).status, 200);
+    rows[2]["at"] = 20;
+    EXPECT_THAT(refused(series({{"rows", rows}}), "/rows/2/at").detail, HasSubstr("must ascend"));
+    EXPECT_THAT(refused(series({{"rows", Json::array()}}), "/rows").detail, HasSubstr("it must have 1 to 20"));
+    EXPECT_EQ(controller_schedule_call("nobody", schedule_request().dump()).status, 404);
+}
+
 TEST(Controllers, TimesAreInTheRequestsUnit) {
     Json minutes = kDesign;
     minutes["Ti"] = 2;

@@ -8,19 +8,21 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kPlant = R"("plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3})";
+constexpr const char* kLagPlant = R"("plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3})";
 
-void expect_valid(const Json& value, const std::string& component) {
+void expect_kept(const Json& value, const std::string& component) {
     EXPECT_EQ(schema_faults(value, component), std::vector<std::string>{});
 }
 
-Json run(const std::string& request) {
+Json design_run(const std::string& request) {
     const auto outcome = run_job(std::get<PreparedJob>(prepare_job(request)), {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     return Json::parse(outcome.result_json);
 }
 
-Answer design(const std::string& members) { return design_call("{" + std::string(kPlant) + ", " + members + "}", {}); }
+Answer design(const std::string& members) {
+    return design_call("{" + std::string(kLagPlant) + ", " + members + "}", {});
+}
 
 TEST(Design, AnswersWhatAJobAnswers) {
     const std::string members =
@@ -28,8 +30,8 @@ TEST(Design, AnswersWhatAJobAnswers) {
     const Answer answer = design(members);
     ASSERT_EQ(answer.status, 200) << answer.body;
     Json live = Json::parse(answer.body);
-    expect_valid(live, "DesignAnswer");
-    Json job = run("{" + std::string(kPlant) + ", " + members + "}");
+    expect_kept(live, "DesignAnswer");
+    Json job = design_run("{" + std::string(kLagPlant) + ", " + members + "}");
     ASSERT_EQ(live["controllers"].size(), 2u);
     for (Json* of : {&live, &job})
         for (Json& entry : (*of)["controllers"]) entry.erase("compute_ms");
@@ -77,11 +79,11 @@ TEST(Design, SaysWhyThereIsNone) {
 
 TEST(FrontierCall, AnswersPointsInOrder) {
     const Answer answer = frontier_call(
-        "{" + std::string(kPlant) + R"(, "controller": "PI", "Ms": {"from": 1.2, "to": 2, "points": 5}, "Mt": 1.4})",
+        "{" + std::string(kLagPlant) + R"(, "controller": "PI", "Ms": {"from": 1.2, "to": 2, "points": 5}, "Mt": 1.4})",
         {});
     ASSERT_EQ(answer.status, 200) << answer.body;
     const Json front = Json::parse(answer.body);
-    expect_valid(front, "Frontier");
+    expect_kept(front, "Frontier");
     ASSERT_EQ(front["points"].size(), 5u);
     double last = 1e9;
     for (const Json& point : front["points"]) {
@@ -95,20 +97,21 @@ TEST(FrontierCall, AnswersPointsInOrder) {
 }
 
 TEST(FrontierCall, IsAMethodOfJobsToo) {
-    const Json result = run("{" + std::string(kPlant) +
-                            R"(, "tune": [{"method": "frontier", "Ms": {"points": 4}}], "evaluate": {"points": 0}})");
-    expect_valid(result, "TuningResult");
+    const Json result =
+        design_run("{" + std::string(kLagPlant) +
+                   R"(, "tune": [{"method": "frontier", "Ms": {"points": 4}}], "evaluate": {"points": 0}})");
+    expect_kept(result, "TuningResult");
     EXPECT_EQ(result["controllers"][0]["frontier"]["points"].size(), 4u);
 }
 
 TEST(FrontierCall, RefusesWithPlaceAndCure) {
-    const Answer range = frontier_call("{" + std::string(kPlant) + R"(, "Ms": {"from": 0.5}})", {});
+    const Answer range = frontier_call("{" + std::string(kLagPlant) + R"(, "Ms": {"from": 0.5}})", {});
     EXPECT_EQ(range.status, 422);
     EXPECT_THAT(range.body, HasSubstr("/Ms/from"));
-    const Answer word = frontier_call("{" + std::string(kPlant) + R"(, "Mt": "loose"})", {});
+    const Answer word = frontier_call("{" + std::string(kLagPlant) + R"(, "Mt": "loose"})", {});
     EXPECT_EQ(word.status, 422);
     EXPECT_THAT(word.body, HasSubstr("tied"));
-    const Answer backwards = frontier_call("{" + std::string(kPlant) + R"(, "Ms": {"from": 2, "to": 1.5}})", {});
+    const Answer backwards = frontier_call("{" + std::string(kLagPlant) + R"(, "Ms": {"from": 2, "to": 1.5}})", {});
     EXPECT_EQ(backwards.status, 422);
     EXPECT_THAT(backwards.body, HasSubstr("to must be > from"));
 }

@@ -112,5 +112,14 @@ TEST(Indented, ReadsTheSameAndKeepsWhatIsSmallOnALine) {
               "}\n");
 }
 
+TEST(WholeCharacters, NoneIsParted) {
+    EXPECT_EQ(whole_characters("abc", 5), "abc");
+    EXPECT_EQ(whole_characters("abc", 2), "ab");
+    EXPECT_EQ(whole_characters("a\u00fcb", 2), "a");
+    EXPECT_EQ(whole_characters("a\u00fcb", 3), "a\u00fc");
+    EXPECT_EQ(whole_characters("\u20ac\u20ac", 5), "\u20ac");
+    EXPECT_EQ(whole_characters("\u20ac", 0), "");
+}
+
 }  // namespace
 }  // namespace tunewright::api

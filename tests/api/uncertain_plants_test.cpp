@@ -28,7 +28,7 @@ Json run(const std::string& request) {
     return result;
 }
 
-std::vector<FieldError> faults_of(const std::string& plant) {
+std::vector<FieldError> uncertain_faults(const std::string& plant) {
     return decode<PlantModel>(plant_model_contract(), plant).faults;
 }
 
@@ -89,14 +89,15 @@ TEST(UncertainPlants, FaultyPointsAreRefusedAtTheirPlace) {
         std::string plant = R"({"type": "frequency_response", )" + std::string(kPoints) + "}";
         return plant.replace(plant.find(from), from.size(), to);
     };
-    EXPECT_THAT(detail_at(faults_of(with("0.1, 0.2", "0.2, 0.1")), "/omega/3"), HasSubstr("must ascend"));
-    EXPECT_THAT(detail_at(faults_of(with("1.46248, ", "")), "/re"), HasSubstr("equally many"));
-    EXPECT_THAT(detail_at(faults_of(with("0.02, ", "0, ")), "/omega/0"), HasSubstr("> 0"));
-    EXPECT_THAT(detail_at(faults_of(with("0.0366325]", "0.0366325], \"integrators\": -1")), "/integrators"),
+    EXPECT_THAT(detail_at(uncertain_faults(with("0.1, 0.2", "0.2, 0.1")), "/omega/3"), HasSubstr("must ascend"));
+    EXPECT_THAT(detail_at(uncertain_faults(with("1.46248, ", "")), "/re"), HasSubstr("equally many"));
+    EXPECT_THAT(detail_at(uncertain_faults(with("0.02, ", "0, ")), "/omega/0"), HasSubstr("> 0"));
+    EXPECT_THAT(detail_at(uncertain_faults(with("0.0366325]", "0.0366325], \"integrators\": -1")), "/integrators"),
                 HasSubstr("integrators"));
-    EXPECT_THAT(detail_at(faults_of(R"({"type": "frequency_response", "omega": [1, 2], "re": [1, 1], "im": [0, 0]})"),
-                          "/omega"),
-                HasSubstr("8"));
+    EXPECT_THAT(
+        detail_at(uncertain_faults(R"({"type": "frequency_response", "omega": [1, 2], "re": [1, 1], "im": [0, 0]})"),
+                  "/omega"),
+        HasSubstr("8"));
 }
 
 }  // namespace

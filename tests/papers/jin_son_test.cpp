@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const Json& reference() {
+const Json& jin_son_reference() {
     static const Json json = Json::parse(std::ifstream(test_data("npid/jin_son.json")));
     return json;
 }
@@ -61,7 +61,7 @@ TunedController tuned(const std::string& method, const Plant& plant, const Metho
 }
 
 SetpointPerformance figures(const std::string& row, std::optional<double> horizon, bool filtered = false) {
-    const Json& settings = reference()["settings"][row]["published"];
+    const Json& settings = jin_son_reference()["settings"][row]["published"];
     const double Kp = settings[0], Ti = settings[1], Td = settings[2];
     const Filter filter = filtered ? Filter{FilterType::derivative, Td / 10} : Filter{};
     EvaluateOptions options;
@@ -77,7 +77,7 @@ SetpointPerformance figures(const std::string& row, std::optional<double> horizo
 
 TEST(JinSon, SettingsOfTables4And6And8ComeOutToTheirPrintedDigits) {
     int rows = 0;
-    for (const auto& [row, settings] : reference()["settings"].items()) {
+    for (const auto& [row, settings] : jin_son_reference()["settings"].items()) {
         if (!is_nonlinear(row)) continue;
         const auto answer = tuned(method_of(row), printed_model(process_of(row)));
         EXPECT_TRUE(answer.nonlinear_integral);
@@ -94,7 +94,7 @@ TEST(JinSon, SettingsOfTables4And6And8ComeOutToTheirPrintedDigits) {
 
 TEST(JinSon, ResponsesOfTables5And7And9) {
     int rows = 0;
-    for (const auto& [row, r] : reference()["responses"].items()) {
+    for (const auto& [row, r] : jin_son_reference()["responses"].items()) {
         const Json& printed = r["published"];
         const auto p = figures(row, r["horizon"].get<double>());
         EXPECT_NEAR(*p.IAE / printed["IAE"].get<double>(), 1, 3e-3) << row;
@@ -117,7 +117,7 @@ TEST(JinSon, ResponsesOfTables5And7And9) {
 }
 
 TEST(JinSon, IntegralsOverALongTimeAgreeWithTheRecomputation) {
-    for (const auto& [row, r] : reference()["responses"].items()) {
+    for (const auto& [row, r] : jin_son_reference()["responses"].items()) {
         const auto p = figures(row, 300);
         EXPECT_NEAR(*p.IAE / r["IAE_300"].get<double>(), 1, 1e-4) << row;
         EXPECT_NEAR(*p.ISE / r["ISE_300"].get<double>(), 1, 1e-4) << row;
@@ -126,7 +126,7 @@ TEST(JinSon, IntegralsOverALongTimeAgreeWithTheRecomputation) {
 }
 
 TEST(JinSon, AFilteredDerivativeAgreesWithTheRecomputationToo) {
-    for (const auto& [row, r] : reference()["responses"].items()) {
+    for (const auto& [row, r] : jin_son_reference()["responses"].items()) {
         const auto p = figures(row, r["horizon"].get<double>(), true);
         const Json& f = r["filtered"];
         EXPECT_NEAR(*p.IAE / f["IAE"].get<double>(), 1, 1e-4) << row;
@@ -147,11 +147,11 @@ double cost_of(const std::string& row, const LinearPlant& plant, const IdealPid&
     return method == "npid_ise" ? e.ISE : method == "npid_iae" ? e.IAE : e.ITAE;
 }
 
-Fopdt model_of(const std::string& row) { return {.K = 1, .T = 1, .L = std::stod(row.substr(row.find('/') + 1))}; }
+Fopdt step_model_of(const std::string& row) { return {.K = 1, .T = 1, .L = std::stod(row.substr(row.find('/') + 1))}; }
 
 TEST(JinSon, TheRulesCostWhatTheRecomputationSays) {
-    for (const auto& [row, r] : reference()["optima"].items()) {
-        const Fopdt model = model_of(row);
+    for (const auto& [row, r] : jin_son_reference()["optima"].items()) {
+        const Fopdt model = step_model_of(row);
         const auto answer = tuned(method_of(row), model);
         const double got[] = {answer.controller.Kp, answer.controller.Ti, answer.controller.Td};
         for (std::size_t i = 0; i < 3; ++i)
@@ -165,8 +165,8 @@ TEST(JinSon, OptimisedSettingsCostNoMoreThanTheKnownOptima) {
     MethodOptions options;
     options.set("optimise", true);
     int found = 0;
-    for (const auto& [row, r] : reference()["optima"].items()) {
-        const Fopdt model = model_of(row);
+    for (const auto& [row, r] : jin_son_reference()["optima"].items()) {
+        const Fopdt model = step_model_of(row);
         const auto answer = tuned(method_of(row), model, options);
         EXPECT_LE(cost_of(row, *LinearPlant::make(model), answer.controller), 1.0002 * r["J"].get<double>()) << row;
         EXPECT_NEAR(answer.controller.Kp / r["KKp"].get<double>(), 1, 0.02) << row;
@@ -177,9 +177,9 @@ TEST(JinSon, OptimisedSettingsCostNoMoreThanTheKnownOptima) {
 }
 
 TEST(JinSon, BetweenItsTablesTheLaterOneIsUsedForItCostsLess) {
-    for (const auto& [row, r] : reference()["gap"].items()) {
+    for (const auto& [row, r] : jin_son_reference()["gap"].items()) {
         EXPECT_LT(r["ratio_table3"].get<double>(), r["ratio_table2"].get<double>()) << row;
-        const Fopdt model = model_of(row);
+        const Fopdt model = step_model_of(row);
         const auto answer = tuned(method_of(row), model);
         const char* table = model.L > 0.9 ? "table3" : "table2";
         EXPECT_NEAR(answer.controller.Kp / r[table][0].get<double>(), 1, 1e-6) << row;

@@ -41,6 +41,15 @@ class ControllersTest(unittest.TestCase):
             self.assertAlmostEqual(twin[name], DESIGN[name], places=9)
         self.assertEqual(twin, body["realised"])
 
+    def test_rows_of_a_schedule_are_typed_one_by_one(self):
+        row = {name: DESIGN[name] for name in ("Kp", "Ti", "Td", "b")}
+        request = {name: REQUEST[name] for name in ("y_span", "u_span")}
+        request |= {"rows": [row | {"at": 20}, row | {"at": 60, "Kp": 3}], "interpolation": "steps"}
+        answer = self.service.post("/v1/controllers/emerson_deltav_standard/schedule", request)
+        self.assertEqual(answer.status, 200, answer.body)
+        self.assertEqual([(row["at"], row["typing"]["settings"]["GAIN"]) for row in answer.json["rows"]],
+                         [(20, 3), (60, 6)])
+
     def test_every_published_example_is_answered(self):
         for entry in self.service.get("/v1/controllers").json["controllers"]:
             example = self.service.get("/v1/controllers/" + entry["id"]).json["example"]

@@ -82,7 +82,7 @@ export function screens(
   async function openRange(route: Extract<Route, { screen: "range" }>, focus: boolean): Promise<void> {
     const { rangeView } = await import("./range/view.ts");
     if (store.get().route !== route) return;
-    range ??= rangeView(announce, {
+    range ??= rangeView(store, announce, {
       onExample(id) {
         history.replaceState(null, "", formatRoute({ screen: "range", example: id, job: null }));
       },

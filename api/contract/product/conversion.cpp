@@ -122,6 +122,82 @@ const Description<SettingsAnswer>& settings_answer_contract() {
     return contract;
 }
 
+const Description<ScheduleSettingsRequest>& schedule_settings_request_contract() {
+    static const auto contract = [] {
+        using R = ScheduleSettingsRequest;
+        Description<R> d("ScheduleSettingsRequest", "The rows of a schedule that are to be typed into a product.");
+        d.field("rows", &R::rows, list_of(object(given_row_contract()), 1, range::kMostRows),
+                "As range.schedule.rows of a result has them.", {.required = true})
+            .field("interpolation", &R::interpolation, interpolation_word(), "Between rows, as the schedule has it.")
+            .field("nearest", &R::nearest, boolean(),
+                   "Answer the nearest settings where the product cannot be a row, instead of 422.")
+            .check([](const Json&, R& request, Reader& reader) {
+                const Reader::At list(reader, "rows");
+                check_given_rows(request.rows, reader);
+            });
+        add_context(d);
+        d.example(
+            {{"rows",
+              {{{"at", 20}, {"Kp", 3}, {"Ti", 90}, {"Td", 15}}, {{"at", 60}, {"Kp", 1.5}, {"Ti", 120}, {"Td", 20}}}},
+             {"interpolation", "steps"},
+             {"y_span", {0, 200}},
+             {"u_span", {0, 100}},
+             {"sample_time", 0.25}});
+        return d;
+    }();
+    return contract;
+}
+
+namespace {
+
+struct AnsweredRow {
+    double at = 0;
+    SettingsAnswer answer;
+};
+
+const Description<AnsweredRow>& answered_row_contract() {
+    static const auto contract = [] {
+        Description<AnsweredRow> d("SettingsRow", "What is to be typed at one place, as for one controller.");
+        d.field("at", &AnsweredRow::at, only_answered(number()), "Its place.")
+            .field(
+                "typing", {},
+                [](const AnsweredRow& row, Writer& out) { settings_answer_contract().write(row.answer, out); },
+                [](SchemaBook& book) { return settings_answer_contract().schema(book); },
+                "Its settings; notes are those of this row alone.");
+        return d;
+    }();
+    return contract;
+}
+
+}  // namespace
+
+const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract() {
+    static const auto contract = [] {
+        using Answer = ScheduleSettingsAnswer;
+        Description<Answer> d("ScheduleSettingsAnswer", "What is to be typed for each row of a schedule.");
+        d.field(
+             "rows", {},
+             [](const Answer& a, Writer& out) {
+                 out.begin_array();
+                 for (const product::RowSettings& row : a.schedule.rows)
+                     answered_row_contract().write({row.at,
+                                                    {a.product, row.converted.settings, row.converted.settings,
+                                                     row.converted.realised, row.converted.notes}},
+                                                   out);
+                 out.end_array();
+             },
+             [](SchemaBook& book) {
+                 return Json{{"type", "array"}, {"items", answered_row_contract().schema(book)}};
+             },
+             "Ascending in `at`.")
+            .field(
+                "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.schedule.notes, out); }, notes_schema,
+                "How the product goes between its rows, and what is the same at all of them.");
+        return d;
+    }();
+    return contract;
+}
+
 const Description<TwinRequest>& twin_request_contract() {
     static const auto contract = [] {
         Description<TwinRequest> d("ProductSettings", "Settings of a product.");

@@ -365,9 +365,15 @@ const Description<Product>& product_contract() {
                 "action", action_contract(), [](const Product& p) -> const Product& { return p; }, "Direction.")
             .part(
                 "algorithm", algorithm_contract(),
-                [](const Product& p) -> const product::Algorithm& { return p.algorithm; }, "Algorithm.")
-            .texts(
-                "traps", [](const Product& p) -> const Texts& { return p.traps; }, "What goes wrong easily.")
+                [](const Product& p) -> const product::Algorithm& { return p.algorithm; }, "Algorithm.");
+        a.description.field(
+            "gain_scheduling", {},
+            [](const Product& p, Writer& out) { gain_scheduling_contract().write(*p.scheduling, out); },
+            [](SchemaBook& book) { return gain_scheduling_contract().schema(book); },
+            "What comes with it for a schedule; left out where none is known.", {},
+            [](const Product& p) { return !p.scheduling; });
+        a.texts(
+             "traps", [](const Product& p) -> const Texts& { return p.traps; }, "What goes wrong easily.")
             .part(
                 "evidence", evidence_contract(),
                 [](const Product& p) -> const product::Evidence& { return p.evidence; }, "Evidence.")

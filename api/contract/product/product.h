@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "api/contract/range/range_request.h"
 #include "api/contract/record.h"
 #include "api/describe/description.h"
 #include "engine/controller/pid.h"
+#include "engine/controller/product/schedule_settings.h"
 #include "engine/controller/product/settings.h"
 
 namespace tunewright::api {
@@ -16,6 +18,9 @@ namespace tunewright::api {
 const Description<product::Product>& product_summary_contract();
 /// GET /v1/controllers/{id}: everything.
 const Description<product::Product>& product_contract();
+
+/// `gain_scheduling` of an entry.
+const Description<product::GainScheduling>& gain_scheduling_contract();
 
 /// What both conversions take beside controller or settings.
 struct BlockContext {
@@ -40,6 +45,20 @@ struct SettingsAnswer {
     std::vector<product::Note> notes;
 };
 const Description<SettingsAnswer>& settings_answer_contract();
+
+/// The rows of a schedule that are to be typed.
+struct ScheduleSettingsRequest : BlockContext {
+    std::vector<GivenRow> rows;
+    Interpolation interpolation = Interpolation::linear_in_gains;
+    bool nearest = false;
+};
+const Description<ScheduleSettingsRequest>& schedule_settings_request_contract();
+
+struct ScheduleSettingsAnswer {
+    const product::Product* product = nullptr;
+    product::ConvertedSchedule schedule;
+};
+const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract();
 
 struct TwinRequest : BlockContext {
     product::Settings settings;  ///< as sent: names and values are the product's to judge

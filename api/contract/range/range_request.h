@@ -87,6 +87,11 @@ void follow_way(RangeSubject& subject, Reader& reader);
 
 const Description<GivenWay>& way_contract();
 
+const Description<GivenRow>& given_row_contract();
+/// Rows ascend, and all have a Kp of one sign; faults at the row.
+void check_given_rows(const std::vector<GivenRow>& rows, Reader& reader);
+std::vector<ScheduleRow> rows_of(const std::vector<GivenRow>& given);
+
 const Description<ScheduleWish>& schedule_wish_contract();
 range::RangeOptions options_of(const ScheduleWish& wish);
 /// The rows that were given, if any.

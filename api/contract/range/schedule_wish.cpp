@@ -21,6 +21,18 @@ const Description<RobustFilterOptions>& range_filter_contract() {
     return description;
 }
 
+void check_rows(const Json&, ScheduleWish& wish, Reader& reader) {
+    if (wish.controller == ControllerKind::PI && wish.filter.Tf_over_Td) {
+        const Reader::At at(reader, "filter");
+        reader.fault_at("Tf_over_Td", "Tf_over_Td belongs to a PID; a PI has no Td. Give Tf, or leave the filter out.");
+    }
+    if (!wish.given) return;
+    const Reader::At list(reader, "given");
+    check_given_rows(*wish.given, reader);
+}
+
+}  // namespace
+
 const Description<GivenRow>& given_row_contract() {
     static const auto description = [] {
         Description<GivenRow> d("GivenRow", "A row of a schedule, in the ideal form.");
@@ -37,14 +49,7 @@ const Description<GivenRow>& given_row_contract() {
     return description;
 }
 
-void check_rows(const Json&, ScheduleWish& wish, Reader& reader) {
-    if (wish.controller == ControllerKind::PI && wish.filter.Tf_over_Td) {
-        const Reader::At at(reader, "filter");
-        reader.fault_at("Tf_over_Td", "Tf_over_Td belongs to a PID; a PI has no Td. Give Tf, or leave the filter out.");
-    }
-    if (!wish.given) return;
-    const Reader::At list(reader, "given");
-    const std::vector<GivenRow>& rows = *wish.given;
+void check_given_rows(const std::vector<GivenRow>& rows, Reader& reader) {
     for (std::size_t k = 1; k < rows.size(); ++k) {
         const Reader::At row(reader, k);
         if (!(rows[k].at > rows[k - 1].at))
@@ -55,8 +60,6 @@ void check_rows(const Json&, ScheduleWish& wish, Reader& reader) {
                                       "; all rows must have one sign, for between them Kp would pass 0.");
     }
 }
-
-}  // namespace
 
 Codec<Interpolation> interpolation_word() {
     using enum Interpolation;
@@ -115,10 +118,9 @@ range::RangeOptions options_of(const ScheduleWish& wish) {
     return options;
 }
 
-std::vector<ScheduleRow> rows_of(const ScheduleWish& wish) {
+std::vector<ScheduleRow> rows_of(const std::vector<GivenRow>& given) {
     std::vector<ScheduleRow> rows;
-    if (!wish.given) return rows;
-    for (const GivenRow& row : *wish.given)
+    for (const GivenRow& row : given)
         rows.push_back({.at = row.at,
                         .Kp = row.Kp,
                         .Ti = row.Ti,
@@ -126,6 +128,10 @@ std::vector<ScheduleRow> rows_of(const ScheduleWish& wish) {
                         .Tf = row.Tf.value_or(kTfOverTd * row.Td),
                         .b = row.b});
     return rows;
+}
+
+std::vector<ScheduleRow> rows_of(const ScheduleWish& wish) {
+    return wish.given ? rows_of(*wish.given) : std::vector<ScheduleRow>{};
 }
 
 }  // namespace tunewright::api

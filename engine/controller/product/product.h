@@ -11,6 +11,7 @@
 
 #include "engine/controller/pid.h"
 #include "engine/controller/sampled/sampled_pid.h"
+#include "engine/controller/schedule/schedule.h"
 
 namespace tunewright::product {
 
@@ -165,6 +166,14 @@ struct Example {
     Settings settings = {};
 };
 
+/// What comes with a product for a table of settings, where its maker's text was read.
+struct GainScheduling {
+    std::size_t sets = 0;                  ///< most rows that it holds; 0: as many as wished
+    std::optional<Interpolation> between;  ///< none: a way of its own, told in `text`
+    std::string_view text = "";            ///< its name, what it is led by, and how it goes from one set to the next
+    std::string_view source = "";
+};
+
 struct Product {
     std::string_view id = "", maker = "", name = "";
     Form form = Form::ideal;
@@ -179,6 +188,7 @@ struct Product {
     std::vector<std::string_view> traps = {};
     Evidence evidence = {};
     Example example = {};
+    std::optional<GainScheduling> scheduling = {};  ///< none: none is known
 };
 
 /// The parameter of that name; null if there is none.

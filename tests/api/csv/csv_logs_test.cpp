@@ -56,7 +56,7 @@ TEST_P(Logs, AreReadRight) {
     }
 }
 
-const double kNone = std::nan("");
+const double kUnwritten = std::nan("");
 
 const std::vector<Log> kLogs = {
     {"headings_without_values",
@@ -64,14 +64,14 @@ const std::vector<Log> kLogs = {
      "Line 1 has 13 headings and the rows have 8 values: they are read as those of the first 8 headings"},
     {"rows_that_end_early", "time,temp,output,Kp,Ki,comment\n0,20.00,20,1,2,start\n" +
                                 written("{t},{y},{u}").substr(std::string("0,20.00,20\n").size())},
-    {"commented_headings", "# time, u, y\n" + written("{t}, {u}, {y}"), 1, 20, kNone,
+    {"commented_headings", "# time, u, y\n" + written("{t}, {u}, {y}"), 1, 20, kUnwritten,
      "The headings are those of the comment in line 1."},
     {"commented_headings_over_blanks", "# logged by me\n# time, y, u\n" + written("{t} {y} {u}")},
     {"matlab_comment", "% t y u\n" + written("{t} {y} {u}")},
-    {"on_and_off", "time,heater,temp\n" + written("{t},{on},{y}"), 1, 0, kNone,
+    {"on_and_off", "time,heater,temp\n" + written("{t},{on},{y}"), 1, 0, kUnwritten,
      "u is two levels: \"OFF\" is 0 and \"ON\" is 1."},
     {"state_of_the_heater", "time;heater state;temp\n" + written("{t};{on};{y}"), 1, 0},
-    {"unnamed_switch", "time,K1,temp\n" + written("{t},{on},{y}"), 1, 0, kNone,
+    {"unnamed_switch", "time,K1,temp\n" + written("{t},{on},{y}"), 1, 0, kUnwritten,
      "is read as u, the controller output (it switches)"},
     {"trailing_commas", "time,u,y\n" + written("{t},{u},{y},")},
     {"trailing_commas_in_the_headings_too", "time,u,y,\n" + written("{t},{u},{y},")},
@@ -89,7 +89,7 @@ const std::vector<Log> kLogs = {
     {"pairs_with_decimal_commas", with_commas(written("t={t};temp={y};pwm={u}"))},
     {"pairs_that_switch", written("[{clock}] temp={y} heater={on}"), 1, 0},
     {"serial_plotter_with_clock", written("{clock}.123 -> T:{y},PWM:{u}")},
-    {"serial_plotter", written("T:{y},PWM:{u}"), 1, 20, kNone, nullptr, seconds(1)},
+    {"serial_plotter", written("T:{y},PWM:{u}"), 1, 20, kUnwritten, nullptr, seconds(1)},
     {"serial_plotter_of_a_controller", written("Setpoint:40,Input:{y},Output:{u}"), 1, 20, 40,
      "as the controller calls it: the file has a set point", seconds(1)},
     {"octoprint", written("2026-11-21 {clock},123 - Recv: ok T:{y} /200.0 B:60.1 /60.0 T0:{y} /200.0 @:{u} B@:30"), 1,
@@ -100,7 +100,8 @@ const std::vector<Log> kLogs = {
     {"python_dictionaries", written("{'time': {t}, 'temp': {y}, 'pwm': {u}}")},
     {"measured_speed", "time,speed,measured_speed,pwm\n" + written("{t},40,{y},{u}")},
     {"measured_speed_beside_its_moving_command", "time,speed,measured_speed,pwm\n" + written("{t},{e},{y},{u}"), 1, 20,
-     kNone, "Column \"measured_speed\" is read as y, the measurement, as the measured one; it may also be \"speed\""},
+     kUnwritten,
+     "Column \"measured_speed\" is read as y, the measurement, as the measured one; it may also be \"speed\""},
     {"actual_speed", "t(s),Speed,Actual Speed,Output\n" + written("{t},40,{y},{u}")},
     {"target_and_measured", "time_ms,target_rpm,measured_rpm,pwm\n" + written("{ms},40,{y},{u}"), 1, 20, 40},
     {"two_data_sets",
@@ -109,8 +110,8 @@ const std::vector<Log> kLogs = {
              std::string text = written("{u},1,{y},2,,");
              return text.replace(text.find(",,"), 2, ",1,");
          }(),
-     1, 20, kNone, "The file holds a second pair, \"uVal\" and \"yVal\"; choose its columns to use that one."},
-    {"spacing_in_every_row", "dt,u,y\n" + written("1,{u},{y}"), 1, 20, kNone, "Times are made from column \"dt\""},
+     1, 20, kUnwritten, "The file holds a second pair, \"uVal\" and \"yVal\"; choose its columns to use that one."},
+    {"spacing_in_every_row", "dt,u,y\n" + written("1,{u},{y}"), 1, 20, kUnwritten, "Times are made from column \"dt\""},
     {"german_letters", with_commas("Zeit;W;X;Y\n" + written("{t};40;{y};{u}")), 1, 20, 40, "as in DIN 19226"},
     {"german_words", "Datum;Uhrzeit;Sollwert;Istwert;Stellwert\n" + written("21/11/2026;{clock};40;{y};{u}"), 1, 20,
      40},
@@ -142,10 +143,10 @@ const std::vector<Log> kLogs = {
     {"camel_case", "timeMs,setPoint,processValue,controllerOutput\n" + written("{ms},40,{y},{u}"), 1, 20, 40},
     {"milliseconds_of_a_board", "millis,temp,pwm\n" + written("{ms},{y},{u}")},
     {"a_capital_t_is_a_temperature", "Time,T,Q\n" + written("{t},{y},{u}")},
-    {"r_table", "\"t\" \"u\" \"y\"\n" + written("\"{row}\" {t} {u} {y}"), 1, 20, kNone, "numbers the rows"},
+    {"r_table", "\"t\" \"u\" \"y\"\n" + written("\"{row}\" {t} {u} {y}"), 1, 20, kUnwritten, "numbers the rows"},
     {"terms_of_the_controller", "t,r,y,e,P,I,D,u\n" + written("{t},40,{y},{e},1,2,3,{u}"), 1, 20, 40,
      "The controller's own terms are in the file, \"e\", \"P\", \"I\" and \"D\"; they are passed over."},
-    {"a_command_that_is_u", "time,cmd,rpm\n" + written("{t},{u},{y}"), 1, 20, kNone, "no other column is"},
+    {"a_command_that_is_u", "time,cmd,rpm\n" + written("{t},{u},{y}"), 1, 20, kUnwritten, "no other column is"},
     {"a_command_beside_u", "time,cmd,rpm,pwm\n" + written("{t},40,{y},{u}"), 1, 20, 40},
     {"set_point_of_the_same_tag", "Time,TIC101.PV,TIC101.SP,TIC101.OP,TIC102.SP\n" + written("{t},{y},40,{u},50"), 1,
      20, 40},

@@ -26,7 +26,7 @@ CsvFault fault(std::string_view text, const CsvOptions& options = {}) {
     return {"none", "it was read"};
 }
 
-CsvOptions columns(ColumnChoice t, ColumnChoice u, ColumnChoice y) {
+CsvOptions chosen_columns(ColumnChoice t, ColumnChoice u, ColumnChoice y) {
     CsvOptions options;
     options.columns = {t, u, y};
     return options;
@@ -41,7 +41,7 @@ TEST(Csv, PlainHeadingsNeedNoChoice) {
 }
 
 TEST(Csv, TheRecordedHeaterStepIsReadAsExported) {
-    const CsvRecord record = read(data_file("records/tclab-step.csv"), columns("Time", "Q1", "T1"));
+    const CsvRecord record = read(data_file("records/tclab-step.csv"), chosen_columns("Time", "Q1", "T1"));
     ASSERT_EQ(record.t.size(), 801u);
     EXPECT_EQ(record.t.front(), 0);
     EXPECT_EQ(record.t.back(), 799);
@@ -73,19 +73,19 @@ TEST(Csv, TabsAndWindowsLineEndsAndByteOrderMark) {
 
 TEST(Csv, QuotedHeadingsMayHoldSeparatorsAndQuotes) {
     const CsvRecord record =
-        read("\"t\",\"valve, \"\"A\"\"\",\"y\"\n\"0\",\"1,5\",\"2\"\n", columns("t", "valve, \"A\"", "y"));
+        read("\"t\",\"valve, \"\"A\"\"\",\"y\"\n\"0\",\"1,5\",\"2\"\n", chosen_columns("t", "valve, \"A\"", "y"));
     EXPECT_THAT(record.u, ElementsAre(1.5));
 }
 
 TEST(Csv, ALetterOfSeveralBytesIsNoSeparator) {
-    const CsvRecord record = read("sep=\xC3\xBF\nt,u,y\xC3\xBC\n0,1,2\n1,1,3\n", columns("t", "u", "y\xC3\xBC"));
+    const CsvRecord record = read("sep=\xC3\xBF\nt,u,y\xC3\xBC\n0,1,2\n1,1,3\n", chosen_columns("t", "u", "y\xC3\xBC"));
     EXPECT_THAT(record.y, ElementsAre(2, 3));
 }
 
 TEST(Csv, ASingleQuoteInAQuotedCellHidesNoLetter) {
     // The letter behind it has two bytes: half of it would be no text.
     const CsvRecord record =
-        read("\"t\",\"a\"\xC3\xB9\"b\"\"\",\"y\"\n0,1,2\n1,1,3\n", columns("t", "a\"\xC3\xB9\"b\"", "y"));
+        read("\"t\",\"a\"\xC3\xB9\"b\"\"\",\"y\"\n0,1,2\n1,1,3\n", chosen_columns("t", "a\"\xC3\xB9\"b\"", "y"));
     EXPECT_THAT(record.y, ElementsAre(2, 3));
 }
 
@@ -150,7 +150,7 @@ TEST(Csv, AnEmptyCellKeepsTheOther) {
 }
 
 TEST(Csv, ColumnsMayBeNumbersWhereThereAreNoHeadings) {
-    CsvOptions options = columns(2, 3, 1);
+    CsvOptions options = chosen_columns(2, 3, 1);
     const CsvRecord record = read("7,0,1\n8,1,1\n", options);
     EXPECT_THAT(record.t, ElementsAre(0, 1));
     EXPECT_THAT(record.y, ElementsAre(7, 8));
@@ -183,7 +183,7 @@ TEST(Csv, FaultsNameLineColumnAndText) {
 }
 
 TEST(Csv, OneColumnCannotBeTwoThings) {
-    EXPECT_THAT(fault("t,u,y\n0,1,2\n", columns("t", "u", "u")).message, HasSubstr("the same column"));
+    EXPECT_THAT(fault("t,u,y\n0,1,2\n", chosen_columns("t", "u", "u")).message, HasSubstr("the same column"));
 }
 
 TEST(Csv, TooManySamplesAreRefused) {

@@ -21,7 +21,7 @@ using testing::open_loop_test;
 using testing::simulated_loop;
 using testing::SimulatedTest;
 
-bool warns(const IdentifiedModel& model) {
+bool warns_of_feedback(const IdentifiedModel& model) {
     return std::any_of(model.warnings.begin(), model.warnings.end(),
                        [](const Warning& warning) { return warning.code == "closed-loop"; });
 }
@@ -68,7 +68,7 @@ const Fopdt& fopdt_of(const IdentifiedModel& model) {
 TEST(Feedback, SetPointStepsTellThePlantWithinItsErrors) {
     const auto model = identify(PiLoop{}.record(), {}, {});
     ASSERT_TRUE(model) << model.error().message;
-    EXPECT_TRUE(warns(*model));
+    EXPECT_TRUE(warns_of_feedback(*model));
     ASSERT_TRUE(model->data_quality.closed_loop);
     EXPECT_EQ(model->data_quality.closed_loop->used, LoopExcitation::set_point);
     const Fopdt& plant = fopdt_of(*model);
@@ -82,7 +82,7 @@ TEST(Feedback, KicksOfTheControllerStandInForAColumnOfTheSetPoint) {
     loop.with_r = false;
     const auto model = identify(loop.record(), {}, {});
     ASSERT_TRUE(model) << model.error().message;
-    EXPECT_TRUE(warns(*model));
+    EXPECT_TRUE(warns_of_feedback(*model));
     EXPECT_EQ(model->data_quality.closed_loop->used, LoopExcitation::outside_moves);
     EXPECT_NEAR(fopdt_of(*model).K, 2, 3 * model->standard_errors.at("K"));
 }
@@ -125,7 +125,7 @@ TEST(Feedback, AConstantSetPointBesideAnOpenLoopStepSaysNothing) {
     record.r.assign(record.t.size(), 1.0);
     const auto model = identify(record, {}, {});
     ASSERT_TRUE(model);
-    EXPECT_FALSE(warns(*model));
+    EXPECT_FALSE(warns_of_feedback(*model));
     EXPECT_FALSE(model->data_quality.closed_loop);
 }
 
@@ -179,7 +179,7 @@ TEST(Feedback, GainsFromSetPointMovesAreRightWithinTheirErrors) {
         if (test.plant.integrating) continue;
         const auto model = identify(test.record, {}, {});
         if (!model) continue;
-        EXPECT_TRUE(warns(*model)) << test.what;
+        EXPECT_TRUE(warns_of_feedback(*model)) << test.what;
         const double off = std::abs(gain_of(model->plant) - test.plant.K);
         ++answers;
         right += off <= 0.1 * std::abs(test.plant.K) || off <= 3 * model->standard_errors.at("K") ? 1 : 0;

@@ -11,7 +11,7 @@
 namespace tunewright {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 LinearPlant made(const Plant& plant) { return *LinearPlant::make(plant); }
 

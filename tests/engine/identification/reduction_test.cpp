@@ -11,12 +11,12 @@
 namespace tunewright {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-LinearPlant made(const Plant& plant) { return *LinearPlant::make(plant); }
+LinearPlant reducible(const Plant& plant) { return *LinearPlant::make(plant); }
 
 Expected<ReducedModel> reduced(const Plant& plant, ReductionMethod method, ReducedOrder order = ReducedOrder::first) {
-    return reduce(made(plant), {.order = order, .method = method});
+    return reduce(reducible(plant), {.order = order, .method = method});
 }
 
 void expect_model(const Expected<ReducedModel>& model, int integrators, double K, double T1, double T2, double L,
@@ -110,7 +110,7 @@ TEST(Tangent, TwoEqualLagsHaveTheTextbookTangent) {
     const double x = model->T1 / 7 + (3 - e);
     EXPECT_NEAR((1 + x) * std::exp(-x), 1 / e, 1e-9);
 
-    const auto by_slope = reduce(made(Sopdt{.K = -3, .T1 = 7, .T2 = 7}),
+    const auto by_slope = reduce(reducible(Sopdt{.K = -3, .T1 = 7, .T2 = 7}),
                                  {.method = ReductionMethod::tangent, .tangent_time = TangentTime::by_slope});
     ASSERT_TRUE(by_slope);
     EXPECT_NEAR(by_slope->T1, 7 * e, 1e-7);
@@ -215,10 +215,10 @@ TEST(Reduction, APlantOfTheFormIsTakenAsItIsByEveryMethod) {
 
 TEST(Reduction, AutomaticFallsBackOnTheOtherMethod) {
     // Ringing: no half rule. Jumping: no tangent.
-    EXPECT_TRUE(
-        reduce(made(OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 1}), {.preferred = ReductionMethod::half_rule}));
-    EXPECT_TRUE(
-        reduce(made(TransferFunction{.num = {1, 2}, .den = {1, 1}, .L = 1}), {.preferred = ReductionMethod::tangent}));
+    EXPECT_TRUE(reduce(reducible(OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 1}),
+                       {.preferred = ReductionMethod::half_rule}));
+    EXPECT_TRUE(reduce(reducible(TransferFunction{.num = {1, 2}, .den = {1, 1}, .L = 1}),
+                       {.preferred = ReductionMethod::tangent}));
 }
 
 TEST(Reduction, AutomaticNamesBothReasonsWhereNeitherMethodApplies) {

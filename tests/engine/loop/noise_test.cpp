@@ -12,7 +12,7 @@
 namespace tunewright {
 namespace {
 
-LinearPlant made(const Plant& plant) {
+LinearPlant noisy_plant(const Plant& plant) {
     auto result = LinearPlant::make(plant);
     EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().message);
     return *result;
@@ -87,7 +87,7 @@ double by_pulse_response(double K, double T, double L, const ParallelPid& c, dou
 }
 
 TEST(NoiseGain, IsKpForAPController) {
-    const auto plant = made(Fopdt{.K = 1e-9, .T = 1, .L = 0.3});
+    const auto plant = noisy_plant(Fopdt{.K = 1e-9, .T = 1, .L = 0.3});
     for (const double Ts : {1e-4, 0.1, 5.0}) EXPECT_NEAR(gain_of(plant, {.Kp = -2.5}, Ts), 2.5, 1e-8);
 }
 
@@ -102,7 +102,7 @@ TEST(NoiseGain, MatchesTheClosedFormOfAFirstOrderLoop) {
             end * end * Ts + 2 * end * jump * x / p + jump * jump * (1 - std::exp(-2 * p * Ts)) / (2 * p);
         const double after = jump * jump * x * x / (2 * p);
         const double expected = std::sqrt((during + after) / Ts);
-        EXPECT_NEAR(gain_of(made(Fopdt{.K = K, .T = T, .L = 0}), {.Kp = Kp}, Ts) / expected, 1, 1e-5) << Ts;
+        EXPECT_NEAR(gain_of(noisy_plant(Fopdt{.K = K, .T = T, .L = 0}), {.Kp = Kp}, Ts) / expected, 1, 1e-5) << Ts;
     }
 }
 
@@ -113,7 +113,7 @@ TEST(NoiseGain, MatchesThePulseResponseWithDeadTimeAndFilters) {
         for (const double Ts : {0.02, 0.4, 1.0, 3.0})
             for (const double L : {0.2, 1.0}) {
                 const double expected = by_pulse_response(1, 1, L, c, Ts, 1e-3, 60);
-                EXPECT_NEAR(gain_of(made(Fopdt{.K = 1, .T = 1, .L = L}), c, Ts) / expected, 1, 2e-4)
+                EXPECT_NEAR(gain_of(noisy_plant(Fopdt{.K = 1, .T = 1, .L = L}), c, Ts) / expected, 1, 2e-4)
                     << Ts << " " << L << " " << c.Kd;
             }
 }
@@ -123,7 +123,7 @@ TEST(NoiseGain, IntegratesTheEchoesOfANeutralLoopInClosedForm) {
     for (const double Ts : {0.05, 0.5, 1.0, 2.5}) {
         const ParallelPid c{.Kp = 0.6, .Ki = 0.3};
         const double expected = by_pulse_response(1, 0, 1, c, Ts, 1e-3, 80);
-        EXPECT_NEAR(gain_of(made(Fopdt{.K = 1, .T = 0, .L = 1}), c, Ts) / expected, 1, 2e-4) << Ts;
+        EXPECT_NEAR(gain_of(noisy_plant(Fopdt{.K = 1, .T = 0, .L = 1}), c, Ts) / expected, 1, 2e-4) << Ts;
     }
 }
 
@@ -131,7 +131,7 @@ TEST(NoiseGain, HoldsForANearlyUndampedLoop) {
     // 2 % below the ultimate gain pi/2 of an integral controller on e^(-s): a narrow peak of |C S|.
     const ParallelPid c{.Ki = 0.98 * std::numbers::pi / 2};
     const double expected = by_pulse_response(1, 0, 1, c, 0.5, 5e-4, 1200);
-    EXPECT_NEAR(gain_of(made(Fopdt{.K = 1, .T = 0, .L = 1}), c, 0.5) / expected, 1, 1e-3);
+    EXPECT_NEAR(gain_of(noisy_plant(Fopdt{.K = 1, .T = 0, .L = 1}), c, 0.5) / expected, 1, 1e-3);
 }
 
 TEST(NoiseGain, IsWhatASeededRandomRunShows) {
@@ -150,13 +150,13 @@ TEST(NoiseGain, IsWhatASeededRandomRunShows) {
             ++count;
         }
     }
-    const double gain = gain_of(made(Fopdt{.K = 1, .T = 1, .L = 0.3}), c, 0.02);
+    const double gain = gain_of(noisy_plant(Fopdt{.K = 1, .T = 1, .L = 0.3}), c, 0.02);
     EXPECT_NEAR(std::sqrt(squares / static_cast<double>(count)) / gain, 1, 0.02);
 }
 
 TEST(NoiseGain, DependsOnRatiosOfTimesAlone) {
     const auto gain = [](double scale) {
-        return gain_of(made(Sopdt{.K = 1, .T1 = scale, .T2 = 0.2 * scale, .L = 0.1 * scale}),
+        return gain_of(noisy_plant(Sopdt{.K = 1, .T1 = scale, .T2 = 0.2 * scale, .L = 0.1 * scale}),
                        {.Kp = 3, .Ki = 2 / scale, .Kd = 0.5 * scale, .filter = {FilterType::derivative, 0.02 * scale}},
                        0.01 * scale);
     };
@@ -164,7 +164,7 @@ TEST(NoiseGain, DependsOnRatiosOfTimesAlone) {
 }
 
 TEST(NoiseGain, IsInfiniteForADerivativeWithoutFilterAlone) {
-    const auto plant = made(Fopdt{.K = 1, .T = 1, .L = 1});
+    const auto plant = noisy_plant(Fopdt{.K = 1, .T = 1, .L = 1});
     const auto bare = Loop::make(plant, {.Kp = 0.5, .Ki = 0.5, .Kd = 0.1});
     ASSERT_TRUE(bare.has_value());
     EXPECT_FALSE(noise_gain(*bare, 0.1).has_value());
@@ -175,12 +175,12 @@ TEST(NoiseGain, IsInfiniteForADerivativeWithoutFilterAlone) {
 }
 
 TEST(DefaultNoiseSampleTime, FollowsFilterCrossoverOrPlant) {
-    const auto plant = made(Ipdt{.K = 2, .L = 0.1});
+    const auto plant = noisy_plant(Ipdt{.K = 2, .L = 0.1});
     EXPECT_DOUBLE_EQ(default_noise_sample_time(*Loop::make(plant, {.Kp = 1, .filter = {FilterType::derivative, 0.5}})),
                      0.05);
     // |L| = 2 Kp/omega crosses 1 at 1.
     EXPECT_NEAR(default_noise_sample_time(*Loop::make(plant, {.Kp = 0.5})), 0.02 * std::numbers::pi, 1e-9);
-    const auto lag = made(Fopdt{.K = 1, .T = 3, .L = 1});
+    const auto lag = noisy_plant(Fopdt{.K = 1, .T = 3, .L = 1});
     EXPECT_NEAR(default_noise_sample_time(*Loop::make(lag, {.Kp = 0.5})), 0.04, 1e-12);
 }
 

@@ -22,7 +22,7 @@ LinearPlant made(const Plant& plant) {
     return *result;
 }
 
-struct Case {
+struct LimitedCase {
     const char* name;
     Plant plant;
     ParallelPid gains;
@@ -33,7 +33,7 @@ struct Case {
 
 const FilterType kSecond = FilterType::measurement_second_order, kDerivative = FilterType::derivative;
 
-std::vector<Case> cases() {
+std::vector<LimitedCase> limited_cases() {
     return {
         {"PI on a lag with dead time",
          Fopdt{.K = 1, .T = 1, .L = 1},
@@ -105,7 +105,7 @@ std::vector<Case> cases() {
 }
 
 TEST(LimitedResponse, AgreesWithAPlainSimulationInTinySteps) {
-    for (const Case& c : cases()) {
+    for (const LimitedCase& c : limited_cases()) {
         SCOPED_TRACE(c.name);
         const auto plant = made(c.plant);
         ResponseOptions options;
@@ -164,7 +164,7 @@ TEST(LimitedResponse, EqualsTheLinearResponseWhereTheLimitsAreNotReached) {
 }
 
 TEST(LimitedResponse, MirrorsWithLimitsAndStepsMirrored) {
-    for (const Case& c : cases()) {
+    for (const LimitedCase& c : limited_cases()) {
         SCOPED_TRACE(c.name);
         const auto plant = made(c.plant);
         const auto one = simulate_limited(plant, c.gains, c.in, c.limits, {});
@@ -293,7 +293,7 @@ TEST(LimitedResponse, EscapesEndFinitelyAndSaySo) {
 }
 
 TEST(LimitedResponse, ATighterToleranceChangesTheIntegralsByLessThanPromised) {
-    for (const Case& c : cases()) {
+    for (const LimitedCase& c : limited_cases()) {
         SCOPED_TRACE(c.name);
         const auto plant = made(c.plant);
         ResponseOptions options, fine;

@@ -99,7 +99,7 @@ struct Law {
     }
 };
 
-struct Case {
+struct OracleCase {
     const char* name;
     const char* output;
     Law law;
@@ -107,7 +107,7 @@ struct Case {
     std::vector<double> initial = {};
 };
 
-std::vector<Case> cases() {
+std::vector<OracleCase> oracle_cases() {
     return {
         {"PI", "T", {.Kp = 4.8, .Ti = 0.194}, 10, 0, 4},
         {"PI, load", "T", {.Kp = 4.8, .Ti = 0.194}, 0, -30, 4},
@@ -120,7 +120,7 @@ std::vector<Case> cases() {
     };
 }
 
-NonlinearResponse response_to(const Case& c, double L) {
+NonlinearResponse response_to(const OracleCase& c, double L) {
     NonlinearPlant plant = cstr(c.output);
     plant.L = L;
     NonlinearOptions options;
@@ -132,7 +132,7 @@ NonlinearResponse response_to(const Case& c, double L) {
     return simulate_nonlinear(made_system(plant), c.law.gains(), {c.r, c.d}, options);
 }
 
-Tank start_of(const Case& c) {
+Tank start_of(const OracleCase& c) {
     const auto steady = made_system(cstr(c.output));
     if (!c.initial.empty()) return {c.initial[0], c.initial[1]};
     return {steady.x_steady()[0], steady.x_steady()[1]};
@@ -146,7 +146,7 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b, dou
 }
 
 TEST(NonlinearOracle, LoopsOnTheTankAreCvodes) {
-    for (const Case& c : cases()) {
+    for (const OracleCase& c : oracle_cases()) {
         SCOPED_TRACE(c.name);
         const bool of_T = std::string(c.output) == "T";
         const double y_steady = made_system(cstr(c.output)).y_steady();
@@ -181,7 +181,7 @@ struct DelayedLoop {
     std::vector<double> y, u;
 };
 
-DelayedLoop tiny_steps(const Case& c, double L, int n) {
+DelayedLoop tiny_steps(const OracleCase& c, double L, int n) {
     const bool of_T = std::string(c.output) == "T";
     const double y_steady = made_system(cstr(c.output)).y_steady(), h = L / n;
     const auto steps = std::size_t(std::lround(c.horizon / h));
@@ -227,11 +227,12 @@ DelayedLoop tiny_steps(const Case& c, double L, int n) {
 
 TEST(NonlinearOracle, LoopsWithDeadTimeAreThoseOfTinySteps) {
     constexpr double kL = 0.05;
-    for (const Case& c :
-         {Case{"PI", "T", {.Kp = 4.8, .Ti = 0.3}, 10, 0, 4}, Case{"PI, load", "T", {.Kp = 4.8, .Ti = 0.3}, 0, -30, 4},
-          Case{"PI, limits", "T", {.Kp = 8, .Ti = 0.3, .min = -30, .max = 60}, 10, 0, 4},
-          Case{"PID", "CA", {.Kp = -1229, .Ti = 1.38, .Td = 0.13}, 0.1, 0, 4},
-          Case{"PID, limits", "CA", {.Kp = -3000, .Ti = 0.9, .Td = 0.1, .min = -90, .max = 60}, 0.05, 0, 4}}) {
+    for (const OracleCase& c :
+         {OracleCase{"PI", "T", {.Kp = 4.8, .Ti = 0.3}, 10, 0, 4},
+          OracleCase{"PI, load", "T", {.Kp = 4.8, .Ti = 0.3}, 0, -30, 4},
+          OracleCase{"PI, limits", "T", {.Kp = 8, .Ti = 0.3, .min = -30, .max = 60}, 10, 0, 4},
+          OracleCase{"PID", "CA", {.Kp = -1229, .Ti = 1.38, .Td = 0.13}, 0.1, 0, 4},
+          OracleCase{"PID, limits", "CA", {.Kp = -3000, .Ti = 0.9, .Td = 0.1, .min = -90, .max = 60}, 0.05, 0, 4}}) {
         SCOPED_TRACE(c.name);
         const auto response = response_to(c, kL);
         ASSERT_EQ(response.ended, "");
@@ -297,7 +298,7 @@ TEST(NonlinearOracle, UnitsOfTimeAndOutputDoNotMatter) {
 }
 
 TEST(NonlinearOracle, ATighterToleranceComesNearer) {
-    const Case c = cases()[2];
+    const OracleCase c = oracle_cases()[2];
     NonlinearOptions options;
     options.horizon = c.horizon;
     options.samples = kSamples;

@@ -101,6 +101,40 @@ test("a row is typed over; what cannot be read stands at its cell", async () => 
   });
 });
 
+test("the rows are typed into the user's controller, follow a row that moves, and go with the job", async () => {
+  await withPage("#/range", {}, async (page) => {
+    await verdict(page).waitFor();
+    const typed = () => page.waitForResponse((response) => response.url().endsWith("/emerson_deltav_standard/schedule"));
+    const table = page.getByRole("region", { name: "Settings of each row" });
+    const first = typed();
+    await page.getByRole("combobox", { name: "Maker and product" }).fill("deltav standard");
+    await page.getByRole("listbox", { name: "Maker and product" }).getByRole("option").first().waitFor();
+    await page.keyboard.press("Enter");
+    for (const [name, value] of [["Measurement range", "200"], ["Output range", "100"]]) {
+      const range = page.getByRole("group", { name });
+      await range.getByLabel("from").fill("0");
+      await range.getByLabel("to").fill(value);
+      await range.getByLabel("to").press("Tab");
+    }
+    const answer = await (await first).json();
+    await table.waitFor();
+    for (const [index, { typing }] of answer.rows.entries())
+      assert.ok((await table.locator("tbody tr").nth(index).innerText()).includes(typing.as_typed.GAIN));
+    assert.equal(await table.locator("tbody tr").count(), answer.rows.length);
+    assert.ok((await page.locator(".own-rows").innerText()).includes("PID_GAINSCHED"));
+    assert.deepEqual(await accessibilityViolations(page), []);
+
+    const second = typed();
+    await cell(page, "Kp of row 2").fill("0.5");
+    await cell(page, "Kp of row 2").blur();
+    const { rows } = (await second).request().postDataJSON();
+    assert.equal(rows[1].Kp, 0.5);
+    const posted = page.waitForRequest((request) => request.url().endsWith("/v1/jobs") && request.method() === "POST");
+    await page.getByRole("button", { name: "Send as a job" }).click();
+    assert.equal((await posted).postDataJSON().schedule.given[1].Kp, 0.5);
+  });
+});
+
 test("equations show their runs, and with moved rows run again", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();
@@ -215,8 +249,8 @@ test("a range as a job shows its schedule and its report, has no league table, a
     await page.getByRole("link", { name: "Compare", exact: true }).click();
     await page.waitForURL(/\/design$/);
     await page.getByRole("link", { name: "Jobs", exact: true }).click();
-    await page.getByText("3 points over load").waitFor();
-    await page.getByRole("link", { name: /^Duplicate/ }).click();
+    await page.getByText("3 points over load").first().waitFor();
+    await page.getByRole("link", { name: /^Duplicate/ }).first().click();
     await page.waitForURL(new RegExp(`#/jobs/${id}/range$`));
     await verdict(page).waitFor();
     assert.equal(await verdict(page).innerText(), result.range.verdict.text);

@@ -3,6 +3,7 @@
 import { call, getText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
+import type { ScheduleRow } from "./range.ts";
 import type { Controller, Figures, Notice, Response, Robustness, Units, WhyNull } from "./types.ts";
 
 export type Span = [number, number];
@@ -130,6 +131,24 @@ export async function settingsFor(
 ): Promise<AsEntered> {
   const body = { controller: settingsOf(controller), y_span, u_span, sample_time, units: units ?? {}, nearest: true };
   return (await call("POST", `v1/controllers/${encodeURIComponent(product)}/settings`, body)).data as AsEntered;
+}
+
+/** What to type for each row of a schedule. */
+export interface TypedSchedule {
+  rows: { at: number; typing: AsEntered }[];
+  /** How the product goes between its rows, and what is the same at all of them. */
+  notes: Notice[];
+}
+
+export async function scheduleSettingsFor(
+  { product, y_span, u_span, sample_time }: Implement & { product: string },
+  given: readonly ScheduleRow[],
+  interpolation: string,
+  units: Units | undefined,
+): Promise<TypedSchedule> {
+  const rows = given.map(({ at, Kp, Ti, Td, Tf, b }) => ({ at, Kp, Ti, Td, Tf, b }));
+  const body = { rows, interpolation, y_span, u_span, sample_time, units: units ?? {}, nearest: true };
+  return (await call("POST", `v1/controllers/${encodeURIComponent(product)}/schedule`, body)).data as TypedSchedule;
 }
 
 export type Language = "st" | "c" | "python";

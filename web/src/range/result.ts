@@ -7,17 +7,21 @@ import { h } from "../dom.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
+import type { Store } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
 import { handOn } from "./hand.ts";
 import { rangeHandles } from "./handles.ts";
+import { ownRows } from "./own_rows.ts";
 import { resultCards, showRangeVerdict } from "./result_cards.ts";
 import { runsCard } from "./runs_card.ts";
-import { handleWords } from "./schedule.ts";
+import { givenRequest, handleWords } from "./schedule.ts";
 import { scheduleCard } from "./schedule_card.ts";
 
 export interface RangeResultView {
   element: HTMLElement;
   show(request: RangeRequest, content: RangeContent): void;
+  /** With the rows as they were moved, where these curves were asked by the request; else as it is. */
+  withMoved(request: RangeRequest): RangeRequest;
   /** The verdict as it stands, to be spoken. */
   sentence(): string;
   clear(): void;
@@ -26,6 +30,7 @@ export interface RangeResultView {
 
 /** `onAsked`: the curves that are shown were asked by this. */
 export function rangeResult(
+  store: Store,
   announce: (sentence: string) => void,
   onAsked: (request: RangeRequest | null) => void,
 ): RangeResultView {
@@ -56,6 +61,7 @@ export function rangeResult(
   });
   const schedule = scheduleCard({ onChange: hand.change, onBack: hand.back });
   const plots = plotGrid(announce);
+  const own = ownRows(store, announce);
   const runs = runsCard(announce, hand.runAgain);
   const slot = h("div", { class: "range-first" });
   const element = h(
@@ -64,6 +70,7 @@ export function rangeResult(
     cards.verdict,
     slot,
     h("div", { class: "range-cards" }, schedule.element, cards.one),
+    own.element,
     plots.element,
     runs.element,
     cards.points,
@@ -125,7 +132,14 @@ export function rangeResult(
     cards.show(designed, moved, units);
     const parameter = about.range?.along === "parameter" ? (about.range.parameter ?? null) : null;
     runs.show(designed, moved, parameter, units);
+    showOwn();
     onAsked(hand.asked());
+  }
+
+  function showOwn(): void {
+    const { designed, moved, rows, units } = drawn();
+    const { schedule: held, scheduling } = moved ?? designed;
+    own.show(held ? { scheduling, rows, interpolation: held.interpolation, units } : null);
   }
 
   const sentence = (): string => cards.verdict.textContent ?? "";
@@ -140,6 +154,11 @@ export function rangeResult(
       showMoving();
       showCards();
     },
+    withMoved(request) {
+      const { designed, moved } = hand.shown() ?? {};
+      if (!designed || !moved || JSON.stringify(request) !== JSON.stringify(about)) return request;
+      return givenRequest(request, designed, [...hand.rows()], { runs: true, quick: false });
+    },
     sentence,
     clear() {
       element.hidden = true;
@@ -148,6 +167,7 @@ export function rangeResult(
       first?.dispose();
       plots.dispose();
       runs.dispose();
+      own.dispose();
     },
   };
 }

@@ -7,6 +7,7 @@ import type { RangeContent, RangeExample, RangeRequest } from "../api/range.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { requestMenu } from "../views/request_menu.ts";
+import type { Store } from "../store.ts";
 import type { View } from "../views/start.ts";
 import { EMPTY, rangeForm } from "./form.ts";
 import { atSharedFields } from "./request.ts";
@@ -24,7 +25,7 @@ export interface RangeEvents {
   onJob(request: RangeRequest): Promise<void>;
 }
 
-export function rangeView(announce: (sentence: string) => void, events: RangeEvents): RangeView {
+export function rangeView(store: Store, announce: (sentence: string) => void, events: RangeEvents): RangeView {
   const errors = new FormErrors();
   let examples: RangeExample[] = [];
   let listed: Promise<void> | null = null;
@@ -33,7 +34,7 @@ export function rangeView(announce: (sentence: string) => void, events: RangeEve
   const busy = h("p", { class: "hint busy", role: "status", hidden: true }, "Designing...");
   const menu = requestMenu(announce);
   menu.show("", null);
-  const result = rangeResult(announce, (request) => menu.show("v1/range", request));
+  const result = rangeResult(store, announce, (request) => menu.show("v1/range", request));
   const form = rangeForm(errors, {
     onDesign: design,
     onCancel: cancel,
@@ -94,7 +95,7 @@ export function rangeView(announce: (sentence: string) => void, events: RangeEve
 
   async function sendJob(): Promise<void> {
     const request = compose();
-    if (request) await events.onJob(request).catch(complain);
+    if (request) await events.onJob(result.withMoved(request)).catch(complain);
   }
 
   /** Examples are asked for once; another try follows where they could not be had. */

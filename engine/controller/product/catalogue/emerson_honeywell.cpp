@@ -30,6 +30,14 @@ Parameter deltav_alpha() {
             .remark = "The fieldbus block has 0.1, fixed."};
 }
 
+const GainScheduling kDeltaVScheduling{
+    .sets = 3,
+    .between = Interpolation::steps,
+    .text =
+        "The module template PID_GAINSCHED holds GAIN, RESET and RATE of three regions, led by PV, OUT or another "
+        "signal; within a dead band at the two borders it goes linearly from one set to the next.",
+    .source = "DeltaV Books Online, PID_GAINSCHED module template"};
+
 Evidence deltav_evidence(std::vector<std::string_view> read, std::vector<std::string_view> unverified) {
     return {.level = EvidenceLevel::read,
             .read = std::move(read),
@@ -93,6 +101,7 @@ Product deltav_standard() {
                                     {"printed transfer functions", "exact place of ALPHA in the Standard form"}),
         .example = of_design_a(
             {{"GAIN", 3.0}, {"RESET", 120.0}, {"RATE", 20.0}, {"ALPHA", 0.1}, {"BETA", 0.6}, {"GAMMA", 0.0}}),
+        .scheduling = kDeltaVScheduling,
     };
 }
 
@@ -137,6 +146,7 @@ Product deltav_series() {
             deltav_evidence({"formulas from series to standard, ALPHA left out", "units", "range and default of ALPHA"},
                             {"printed equation"}),
         .example = of_design_a({{"GAIN", 2.32793}, {"RESET", 93.1174}, {"RATE", 30.723}, {"ALPHA", 0.125}}),
+        .scheduling = kDeltaVScheduling,
     };
 }
 

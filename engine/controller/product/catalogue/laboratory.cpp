@@ -57,6 +57,13 @@ Product labview() {
                                  "unofficial LabVIEW documentation, pid_adv_alg",
                                  "LabVIEW 2012 PID and Fuzzy Logic Toolkit help (excerpt)"}},
         .example = of_design_a({{"Kc", 1.5}, {"Ti_min", 2.0}, {"Td_min", 0.333333}, {"beta", 0.6}, {"gamma", 0.0}}),
+        .scheduling =
+            GainScheduling{
+                .between = Interpolation::steps,
+                .text = "PID Gain Schedule.vi gives PID.vi the Kc, Ti and Td of the first set whose max value the "
+                        "scheduling value does not exceed: the max value of a set is the place of the row after it. "
+                        "It has no hysteresis.",
+                .source = "NI, LabVIEW API reference, PID Gain Schedule VI"},
     };
 }
 

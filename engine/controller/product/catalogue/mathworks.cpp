@@ -108,6 +108,10 @@ Algorithm block_algorithm() {
                          "none, back-calculation or clamping");
 }
 
+GainScheduling block_scheduling(std::optional<Interpolation> between, std::string_view text) {
+    return {.between = between, .text = text, .source = "mathworks.com slcontrol/ug/pidgainscheduler"};
+}
+
 constexpr std::string_view kPoleFilter = "First order with its pole at N rad/s; forward Euler needs N Ts < 2.";
 
 Product block_parallel() {
@@ -132,6 +136,10 @@ Product block_parallel() {
         .traps = {"N is a pole in rad/s here, a ratio in pidstd, and a time in the autotuner block's parallel form."},
         .evidence = block_evidence(),
         .example = of_design_a({{"P", 1.5}, {"I", 0.0125}, {"D", 30.0}, {"N", 0.5}, {"b", 0.6}, {"c", 0.0}}),
+        .scheduling = block_scheduling(
+            {},
+            "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
+            "breakpoints; the PID block takes them as external inputs."),
     };
 }
 
@@ -162,6 +170,10 @@ Product block_ideal() {
         .traps = {"I is 1/Ti, not Ti."},
         .evidence = block_evidence(),
         .example = of_design_a({{"P", 1.5}, {"I", 0.00833333}, {"D", 20.0}, {"N", 0.5}}),
+        .scheduling = block_scheduling(
+            Interpolation::linear_in_gains,
+            "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
+            "breakpoints; I is 1/Ti here. The PID block takes them as external inputs."),
     };
 }
 

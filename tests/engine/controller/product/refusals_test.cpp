@@ -9,10 +9,6 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-const IdealPid kDesign{.Kp = 1.5, .Ti = 120, .Td = 20, .b = 0.6, .c = 0, .filter = {FilterType::derivative, 2}};
-const Context kContext = Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 0.25);
-
 Error refused(std::string_view id, const IdealPid& pid, const Context& context = kContext) {
     const auto answer = to_settings(product_of(id), pid, context, false);
     return answer ? Error{ErrorKind::numerical_failure, "", "not refused"} : answer.error();

@@ -6,12 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "engine/controller/product/catalogue.h"
 #include "engine/controller/product/settings.h"
 
 namespace tunewright::product {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+/// What most of them convert, and where.
+const IdealPid kDesign{.Kp = 1.5, .Ti = 120, .Td = 20, .b = 0.6, .c = 0, .filter = {FilterType::derivative, 2}};
+const Context kContext = Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 0.25);
 
 inline Context context_of(const Example& example) {
     return Context::with_spans({.y_low = 0, .y_high = example.y_span, .u_low = 0, .u_high = example.u_span},

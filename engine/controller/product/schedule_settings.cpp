@@ -16,9 +16,10 @@ std::string_view word(Interpolation interpolation) {
 
 void note_scheduling(const Product& product, const Schedule& schedule, std::vector<Note>& notes) {
     if (!product.scheduling) {
-        notes.push_back({"no-gain-scheduling",
-                         "No gain scheduling of this product is known here. A program beside it can write the settings as "
-                         "the rows say; see that a change does not make the output jump."});
+        notes.push_back(
+            {"no-gain-scheduling",
+             "No gain scheduling of this product is known here. A program beside it can write the settings as "
+             "the rows say; see that a change does not make the output jump."});
         return;
     }
     const GainScheduling& own = *product.scheduling;

@@ -9,7 +9,6 @@
 #include "api/contract/record.h"
 #include "api/describe/description.h"
 #include "engine/controller/pid.h"
-#include "engine/controller/product/schedule_settings.h"
 #include "engine/controller/product/settings.h"
 
 namespace tunewright::api {

@@ -1,4 +1,4 @@
-#include "engine/controller/product/schedule_settings.h"
+#include "engine/controller/product/settings.h"
 
 #include <algorithm>
 

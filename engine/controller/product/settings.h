@@ -48,6 +48,22 @@ struct Converted {
 /// ("sample_time").
 Expected<Converted> to_settings(const Product& product, const IdealPid& pid, const Context& context, bool nearest);
 
+struct RowSettings {
+    double at = 0;
+    Converted converted = {};  ///< notes: of this row alone
+};
+
+struct ConvertedSchedule {
+    std::vector<RowSettings> rows = {};
+    std::vector<Note> notes = {};  ///< of the schedule, then those that every row would have
+};
+
+/// Each row as `to_settings` converts it. Notes of the schedule: `no-gain-scheduling` where none of the product is
+/// known, `too-many-rows` where it holds fewer sets, `interpolation` where it goes otherwise from one to the next.
+/// Errors: those of a row, at "rows/K" where it is the row that the product cannot be.
+Expected<ConvertedSchedule> to_settings(const Product& product, const Schedule& schedule, const Context& context,
+                                        bool nearest);
+
 /// The exact ideal twin of what stands in the block. Parameters that are missing have the maker's default where it is
 /// known, else no integral, no derivative, no filter. Errors: invalid_argument at "settings/NAME" for a name or value
 /// that the block does not take; not_representable for gains that have no ideal form; as above for spans.

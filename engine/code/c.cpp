@@ -93,7 +93,7 @@ void add_step(const Program& program, std::string& out) {
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }
 
-std::string example_argument(const Declaration& input) {
+std::string c_argument(const Declaration& input) {
     return input.name == "manual" ? "false" : input.name == "manual_output" ? "0.0" : input.name;
 }
 
@@ -105,7 +105,7 @@ std::string print_c(const Program& program, const Provenance& provenance) {
         "    tunewright_pid pid;",
         "    tunewright_pid_init(&pid);",
         "and then every Ts seconds:",
-        "    u = tunewright_pid_step(&pid, " + example_arguments(program, example_argument) + ");",
+        "    u = tunewright_pid_step(&pid, " + example_arguments(program, c_argument) + ");",
         "Settings are fields of the struct: pid." + example_setting(program) + " = 2.0;"};
     std::string head = "/*\n";
     for (const std::string& line : head_lines(program, provenance, call))

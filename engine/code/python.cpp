@@ -64,7 +64,7 @@ std::string arguments(const Program& program) {
     return out;
 }
 
-std::string example_argument(const Declaration& input) {
+std::string python_argument(const Declaration& input) {
     if (input.name == "manual") return "manual=False";
     return input.name == "manual_output" ? "manual_output=0.0" : input.name;
 }
@@ -74,7 +74,7 @@ std::string example_argument(const Declaration& input) {
 std::string print_python(const Program& program, const Provenance& provenance) {
     const std::vector<std::string> call{
         "Call, for each controller:", "    pid = TunewrightPid()",
-        "and then every Ts seconds:", "    u = pid.step(" + example_arguments(program, example_argument) + ")",
+        "and then every Ts seconds:", "    u = pid.step(" + example_arguments(program, python_argument) + ")",
         "Settings are attributes: pid." + example_setting(program) + " = 2.0"};
     std::string out;
     for (const std::string& line : head_lines(program, provenance, call))

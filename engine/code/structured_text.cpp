@@ -64,7 +64,7 @@ void add_section(const char* section, const std::vector<Declaration>& variables,
     out += "END_VAR\n";
 }
 
-std::string example_argument(const Declaration& input) {
+std::string text_argument(const Declaration& input) {
     static const std::map<std::string, std::string> kGiven{{"setpoint", "SP"},
                                                            {"measurement", "PV"},
                                                            {"scheduling", "PLACE"},
@@ -78,7 +78,7 @@ std::string example_argument(const Declaration& input) {
 std::string print_structured_text(const Program& program, const Provenance& provenance) {
     const std::vector<std::string> call{
         "Call, once a cycle in a task whose period is Ts, with an instance heater : TunewrightPid;",
-        "    heater(" + example_arguments(program, example_argument) + ");", "    OUT := heater.u;",
+        "    heater(" + example_arguments(program, text_argument) + ");", "    OUT := heater.u;",
         "Settings are inputs with initial values; they are given in the same way: heater(" + example_setting(program) +
             " := 2.0, ...)."};
     std::string out = "(*\n";

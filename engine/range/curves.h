@@ -37,6 +37,8 @@ struct RangeCurve {
 /// The settings in use at a place.
 using SettingsInUse = std::function<std::vector<IdealPid>(double at)>;
 
+constexpr int kCurvePlaces = 61;  ///< of the curves that are answered
+
 /// At `count` places evenly over the range and at `extra` ones. The worst places join those of `places`, with their own
 /// optima. Errors: those of Places::at.
 Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,

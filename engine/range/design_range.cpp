@@ -9,7 +9,6 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kCurvePlaces = 61;
 constexpr int kMostPlacesAdded = 6;       // of one setting that must hold between its points
 constexpr double kAllowedBetween = 5e-5;  // of a limit between the points
 

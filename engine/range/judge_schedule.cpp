@@ -6,7 +6,6 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kCurvePlaces = 61;
 constexpr std::size_t kOwnPlaces = 9;    // with optima of their own; the worst places join them
 constexpr double kAllowedExcess = 5e-5;  // of a limit, before it counts as exceeded
 

@@ -17,7 +17,7 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxIterations = 100, kMaxHalvings = 40;
-constexpr double kRounding = 1e-16;       // of the largest state: what a state at 0 may be off by
+constexpr double kStateRounding = 1e-16;  // of the largest state: what a state at 0 may be off by
 constexpr double kSufficientFall = 1e-4;  // of the fall that Newton's step promises (Armijo's rule)
 constexpr double kNearFloor = 1e-6;       // of the largest state: moves below it are near whatever a state's own size
 constexpr double kSingularCutoff = 1e-11, kMaxStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
@@ -35,7 +35,7 @@ public:
     SteadyStateSearch(const NonlinearSystem& system, std::span<const double> start)
         : system_(system), n_(start.size()), u_(system.u_nominal()), start_(start.begin(), start.end()) {
         for (double& x : start_)
-            if (std::abs(x) <= kRounding * largest(start)) x = 0;
+            if (std::abs(x) <= kStateRounding * largest(start)) x = 0;
     }
 
     Expected<std::vector<double>> run() {

@@ -11,7 +11,7 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kSettledShare = 0.01;  // of the step
+constexpr double kSettledStepShare = 0.01;  // of the step
 
 Error none(std::string why) { return {ErrorKind::unsupported, "", std::move(why)}; }
 
@@ -46,7 +46,7 @@ ScheduledRun run_of(LinearisingResponse response, const NonlinearSystem& system,
         if (k > 0) run.IAE += 0.5 * step * (before + error);
         before = error;
     }
-    run.settled = run.ended.empty() && before <= kSettledShare * std::abs(target - system.y_steady());
+    run.settled = run.ended.empty() && before <= kSettledStepShare * std::abs(target - system.y_steady());
     return run;
 }
 

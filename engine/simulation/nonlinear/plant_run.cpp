@@ -8,11 +8,7 @@
 #include "engine/number_text.h"
 
 namespace tunewright {
-namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
+namespace {}  // namespace
 
 PlantRun::PlantRun(const NonlinearSystem& system, double tolerance)
     : system_(system),
@@ -38,7 +34,7 @@ void PlantRun::give_at(double t, double u) {
 }
 
 void PlantRun::arrive() {
-    const double slack = 8 * kEpsilon * std::max(t(), L_);
+    const double slack = 8 * std::numeric_limits<double>::epsilon() * std::max(t(), L_);
     if (pending_.empty() || pending_.front().t > t() + slack) return;
     while (!pending_.empty() && pending_.front().t <= t() + slack) {
         w_ = pending_.front().u;

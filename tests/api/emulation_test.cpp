@@ -22,7 +22,7 @@ Json request(const Json& tune, const Json& plant, int points = 0) {
     return {{"plant", plant}, {"tune", tune}, {"evaluate", {{"points", points}}}};
 }
 
-Json tuned(const Json& request) {
+Json emulated(const Json& request) {
     const JobOutcome outcome = run_job(StoredRequest{request.dump(), {}}, {});
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
     const Json result = Json::parse(outcome.result_json);
@@ -39,7 +39,7 @@ std::vector<FieldError> faults_of(const Json& changes) {
 }
 
 TEST(EmulationContract, AnEntryCarriesBothLevelsAndFitsTheDocument) {
-    const Json entry = tuned(request(Json::array({kMethod}), kTank, 100))["controllers"][0];
+    const Json entry = emulated(request(Json::array({kMethod}), kTank, 100))["controllers"][0];
     ASSERT_TRUE(entry.contains("emulation")) << entry.dump();
     const Json& emulation = entry["emulation"];
     EXPECT_EQ(emulation["formulation"], "full");
@@ -65,7 +65,7 @@ TEST(EmulationContract, AnEntryCarriesBothLevelsAndFitsTheDocument) {
 }
 
 TEST(EmulationContract, WithoutPointsOnlyWhatIsEmulatedHasTraces) {
-    const Json emulation = tuned(request(Json::array({kMethod}), kTank))["controllers"][0]["emulation"];
+    const Json emulation = emulated(request(Json::array({kMethod}), kTank))["controllers"][0]["emulation"];
     EXPECT_EQ(emulation["t"].size(), 401u);
     EXPECT_EQ(emulation["y_nl"].size(), 401u);
     EXPECT_EQ(emulation["u_nl"].size(), 401u);
@@ -78,7 +78,7 @@ TEST(EmulationContract, WithoutPointsOnlyWhatIsEmulatedHasTraces) {
 TEST(EmulationContract, RemarkSixHasNoOutputPartAndSaysSo) {
     Json method = kMethod;
     method["formulation"] = "remark6";
-    const Json emulation = tuned(request(Json::array({method}), kTank))["controllers"][0]["emulation"];
+    const Json emulation = emulated(request(Json::array({method}), kTank))["controllers"][0]["emulation"];
     EXPECT_TRUE(emulation["J_y"].is_null());
     EXPECT_THAT(emulation["why_null"]["J_y"].get<std::string>(), HasSubstr("Remark 6"));
 }
@@ -99,7 +99,7 @@ TEST(EmulationContract, AllRunsItOnNonlinearPlantsOnly) {
     const auto methods_of = [](const Json& plant) {
         std::vector<std::string> methods;
         const Json result =
-            tuned({{"plant", plant}, {"tune", "all"}, {"evaluate", {{"points", 0}, {"optimum_at_Ms", false}}}});
+            emulated({{"plant", plant}, {"tune", "all"}, {"evaluate", {{"points", 0}, {"optimum_at_Ms", false}}}});
         for (const Json& entry : result["controllers"]) methods.push_back(entry["method"]);
         return methods;
     };
@@ -109,8 +109,8 @@ TEST(EmulationContract, AllRunsItOnNonlinearPlantsOnly) {
 }
 
 TEST(EmulationContract, ByNameItRunsOnLinearPlantsToo) {
-    const Json entry = tuned(request(Json::array({Json{{"method", "emulation"}, {"controller", "PI"}}}),
-                                     {{"type", "fopdt"}, {"K", 1}, {"T", 2}, {"L", 0.5}}))["controllers"][0];
+    const Json entry = emulated(request(Json::array({Json{{"method", "emulation"}, {"controller", "PI"}}}),
+                                        {{"type", "fopdt"}, {"K", 1}, {"T", 2}, {"L", 0.5}}))["controllers"][0];
     EXPECT_TRUE(entry.contains("emulation")) << entry.dump();
 }
 

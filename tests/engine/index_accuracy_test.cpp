@@ -44,7 +44,7 @@ ParallelPid controller_of(const Json& c) {
             .filter = {types.at(c["filter"].get<std::string>()), c["Tf"]}};
 }
 
-Evaluation evaluated(const Json& loop, std::optional<double> horizon) {
+Evaluation figures_of_loop(const Json& loop, std::optional<double> horizon) {
     EvaluateOptions options;
     options.points = 0;
     options.horizon = horizon;
@@ -98,7 +98,7 @@ void hold_all(const Json& wanted, const Evaluation& e) {
 TEST(IndexAccuracy, IsAsPromisedOnLoopsOfAllKinds) {
     for (const Json& loop : loops()) {
         SCOPED_TRACE(loop.dump().substr(0, 300));
-        const auto e = evaluated(loop, std::nullopt);
+        const auto e = figures_of_loop(loop, std::nullopt);
         hold_all(loop, e);
         for (const auto& warning : e.warnings) ADD_FAILURE() << warning.detail;
     }
@@ -108,7 +108,7 @@ TEST(IndexAccuracy, IsAsPromisedUpToAnyHorizon) {
     for (const Json& loop : loops())
         for (const Json& cut : loop["cuts"]) {
             SCOPED_TRACE(loop.dump().substr(0, 300) + " up to " + cut["horizon"].dump());
-            hold_all(cut, evaluated(loop, cut["horizon"].get<double>()));
+            hold_all(cut, figures_of_loop(loop, cut["horizon"].get<double>()));
         }
 }
 

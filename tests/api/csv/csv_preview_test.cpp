@@ -37,7 +37,7 @@ std::string file(const std::string& head, const std::function<std::string(int)>&
 }
 
 std::string two(int value) { return (value < 10 ? "0" : "") + std::to_string(value); }
-std::string clock(int i) { return two(14) + ":" + two(3 + i / 12) + ":" + two(5 * (i % 12)); }
+std::string clock_text(int i) { return two(14) + ":" + two(3 + i / 12) + ":" + two(5 * (i % 12)); }
 
 std::string row(int i, const char* separator, char decimal, double scale = 1) {
     return number(i * scale, decimal) + separator + number(u_at(i), decimal) + separator + number(y_at(i), decimal);
@@ -89,7 +89,7 @@ TEST_P(Previews, TellWhatIsRead) {
     EXPECT_EQ(std::get<CsvRecord>(read).t.size(), 60U);
 }
 
-std::string utf16(const std::string& ascii, bool big) {
+std::string in_utf16(const std::string& ascii, bool big) {
     std::string out = big ? "\xFE\xFF" : "\xFF\xFE";
     for (const char c : ascii) {
         if (big) out += '\0';
@@ -114,12 +114,13 @@ const File kFiles[] = {
     {"decimal comma", file("Zeit;Stellgröße;Temperatur\n", [](int i) { return row(i, ";", ','); }), 1, ";", ","},
     {"excel's sep", file("sep=;\nTime;OP;PV\n", [](int i) { return row(i, ";", ','); }), 1, ";", ","},
     {"german dates",
-     file("Datum Uhrzeit;OP;PV\n",
-          [](int i) { return "23.11.2026 " + clock(i) + ";" + number(u_at(i), ',') + ";" + number(y_at(i), ','); }),
+     file(
+         "Datum Uhrzeit;OP;PV\n",
+         [](int i) { return "23.11.2026 " + clock_text(i) + ";" + number(u_at(i), ',') + ";" + number(y_at(i), ','); }),
      5, ";", ","},
     {"iso stamps",
      file("timestamp,output,temperature\n",
-          [](int i) { return "2026-11-23T" + clock(i) + "Z," + number(u_at(i)) + "," + number(y_at(i)); }),
+          [](int i) { return "2026-11-23T" + clock_text(i) + "Z," + number(u_at(i)) + "," + number(y_at(i)); }),
      5},
     {"tabs", file("time\tu\ty\n", [](int i) { return row(i, "\t", '.'); }), 1, "tab"},
     {"quoted cells", file("\"Time\",\"OP\",\"PV\"\n", [](int i) { return "\"" + row(i, "\",\"", '.') + "\""; })},
@@ -157,9 +158,9 @@ const File kFiles[] = {
           "C]\n",
           [](int i) { return row(i, ";", ','); }),
      1, ";", ",", 60, "windows-1252"},
-    {"utf-16 little", utf16(file("Time\tOP\tPV\r\n", [](int i) { return row(i, "\t", '.'); }), false), 1, "tab", ".",
+    {"utf-16 little", in_utf16(file("Time\tOP\tPV\r\n", [](int i) { return row(i, "\t", '.'); }), false), 1, "tab", ".",
      60, "utf-16le"},
-    {"utf-16 big", utf16(file("Time\tOP\tPV\r\n", [](int i) { return row(i, "\t", '.'); }), true), 1, "tab", ".", 60,
+    {"utf-16 big", in_utf16(file("Time\tOP\tPV\r\n", [](int i) { return row(i, "\t", '.'); }), true), 1, "tab", ".", 60,
      "utf-16be"},
     {"byte order mark", "\xEF\xBB\xBF" + file("Time,OP,PV\n", [](int i) { return row(i, ",", '.'); })},
     {"LabVIEW", labview(), 1, "tab"},
@@ -175,26 +176,28 @@ const File kFiles[] = {
     {"AVEVA with quality",
      file("DateTime,TIC101.OP,OP Quality,TIC101.PV,PV Quality\n",
           [](int i) {
-              return "2026-11-23 " + clock(i) + ".000," + number(u_at(i)) + ",192," + number(y_at(i)) + ",192";
+              return "2026-11-23 " + clock_text(i) + ".000," + number(u_at(i)) + ",192," + number(y_at(i)) + ",192";
           }),
      5},
     {"Siemens trend",
      file("\"TimeString\";\"Ventil_Y\";\"Temp_Ist\";\"Temp_Soll\"\n",
           [](int i) {
-              return "\"23.11.2026 " + clock(i) + "\";" + number(u_at(i), ',') + ";" + number(y_at(i), ',') + ";40,0";
+              return "\"23.11.2026 " + clock_text(i) + "\";" + number(u_at(i), ',') + ";" + number(y_at(i), ',') +
+                     ";40,0";
           }),
      5, ";", ","},
     {"Rockwell",
      file("Date,Time,TIC101.CV,TIC101.PV,TIC101.SP\n",
-          [](int i) { return "11/23/2026," + clock(i) + "," + number(u_at(i)) + "," + number(y_at(i)) + ",40"; }),
+          [](int i) { return "11/23/2026," + clock_text(i) + "," + number(u_at(i)) + "," + number(y_at(i)) + ",40"; }),
      5},
     {"Ignition",
      file("t_stamp,Loop/OP,Loop/PV\n",
-          [](int i) { return "2026-11-23 " + clock(i) + "," + number(u_at(i)) + "," + number(y_at(i)); }),
+          [](int i) { return "2026-11-23 " + clock_text(i) + "," + number(u_at(i)) + "," + number(y_at(i)); }),
      5},
     {"Grafana",
-     file("\"Time\",\"heater power\",\"boiler temperature\"\n",
-          [](int i) { return "2026-11-23 " + clock(i) + "," + number(u_at(i)) + " %," + number(y_at(i)) + " °C"; }),
+     file(
+         "\"Time\",\"heater power\",\"boiler temperature\"\n",
+         [](int i) { return "2026-11-23 " + clock_text(i) + "," + number(u_at(i)) + " %," + number(y_at(i)) + " °C"; }),
      5},
 };
 

@@ -26,7 +26,7 @@ SampledPid sampled(double Ts) {
     return law;
 }
 
-Program program_of(const Schedule& schedule, const CodeOptions& options = {}) {
+Program scheduled_program(const Schedule& schedule, const CodeOptions& options = {}) {
     auto program = scheduled_algorithm(schedule, sampled(0.5), options, "load in %");
     EXPECT_TRUE(program) << (program ? "" : program.error().message);
     return program ? *program : Program{};
@@ -73,7 +73,7 @@ TEST(ScheduledProgram, ComputesTheLawWithTheSettingsOfThePlaceThroughLimitsAndMa
             for (const AntiWindup anti_windup : {AntiWindup::back_calculation, AntiWindup::clamping}) {
                 const Schedule schedule = schedule_of(how, sign);
                 const CodeOptions options{.anti_windup = anti_windup, .u_min = 0, .u_max = 100, .rate_limit = 40};
-                const Program program = program_of(schedule, options);
+                const Program program = scheduled_program(schedule, options);
                 Machine machine(program);
                 SampledPid law = sampled(0.5);
                 law.gains = to_parallel(controller_of(leading_row(schedule)));
@@ -98,7 +98,7 @@ TEST(ScheduledProgram, ComputesTheLawWithTheSettingsOfThePlaceThroughLimitsAndMa
 TEST(ScheduledProgram, AgreesWithWhatTheDesignComputesBetweenRowsAndMovesItsFilterToo) {
     for (const Interpolation how : {Interpolation::linear_in_gains, Interpolation::linear_in_times}) {
         const Schedule schedule = schedule_of(how, 1, 0.4);
-        const Program program = program_of(schedule);
+        const Program program = scheduled_program(schedule);
         Machine machine(program);
         for (double place = 0; place <= 120; place += 1.7) {
             machine["scheduling"] = place;
@@ -115,7 +115,7 @@ TEST(ScheduledProgram, AgreesWithWhatTheDesignComputesBetweenRowsAndMovesItsFilt
 
 TEST(ScheduledProgram, DoesNotMoveItsOutputAtRestWhileSettingsMove) {
     for (const Interpolation how : kAll) {
-        const Program program = program_of(schedule_of(how));
+        const Program program = scheduled_program(schedule_of(how));
         Machine machine(program);
         machine["scheduling"] = 10;
         const double u = machine.step(40, 40, true, 33);

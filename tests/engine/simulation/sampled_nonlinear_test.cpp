@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 
 /// The largest difference of y and of u at even times that lie between the samples, relative to the largest values.
-double difference(const StepResponse& a, const StepResponse& b, double horizon, int points) {
+double largest_difference(const StepResponse& a, const StepResponse& b, double horizon, int points) {
     const auto of_a = sampled(a.nodes, horizon, points), of_b = sampled(b.nodes, horizon, points);
     double dy = 0, du = 0, y = 0, u = 0;
     for (std::size_t i = 1; i < of_a.size(); i += 2) {
@@ -49,7 +49,7 @@ TEST(SampledNonlinear, OfALinearPlantInEquationsItIsTheLinearOne) {
             const StepResponse linear = simulate_sampled(plant, c->law, limits, in, fine);
             const StepResponse nonlinear =
                 simulate_sampled(*equations, c->law, limits, in, {.horizon = horizon - 0.5 * Ts});
-            EXPECT_LT(difference(nonlinear, linear, horizon, 2 * 60 * 12 + 1), 1e-6);
+            EXPECT_LT(largest_difference(nonlinear, linear, horizon, 2 * 60 * 12 + 1), 1e-6);
             EXPECT_NEAR(nonlinear.nodes.back().t, horizon, 1e-9);
         }
         const StepResponse linear = simulate_sampled(plant, c->law, {}, in, {});

@@ -18,18 +18,18 @@ using testing::HasSubstr;
 
 using Given = std::vector<std::pair<std::string, OptionValue>>;
 
-Expected<TunedController> tuned(const Plant& plant, const char* id, const Given& given) {
+Expected<TunedController> arrieta_tuned(const Plant& plant, const char* id, const Given& given) {
     MethodOptions options;
     for (const auto& [path, value] : given) options.set(path, value);
     return find_method(id)->tune({plant, *LinearPlant::make(plant), std::nullopt}, options, {});
 }
 
 Error refusal(const Plant& plant, const char* id, const Given& given) {
-    const auto answer = tuned(plant, id, given);
+    const auto answer = arrieta_tuned(plant, id, given);
     return answer ? Error{ErrorKind::numerical_failure, "", "not refused"} : answer.error();
 }
 
-bool warns(const TunedController& answer, const std::string& code) {
+bool arrieta_warns(const TunedController& answer, const std::string& code) {
     return std::ranges::any_of(answer.warnings, [&](const Warning& w) { return w.code == code; });
 }
 
@@ -40,10 +40,10 @@ double degradation_on(const Fopdt& model, const IdealPid& pid) {
 TEST(ArrietaRule, ScalesWithGainAndTimeTheExactOneToo) {
     const Given kCases[] = {{{"degradation", 0.45}}, {{"degradation", 0.4}, {"exact", true}}};
     for (const Given& given : kCases) {
-        const auto unit = tuned(Fopdt{1, 1, 0.4}, "arrieta_degradation", given);
+        const auto unit = arrieta_tuned(Fopdt{1, 1, 0.4}, "arrieta_degradation", given);
         ASSERT_TRUE(unit);
         for (const auto& [K, time] : {std::pair{-3.0, 60.0}, {1e5, 1e-3}, {0.02, 7.0}}) {
-            const auto other = tuned(Fopdt{K, time, 0.4 * time}, "arrieta_degradation", given);
+            const auto other = arrieta_tuned(Fopdt{K, time, 0.4 * time}, "arrieta_degradation", given);
             ASSERT_TRUE(other);
             EXPECT_NEAR(other->controller.Kp * K / unit->controller.Kp, 1, 1e-7);
             EXPECT_NEAR(other->controller.Ti / time / unit->controller.Ti, 1, 1e-7);
@@ -54,12 +54,12 @@ TEST(ArrietaRule, ScalesWithGainAndTimeTheExactOneToo) {
 
 TEST(ArrietaRule, InBetweenTheLevelsItSolvesAndSaysSo) {
     const Fopdt model{2, 10, 3};
-    const auto answer = tuned(model, "arrieta_degradation", {{"degradation", 0.4}});
+    const auto answer = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.4}});
     ASSERT_TRUE(answer);
-    EXPECT_TRUE(warns(*answer, "exact-degradation"));
+    EXPECT_TRUE(arrieta_warns(*answer, "exact-degradation"));
     EXPECT_NEAR(degradation_on(model, answer->controller), 0.4, 1e-7);
-    const auto asked_for = tuned(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", true}});
-    EXPECT_FALSE(warns(*asked_for, "exact-degradation"));
+    const auto asked_for = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", true}});
+    EXPECT_FALSE(arrieta_warns(*asked_for, "exact-degradation"));
     EXPECT_EQ(asked_for->controller.Kp, answer->controller.Kp);
     const Error error = refusal(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", false}});
     EXPECT_EQ(error.where, "degradation");
@@ -69,8 +69,8 @@ TEST(ArrietaRule, InBetweenTheLevelsItSolvesAndSaysSo) {
 
 TEST(ArrietaRule, ExactAtALevelLeavesTheTable) {
     const Fopdt model{1, 1, 2};  // where Table 2 gives 0.28 for 0.35
-    const auto table = tuned(model, "arrieta_degradation", {{"degradation", 0.35}});
-    const auto exact = tuned(model, "arrieta_degradation", {{"degradation", 0.35}, {"exact", true}});
+    const auto table = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.35}});
+    const auto exact = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.35}, {"exact", true}});
     EXPECT_NEAR(degradation_on(model, table->controller), 0.2927, 1e-3);
     EXPECT_NEAR(degradation_on(model, exact->controller), 0.35, 1e-7);
 }
@@ -78,7 +78,7 @@ TEST(ArrietaRule, ExactAtALevelLeavesTheTable) {
 // 0 is the tuning without a limit on Ms by definition.
 TEST(ArrietaRule, ExactAtZeroIsTheTuningWithoutALimit) {
     const Fopdt model{1, 1, 0.5};
-    const auto exact = tuned(model, "arrieta_degradation", {{"degradation", 0.0}, {"exact", true}});
+    const auto exact = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.0}, {"exact", true}});
     ASSERT_TRUE(exact);
     EXPECT_EQ(exact->controller.Kp, arrieta_pid(arrieta_free(), model).Kp);
 }
@@ -97,13 +97,13 @@ TEST(ArrietaRule, ADegradationOutOfReachIsRefusedWithTheRange) {
         EXPECT_THAT(error.message, HasSubstr(range));
     }
     // At L/T = 2 an Ms of 2 is better than the tuning without a limit, so small degradations are reached.
-    EXPECT_TRUE(tuned(Fopdt{1, 1, 2}, "arrieta_degradation", {{"degradation", 0.1}, {"exact", true}}));
+    EXPECT_TRUE(arrieta_tuned(Fopdt{1, 1, 2}, "arrieta_degradation", {{"degradation", 0.1}, {"exact", true}}));
 }
 
 TEST(ArrietaRule, TheSmallestMsWithTheDegradationIsTaken) {
     for (const double tau : {0.1, 0.5, 1.0, 2.0}) {
         const Fopdt model{1, 1, tau};
-        const auto answer = tuned(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", true}});
+        const auto answer = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", true}});
         ASSERT_TRUE(answer);
         const double Ms = *answer->report_as<TradeoffReport>()->rule->Ms_design;
         for (int i = 0; i < 40; ++i) {
@@ -120,8 +120,8 @@ TEST(ArrietaRule, SettingsDoNotJumpAtTheLevelsOfMs) {
             for (const double beside : {-1e-6, 1e-6}) {
                 const double Ms = column.level + beside;
                 if (Ms < kArrietaLowestMs || Ms > kArrietaHighestMs) continue;
-                const auto at = tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", column.level}}),
-                           near = tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", Ms}});
+                const auto at = arrieta_tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", column.level}}),
+                           near = arrieta_tuned(Fopdt{2, 5, 5 * tau}, "arrieta_ms", {{"Ms", Ms}});
                 ASSERT_TRUE(at && near);
                 EXPECT_NEAR(near->controller.Kp / at->controller.Kp, 1, 0.007) << Ms << " " << tau;
                 EXPECT_NEAR(near->controller.Ti / at->controller.Ti, 1, 0.011) << Ms << " " << tau;
@@ -133,7 +133,7 @@ TEST(ArrietaRule, ThePrintedC3IsTakenWhereItIsAskedFor) {
     const Fopdt model{1, 1, 0.1};
     const Given printed = {{"Ms", 1.99}, {"c3", std::string("printed")}};
     const Given refitted = {{"Ms", 1.99}, {"c3", std::string("refitted")}};
-    const auto as_printed = tuned(model, "arrieta_ms", printed);
+    const auto as_printed = arrieta_tuned(model, "arrieta_ms", printed);
     ASSERT_TRUE(as_printed);
     // Td/T = a3 tau^b3 + c3, Eq. 9 by hand at M = 1.99, tau = 0.1.
     const double a3 = 0.1875 * 1.99 * 1.99 - 0.7735 * 1.99 + 1.0740;
@@ -141,9 +141,9 @@ TEST(ArrietaRule, ThePrintedC3IsTakenWhereItIsAskedFor) {
     const double power = a3 * std::pow(0.1, b3);
     EXPECT_NEAR(as_printed->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4733 * 1.99 + 0.4032, 1e-12);
     EXPECT_THAT(as_printed->report_as<TradeoffReport>()->rule->constants, HasSubstr("c3 as printed"));
-    const auto by_default = tuned(model, "arrieta_ms", {{"Ms", 1.99}});
+    const auto by_default = arrieta_tuned(model, "arrieta_ms", {{"Ms", 1.99}});
     EXPECT_NEAR(by_default->controller.Td, power + 0.1331 * 1.99 * 1.99 - 0.4320 * 1.99 + 0.3330, 1e-12);
-    EXPECT_EQ(by_default->controller.Td, tuned(model, "arrieta_ms", refitted)->controller.Td);
+    EXPECT_EQ(by_default->controller.Td, arrieta_tuned(model, "arrieta_ms", refitted)->controller.Td);
     EXPECT_THAT(by_default->report_as<TradeoffReport>()->rule->constants,
                 HasSubstr("c3 = 0.1331 M^2 - 0.4320 M + 0.3330"));
 }
@@ -153,7 +153,7 @@ TEST(ArrietaRule, MsOnTheModelIsTheOneAskedFor) {
     for (int i = 0; i <= 24; ++i)
         for (const double tau : {0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0}) {
             const double Ms = 1.4 + 0.025 * i;
-            const auto answer = tuned(Fopdt{1, 1, tau}, "arrieta_ms", {{"Ms", Ms}});
+            const auto answer = arrieta_tuned(Fopdt{1, 1, tau}, "arrieta_ms", {{"Ms", Ms}});
             ASSERT_TRUE(answer);
             const LinearPlant model = *LinearPlant::make(Fopdt{1, 1, tau});
             const auto loop = Loop::make(model, to_parallel(answer->controller));
@@ -163,10 +163,10 @@ TEST(ArrietaRule, MsOnTheModelIsTheOneAskedFor) {
 
 TEST(ArrietaRule, WarnsOutsideItsRange) {
     for (const char* id : {"arrieta_ms", "arrieta_degradation"}) {
-        EXPECT_TRUE(warns(*tuned(Fopdt{1, 1, 0.09}, id, {}), "outside-validity")) << id;
-        EXPECT_TRUE(warns(*tuned(Fopdt{1, 1, 2.1}, id, {}), "outside-validity")) << id;
-        EXPECT_FALSE(warns(*tuned(Fopdt{1, 1, 0.1}, id, {}), "outside-validity")) << id;
-        EXPECT_FALSE(warns(*tuned(Fopdt{1, 1, 2}, id, {}), "outside-validity")) << id;
+        EXPECT_TRUE(arrieta_warns(*arrieta_tuned(Fopdt{1, 1, 0.09}, id, {}), "outside-validity")) << id;
+        EXPECT_TRUE(arrieta_warns(*arrieta_tuned(Fopdt{1, 1, 2.1}, id, {}), "outside-validity")) << id;
+        EXPECT_FALSE(arrieta_warns(*arrieta_tuned(Fopdt{1, 1, 0.1}, id, {}), "outside-validity")) << id;
+        EXPECT_FALSE(arrieta_warns(*arrieta_tuned(Fopdt{1, 1, 2}, id, {}), "outside-validity")) << id;
     }
 }
 

@@ -20,8 +20,8 @@ MethodOptions with(const std::vector<std::pair<const char*, OptionValue>>& given
 
 const MethodOptions kOptimise = with({{"optimise", true}});
 
-Expected<TunedController> tuned(const char* id, const Plant& plant, const MethodOptions& options = {},
-                                const RunControl& control = {}) {
+Expected<TunedController> npid_tuned(const char* id, const Plant& plant, const MethodOptions& options = {},
+                                     const RunControl& control = {}) {
     return find_method(id)->tune(TuningProblem{plant, *LinearPlant::make(plant), std::nullopt}, options, control);
 }
 
@@ -34,25 +34,25 @@ SetpointPerformance setpoint_of(const Plant& plant, const TunedController& answe
     return evaluation->performance.setpoint;
 }
 
-bool warns(const TunedController& answer, const std::string& code, const std::string& part) {
+bool warns_with(const TunedController& answer, const std::string& code, const std::string& part) {
     return std::ranges::any_of(answer.warnings, [&](const Warning& warning) {
         return warning.code == code && warning.detail.find(part) != std::string::npos;
     });
 }
 
 TEST(NpidRule, SaysWhichTableAndWhereItWasNotFitted) {
-    EXPECT_TRUE(tuned("npid_iae", Fopdt{.K = 1, .T = 1, .L = 0.9})->warnings.empty());
-    const auto gap = tuned("npid_iae", Fopdt{.K = 1, .T = 1, .L = 0.95});
-    EXPECT_TRUE(warns(*gap, "rule-table", "between 0.9 and 1"));
-    EXPECT_FALSE(warns(*gap, "outside-validity", ""));
-    EXPECT_TRUE(warns(*tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 2}), "rule-table", "long dead times"));
-    EXPECT_TRUE(warns(*tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 3.1}), "outside-validity", "L/T is 3.1"));
-    EXPECT_TRUE(warns(*tuned("npid_itae", Fopdt{.K = 1, .T = 1, .L = 0.009}), "outside-validity", "0.009"));
+    EXPECT_TRUE(npid_tuned("npid_iae", Fopdt{.K = 1, .T = 1, .L = 0.9})->warnings.empty());
+    const auto gap = npid_tuned("npid_iae", Fopdt{.K = 1, .T = 1, .L = 0.95});
+    EXPECT_TRUE(warns_with(*gap, "rule-table", "between 0.9 and 1"));
+    EXPECT_FALSE(warns_with(*gap, "outside-validity", ""));
+    EXPECT_TRUE(warns_with(*npid_tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 2}), "rule-table", "long dead times"));
+    EXPECT_TRUE(warns_with(*npid_tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 3.1}), "outside-validity", "L/T is 3.1"));
+    EXPECT_TRUE(warns_with(*npid_tuned("npid_itae", Fopdt{.K = 1, .T = 1, .L = 0.009}), "outside-validity", "0.009"));
 }
 
 TEST(NpidRule, RefusesWhatItsFormulaCannotTake) {
     const auto message = [](const Plant& plant, const MethodOptions& options = {}) {
-        const auto answer = tuned("npid_ise", plant, options);
+        const auto answer = npid_tuned("npid_ise", plant, options);
         EXPECT_FALSE(answer.has_value());
         return answer ? std::string() : answer.error().message;
     };
@@ -61,13 +61,14 @@ TEST(NpidRule, RefusesWhatItsFormulaCannotTake) {
     EXPECT_THAT(message(Ipdt{.K = 1, .L = 1}), testing::HasSubstr("optimise"));
     EXPECT_FALSE(message(Fopdt{.K = 1, .T = -5, .L = 1}).empty());
     EXPECT_THAT(message(Fopdt{.K = 1, .T = 1, .L = 0}, kOptimise), testing::HasSubstr("ever higher gains"));
-    EXPECT_EQ(tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 0}, kOptimise).error().kind, ErrorKind::unbounded_optimum);
+    EXPECT_EQ(npid_tuned("npid_ise", Fopdt{.K = 1, .T = 1, .L = 0}, kOptimise).error().kind,
+              ErrorKind::unbounded_optimum);
 }
 
 TEST(NpidRule, ScalesWithGainAndTime) {
     for (const auto& options : {MethodOptions{}, kOptimise}) {
-        const auto base = tuned("npid_itae", Fopdt{.K = 1, .T = 1, .L = 0.4}, options)->controller;
-        const auto scaled = tuned("npid_itae", Fopdt{.K = -20, .T = 1000, .L = 400}, options)->controller;
+        const auto base = npid_tuned("npid_itae", Fopdt{.K = 1, .T = 1, .L = 0.4}, options)->controller;
+        const auto scaled = npid_tuned("npid_itae", Fopdt{.K = -20, .T = 1000, .L = 400}, options)->controller;
         EXPECT_NEAR(scaled.Kp * -20 / base.Kp, 1, 1e-3);
         EXPECT_NEAR(scaled.Ti / 1000 / base.Ti, 1, 1e-3);
         EXPECT_NEAR(scaled.Td / 1000 / base.Td, 1, 1e-3);
@@ -76,7 +77,7 @@ TEST(NpidRule, ScalesWithGainAndTime) {
 
 TEST(NpidRule, WorksOnTheModelOfLeastAbsoluteDifference) {
     // Jin and Son reduce by a genetic algorithm to K 1, T 10.002, L 3.06; the least IAE is at 1.000, 10.006, 3.043.
-    const auto answer = tuned("npid_ise", Sopdt{.K = 1, .T1 = 10, .T2 = 1, .L = 2});
+    const auto answer = npid_tuned("npid_ise", Sopdt{.K = 1, .T1 = 10, .T2 = 1, .L = 2});
     ASSERT_TRUE(answer->reduced_model.has_value());
     const auto& model = std::get<Fopdt>(*answer->reduced_model);
     EXPECT_NEAR(model.T, 10.002, 0.011 * 10);
@@ -86,11 +87,11 @@ TEST(NpidRule, WorksOnTheModelOfLeastAbsoluteDifference) {
 
 TEST(NpidRule, TheFilterIsOfTheDerivativeAndOptional) {
     const Fopdt plant{.K = 1, .T = 1, .L = 0.5};
-    EXPECT_EQ(tuned("npid_ise", plant)->controller.filter.type, FilterType::none);
-    const auto filtered = tuned("npid_ise", plant, with({{"filter/Tf_over_Td", 0.1}}))->controller;
+    EXPECT_EQ(npid_tuned("npid_ise", plant)->controller.filter.type, FilterType::none);
+    const auto filtered = npid_tuned("npid_ise", plant, with({{"filter/Tf_over_Td", 0.1}}))->controller;
     EXPECT_EQ(filtered.filter.type, FilterType::derivative);
     EXPECT_NEAR(filtered.filter.Tf, 0.1 * filtered.Td, 1e-15);
-    EXPECT_EQ(tuned("npid_ise", plant, with({{"filter/Tf", 0.02}}))->controller.filter.Tf, 0.02);
+    EXPECT_EQ(npid_tuned("npid_ise", plant, with({{"filter/Tf", 0.02}}))->controller.filter.Tf, 0.02);
 }
 
 TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
@@ -98,7 +99,7 @@ TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
                             OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.5, .L = 0.5},
                             Zpk{.K = -1, .zeros = {1.0}, .poles = {-1.0, -1.0, -1.0}, .L = 0.2}};
     for (const Plant& plant : plants) {
-        const auto rule = tuned("npid_iae", plant), optimum = tuned("npid_iae", plant, kOptimise);
+        const auto rule = npid_tuned("npid_iae", plant), optimum = npid_tuned("npid_iae", plant, kOptimise);
         ASSERT_TRUE(optimum.has_value()) << optimum.error().message;
         EXPECT_FALSE(optimum->reduced_model.has_value());
         const auto best = *setpoint_of(plant, *optimum).IAE;
@@ -127,7 +128,7 @@ TEST(NpidOptimise, ServesPlantsThatTheRuleDoesNot) {
     for (const Plant& plant : {Plant(Ipdt{.K = 0.5, .L = 1}), Plant(Ipdt{.K = 0.5, .L = 1, .T = 2}),
                                Plant(Fopdt{.K = 1, .T = -5, .L = 1}), Plant(Fopdt{.K = 1, .T = 0, .L = 1}),
                                Plant(Zpk{.K = 1, .zeros = {}, .poles = {-1.0, -1.0, -1.0, -1.0}, .L = 0})}) {
-        const auto optimum = tuned("npid_iae", plant, kOptimise);
+        const auto optimum = npid_tuned("npid_iae", plant, kOptimise);
         ASSERT_TRUE(optimum.has_value()) << optimum.error().message;
         EXPECT_TRUE(setpoint_of(plant, *optimum).IAE.has_value());
     }
@@ -135,8 +136,8 @@ TEST(NpidOptimise, ServesPlantsThatTheRuleDoesNot) {
 
 TEST(NpidOptimise, GivesTheSameAnswerTwice) {
     const Fopdt plant{.K = 1, .T = 1, .L = 0.37};
-    const auto a = tuned("npid_itae", plant, kOptimise)->controller,
-               b = tuned("npid_itae", plant, kOptimise)->controller;
+    const auto a = npid_tuned("npid_itae", plant, kOptimise)->controller,
+               b = npid_tuned("npid_itae", plant, kOptimise)->controller;
     EXPECT_EQ(a.Kp, b.Kp);
     EXPECT_EQ(a.Ti, b.Ti);
     EXPECT_EQ(a.Td, b.Td);
@@ -154,7 +155,7 @@ TEST(NpidOptimise, StopsWhenAskedAndReportsOnTheWay) {
         if (last > 0.3) source.request_stop();
     };
     const Fopdt plant{.K = 1, .T = 1, .L = 0.5};
-    const auto answer = tuned("npid_iae", plant, kOptimise, control);
+    const auto answer = npid_tuned("npid_iae", plant, kOptimise, control);
     ASSERT_TRUE(answer.has_value());
     EXPECT_TRUE(answer->partial);
     EXPECT_LT(last, 0.4);
@@ -162,12 +163,12 @@ TEST(NpidOptimise, StopsWhenAskedAndReportsOnTheWay) {
     std::stop_source at_once;
     at_once.request_stop();
     control = {.stop = at_once.get_token(), .progress = {}, .now_ms = {}};
-    EXPECT_EQ(tuned("npid_iae", plant, kOptimise, control).error().kind, ErrorKind::cancelled);
+    EXPECT_EQ(npid_tuned("npid_iae", plant, kOptimise, control).error().kind, ErrorKind::cancelled);
 }
 
 TEST(NpidOptimise, HoldsForEveryStepSizeBecauseDeltaFollowsIt) {
     const Fopdt plant{.K = 1, .T = 1, .L = 0.5};
-    const auto answer = *tuned("npid_ise", plant);
+    const auto answer = *npid_tuned("npid_ise", plant);
     EXPECT_NEAR(*setpoint_of(plant, answer, 5).IAE / 5, *setpoint_of(plant, answer, 1).IAE, 1e-6);
 }
 

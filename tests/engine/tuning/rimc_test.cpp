@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 using Given = std::vector<std::pair<std::string, OptionValue>>;
 
-Expected<TunedController> tuned(const Plant& plant, const Given& given, const char* id = "rimc") {
+Expected<TunedController> rimc_tuned(const Plant& plant, const Given& given, const char* id = "rimc") {
     MethodOptions options;
     for (const auto& [path, value] : given) options.set(path, value);
     return find_method(id)->tune({plant, *LinearPlant::make(plant), std::nullopt}, options, {});
@@ -30,7 +30,7 @@ Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     return *evaluate(plant, pid, options);
 }
 
-bool warns(const TunedController& answer, const std::string& code) {
+bool rimc_warns(const TunedController& answer, const std::string& code) {
     return std::ranges::any_of(answer.warnings, [&](const Warning& w) { return w.code == code; });
 }
 
@@ -39,7 +39,7 @@ const Fopdt kModels[] = {{1, 1, 0.1}, {2.5, 20, 10}, {-0.4, 3, 3}, {1e4, 1e-3, 2
 TEST(Rimc, FiguresAreThoseOfTheLoopOnTheModel) {
     for (const Fopdt& model : kModels) {
         for (const double Tf_over_Td : {0.0, 0.1}) {
-            const auto answer = tuned(model, {{"lambda", 0.7 * model.T}, {"Tf_over_Td", Tf_over_Td}});
+            const auto answer = rimc_tuned(model, {{"lambda", 0.7 * model.T}, {"Tf_over_Td", Tf_over_Td}});
             ASSERT_TRUE(answer) << answer.error().message;
             const Evaluation e = evaluated(model, answer->controller);
             EXPECT_NEAR(*answer->report_as<RimcReport>()->Ms / *e.robustness.Ms, 1, 1e-9);
@@ -50,18 +50,18 @@ TEST(Rimc, FiguresAreThoseOfTheLoopOnTheModel) {
 
 TEST(Rimc, ATargetIsMetByTheReturnedPid) {
     for (const Fopdt& model : kModels) {
-        const auto by_Ms = tuned(model, {{"Ms", 1.5}});
+        const auto by_Ms = rimc_tuned(model, {{"Ms", 1.5}});
         ASSERT_TRUE(by_Ms) << by_Ms.error().message;
         EXPECT_NEAR(*evaluated(model, by_Ms->controller).robustness.Ms, 1.5, 1.5e-6);
         EXPECT_NEAR(*by_Ms->report_as<RimcReport>()->Ms, 1.5, 1.5e-6);
 
         const double peak = *RimcBranch(model, {}).disturbance_peak(0.9 * model.T);
-        const auto by_peak = tuned(model, {{"disturbance_peak", peak}});
+        const auto by_peak = rimc_tuned(model, {{"disturbance_peak", peak}});
         ASSERT_TRUE(by_peak) << by_peak.error().message;
         EXPECT_NEAR(*evaluated(model, by_peak->controller).performance.load.peak / peak, 1, 1e-5);
         EXPECT_NEAR(by_peak->report_as<RimcReport>()->controller.lambda / model.T, 0.9, 1e-5);
 
-        const auto by_error = tuned(model, {{"dead_time_error", 0.3 * model.L}});
+        const auto by_error = rimc_tuned(model, {{"dead_time_error", 0.3 * model.L}});
         ASSERT_TRUE(by_error) << by_error.error().message;
         EXPECT_DOUBLE_EQ(*by_error->report_as<RimcReport>()->dead_time_error, 0.3 * model.L);
         // Eq. 29 is sufficient: the loop stands the error, and the margin is no smaller.
@@ -80,8 +80,8 @@ TEST(Rimc, OfALambdaTheToleratedErrorIsWhereEquation29Ends) {
 }
 
 TEST(Rimc, ScalesWithTimeAndGain) {
-    const auto unit = tuned(Fopdt{1, 1, 0.4}, {{"lambda", 0.6}});
-    const auto scaled = tuned(Fopdt{-7, 300, 120}, {{"lambda", 180.0}});
+    const auto unit = rimc_tuned(Fopdt{1, 1, 0.4}, {{"lambda", 0.6}});
+    const auto scaled = rimc_tuned(Fopdt{-7, 300, 120}, {{"lambda", 180.0}});
     ASSERT_TRUE(unit && scaled);
     EXPECT_NEAR(scaled->controller.Kp / unit->controller.Kp, -1.0 / 7, 1e-12);
     EXPECT_NEAR(scaled->controller.Ti / unit->controller.Ti, 300, 1e-9);
@@ -127,54 +127,54 @@ TEST(Rimc, TheBranchEndsWhereMsIsLeast) {
 
 TEST(Rimc, WhatIsOutOfReachIsRefusedWithTheRange) {
     const Fopdt model{.K = 2, .T = 10, .L = 5};
-    const auto Ms = tuned(model, {{"Ms", 1.1}});
+    const auto Ms = rimc_tuned(model, {{"Ms", 1.1}});
     ASSERT_FALSE(Ms);
     EXPECT_EQ(Ms.error().kind, ErrorKind::no_feasible_controller);
     EXPECT_EQ(Ms.error().where, "Ms");
     EXPECT_THAT(Ms.error().message,
                 HasSubstr("Ms is 1.1; on the model with L/T = 0.5 it can be 1.158 (at lambda = 16.7"));
 
-    const auto low = tuned(model, {{"disturbance_peak", 0.7}});
+    const auto low = rimc_tuned(model, {{"disturbance_peak", 0.7}});
     ASSERT_FALSE(low);
     EXPECT_THAT(low.error().message, HasSubstr("disturbance_peak is 0.7"));
     EXPECT_THAT(low.error().message, HasSubstr("no controller at all comes below 0.7869"));
-    const auto high = tuned(model, {{"disturbance_peak", 1.9}});
+    const auto high = rimc_tuned(model, {{"disturbance_peak", 1.9}});
     ASSERT_FALSE(high);
     EXPECT_THAT(high.error().message, HasSubstr("it can be from 0.79"));
     EXPECT_EQ(high.error().where, "disturbance_peak");
-    const auto sign = tuned(model, {{"disturbance_peak", -1.0}});
+    const auto sign = rimc_tuned(model, {{"disturbance_peak", -1.0}});
     ASSERT_FALSE(sign);
     EXPECT_EQ(sign.error().kind, ErrorKind::invalid_argument);
 
-    const auto error = tuned(model, {{"dead_time_error", 60.0}});
+    const auto error = rimc_tuned(model, {{"dead_time_error", 60.0}});
     ASSERT_FALSE(error);
     EXPECT_THAT(error.error().message, HasSubstr("by Eq. 29 on the model with L/T = 0.5 it can be up to"));
 
-    const auto lambda = tuned(model, {{"lambda", 22.0}});
+    const auto lambda = rimc_tuned(model, {{"lambda", 22.0}});
     ASSERT_FALSE(lambda);
     EXPECT_THAT(lambda.error().message,
                 HasSubstr("lambda is 22; a PID with K Kp > 0 and Td >= 0 comes out for lambda up to 21.2"));
 
-    const auto both = tuned(model, {{"lambda", 5.0}, {"Ms", 1.5}});
+    const auto both = rimc_tuned(model, {{"lambda", 5.0}, {"Ms", 1.5}});
     ASSERT_FALSE(both);
     EXPECT_THAT(both.error().message, HasSubstr("lambda and Ms are both given"));
 }
 
 TEST(Rimc, PlantsWithoutASlowPoleAreRefusedWithACure) {
-    const auto integrating = tuned(Ipdt{.K = 1, .L = 1}, {});
+    const auto integrating = rimc_tuned(Ipdt{.K = 1, .L = 1}, {});
     ASSERT_FALSE(integrating);
     EXPECT_EQ(integrating.error().kind, ErrorKind::unsupported);
     EXPECT_THAT(integrating.error().message, HasSubstr("Use simc, amigo, lambda or robust."));
-    const auto dead = tuned(Fopdt{.K = 1, .T = 0, .L = 1}, {});
+    const auto dead = rimc_tuned(Fopdt{.K = 1, .T = 0, .L = 1}, {});
     ASSERT_FALSE(dead);
     EXPECT_THAT(dead.error().message, HasSubstr("pure dead time"));
-    const auto unstable = tuned(Fopdt{.K = 1, .T = -1, .L = 0.1}, {});
+    const auto unstable = rimc_tuned(Fopdt{.K = 1, .T = -1, .L = 0.1}, {});
     ASSERT_FALSE(unstable);
     EXPECT_THAT(unstable.error().message, HasSubstr("unstable"));
 }
 
 TEST(Rimc, WithoutDeadTimeItIsThePiControllerOfEquation23) {
-    const auto answer = tuned(Fopdt{.K = 2, .T = 5, .L = 0}, {{"lambda", 2.0}});
+    const auto answer = rimc_tuned(Fopdt{.K = 2, .T = 5, .L = 0}, {{"lambda", 2.0}});
     ASSERT_TRUE(answer) << answer.error().message;
     const double beta = 5 * (1 - 0.6 * 0.6);  // C = (beta s + 1) T/(K lambda^2 s)
     EXPECT_NEAR(answer->controller.Kp, beta * 5 / (2 * 4), 1e-12);
@@ -185,7 +185,7 @@ TEST(Rimc, WithoutDeadTimeItIsThePiControllerOfEquation23) {
 }
 
 TEST(Rimc, OtherPlantsAreReducedAndTheModelIsShown) {
-    const auto answer = tuned(Sopdt{.K = 1, .T1 = 20, .T2 = 2, .L = 1}, {{"Ms", 1.6}});
+    const auto answer = rimc_tuned(Sopdt{.K = 1, .T1 = 20, .T2 = 2, .L = 1}, {{"Ms", 1.6}});
     ASSERT_TRUE(answer) << answer.error().message;
     ASSERT_TRUE(answer->reduced_model);
     const auto& model = std::get<Fopdt>(*answer->reduced_model);
@@ -196,8 +196,8 @@ TEST(Rimc, OtherPlantsAreReducedAndTheModelIsShown) {
 
 TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
     const Fopdt model{.K = 1, .T = 1, .L = 0.5};
-    const auto plain = tuned(model, {{"lambda", 0.8}});
-    const auto fraction = tuned(model, {{"lambda", 0.8}, {"approximation", std::string("linear_fractional")}});
+    const auto plain = rimc_tuned(model, {{"lambda", 0.8}});
+    const auto fraction = rimc_tuned(model, {{"lambda", 0.8}, {"approximation", std::string("linear_fractional")}});
     ASSERT_TRUE(plain && fraction);
     EXPECT_DOUBLE_EQ(fraction->controller.Kp, plain->controller.Kp);
     EXPECT_DOUBLE_EQ(fraction->controller.Td, plain->controller.Td);
@@ -214,10 +214,10 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
     unfiltered.filter = {};
     EXPECT_NEAR(defect(unfiltered, 0.04) / defect(unfiltered, 0.02), 8, 1);
 
-    const auto refused = tuned(model, {{"lambda", 0.2}, {"approximation", std::string("linear_fractional")}});
+    const auto refused = rimc_tuned(model, {{"lambda", 0.2}, {"approximation", std::string("linear_fractional")}});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("a filter time > 0 comes out for lambda from 0.4005"));
-    const auto doubled = tuned(model, {{"Tf_over_Td", 0.1}, {"approximation", std::string("linear_fractional")}});
+    const auto doubled = rimc_tuned(model, {{"Tf_over_Td", 0.1}, {"approximation", std::string("linear_fractional")}});
     ASSERT_FALSE(doubled);
     EXPECT_EQ(doubled.error().where, "Tf_over_Td");
 }
@@ -225,25 +225,25 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
 TEST(Rimc, WarnsNearTheLimitAndBeyondTheLeastMs) {
     const Fopdt model{.K = 1, .T = 1, .L = 0.5};
     const double limit = *RimcBranch(model, {}).stability_limit();
-    EXPECT_TRUE(warns(*tuned(model, {{"lambda", 1.2 * limit}}), "near-stability-limit"));
-    EXPECT_TRUE(warns(*tuned(model, {{"lambda", 0.9 * limit}}), "unstable-model-loop"));
-    EXPECT_TRUE(warns(*tuned(model, {{"lambda", 1.9}}), "outside-validity"));
-    EXPECT_TRUE(tuned(model, {})->warnings.empty());
-    EXPECT_FALSE(tuned(model, {{"lambda", 0.9 * limit}})->report_as<RimcReport>()->Ms.has_value());
+    EXPECT_TRUE(rimc_warns(*rimc_tuned(model, {{"lambda", 1.2 * limit}}), "near-stability-limit"));
+    EXPECT_TRUE(rimc_warns(*rimc_tuned(model, {{"lambda", 0.9 * limit}}), "unstable-model-loop"));
+    EXPECT_TRUE(rimc_warns(*rimc_tuned(model, {{"lambda", 1.9}}), "outside-validity"));
+    EXPECT_TRUE(rimc_tuned(model, {})->warnings.empty());
+    EXPECT_FALSE(rimc_tuned(model, {{"lambda", 0.9 * limit}})->report_as<RimcReport>()->Ms.has_value());
 }
 
 TEST(Rimc, TheCurveHoldsTheFiguresOfItsLambdas) {
     const Fopdt model{.K = -3, .T = 40, .L = 20};
-    const auto answer = tuned(model, {{"curve", true}});
+    const auto answer = rimc_tuned(model, {{"curve", true}});
     ASSERT_TRUE(answer && answer->report_as<RimcReport>()->curve);
     const auto& curve = *answer->report_as<RimcReport>()->curve;
     ASSERT_EQ(curve.Ms.size(), 60u);
     ASSERT_EQ(curve.DP_over_kp.size(), 60u);
     const std::size_t i = 40;
-    const auto one = tuned(model, {{"lambda", curve.lambda_over_tau[i] * model.T}});
+    const auto one = rimc_tuned(model, {{"lambda", curve.lambda_over_tau[i] * model.T}});
     EXPECT_NEAR(*one->report_as<RimcReport>()->Ms, curve.Ms[i], 1e-9);
     EXPECT_NEAR(*one->report_as<RimcReport>()->disturbance_peak / model.K, curve.DP_over_kp[i], 1e-9);
-    EXPECT_FALSE(tuned(model, {})->report_as<RimcReport>()->curve.has_value());
+    EXPECT_FALSE(rimc_tuned(model, {})->report_as<RimcReport>()->curve.has_value());
 }
 
 RimcReport entry_of(const Plant& plant, const Given& given, int points = 0) {
@@ -295,7 +295,7 @@ TEST(Rimc, OnAnotherPlantTheFullControllersStabilityAgreesWithItsResponse) {
     ASSERT_TRUE(entry.full_controller->responses);
     EXPECT_TRUE(entry.full_controller->responses->settles);
     // The integral of y is the inverse integral gain, the PID's and the full controller's alike; IAE is no less.
-    const auto pid = tuned(plant, {{"Ms", 1.6}})->controller;
+    const auto pid = rimc_tuned(plant, {{"Ms", 1.6}})->controller;
     EXPECT_GE(*entry.full_controller->load.IAE, pid.Ti / pid.Kp * (1 - 1e-6));
     EXPECT_LT(*entry.full_controller->load.IAE, 1.2 * pid.Ti / pid.Kp);
 }
@@ -310,7 +310,7 @@ TEST(Rimc, AFullControllerThatTheModelsErrorMakesUnstableSaysSo) {
 
 TEST(Imc, MaclaurinAndPadeAgreeWithTheirFormulas) {
     const Fopdt model{.K = -2, .T = 10, .L = 3};
-    const auto pade = tuned(model, {{"lambda", 4.0}, {"expansion", std::string("pade")}}, "imc");
+    const auto pade = rimc_tuned(model, {{"lambda", 4.0}, {"expansion", std::string("pade")}}, "imc");
     ASSERT_TRUE(pade) << pade.error().message;
     EXPECT_NEAR(pade->controller.Kp, (2 * 10 + 3) / (-2 * (2 * 4.0 + 3)), 1e-12);
     EXPECT_NEAR(pade->controller.Ti, 11.5, 1e-12);
@@ -318,7 +318,7 @@ TEST(Imc, MaclaurinAndPadeAgreeWithTheirFormulas) {
     EXPECT_NEAR(pade->controller.filter.Tf, 3.0 / 23, 1e-12);
 
     // C = (T s + 1)/(K (lambda s + 1 - e^(-L s))) and the PID differ by the fourth term.
-    const auto series = tuned(model, {{"lambda", 4.0}, {"filter/Tf_over_Td", 0.0}}, "imc");
+    const auto series = rimc_tuned(model, {{"lambda", 4.0}, {"filter/Tf_over_Td", 0.0}}, "imc");
     ASSERT_TRUE(series);
     const auto defect = [&](double s) {
         const IdealPid& c = series->controller;
@@ -330,7 +330,7 @@ TEST(Imc, MaclaurinAndPadeAgreeWithTheirFormulas) {
 TEST(Imc, OscillatoryPlantsAreTheirOwnModel) {
     const OscillatorySopdt plant{.K = 1, .T = 2, .zeta = 0.3, .L = 1};
     const auto answer =
-        tuned(plant, {{"lambda", 1.0}, {"expansion", std::string("pade")}, {"filter_order", 1.0}}, "imc");
+        rimc_tuned(plant, {{"lambda", 1.0}, {"expansion", std::string("pade")}, {"filter_order", 1.0}}, "imc");
     ASSERT_TRUE(answer) << answer.error().message;
     EXPECT_FALSE(answer->reduced_model);
     EXPECT_NEAR(answer->controller.Kp, 1.2 / 2, 1e-12);  // 2 zeta T/(K (lambda + L))
@@ -339,12 +339,12 @@ TEST(Imc, OscillatoryPlantsAreTheirOwnModel) {
 }
 
 TEST(Imc, RefusesWhatItsFilterCannotServe) {
-    const auto integrating = tuned(Ipdt{.K = 1, .L = 1}, {}, "imc");
+    const auto integrating = rimc_tuned(Ipdt{.K = 1, .L = 1}, {}, "imc");
     ASSERT_FALSE(integrating);
     EXPECT_EQ(integrating.error().kind, ErrorKind::unsupported);
-    const auto no_lambda = tuned(Fopdt{.K = 1, .T = 0, .L = 0}, {}, "imc");
+    const auto no_lambda = rimc_tuned(Fopdt{.K = 1, .T = 0, .L = 0}, {}, "imc");
     EXPECT_FALSE(no_lambda);
-    const auto too_slow = tuned(Fopdt{.K = 1, .T = 1, .L = 1}, {{"lambda", 50.0}, {"filter_order", 2.0}}, "imc");
+    const auto too_slow = rimc_tuned(Fopdt{.K = 1, .T = 1, .L = 1}, {{"lambda", 50.0}, {"filter_order", 2.0}}, "imc");
     ASSERT_FALSE(too_slow);
     EXPECT_THAT(too_slow.error().message, HasSubstr("Give a smaller lambda, or filter_order 1."));
 }

@@ -26,7 +26,7 @@ IdealPid weighed(const Plant& plant, IdealPid pid, const SetpointOptions& option
     return pid;
 }
 
-TuningEntry tuned(const Plant& plant, const char* key, double value, const char* method = "robust") {
+TuningEntry weighted(const Plant& plant, const char* key, double value, const char* method = "robust") {
     TuningRequest request;
     request.subject = test::subject_of(plant);
     request.tune = {MethodRequest{.method = method, .options = {}}};
@@ -43,7 +43,7 @@ TEST(Setpoint, TheDefaultKeepsFivePercentOverTheAmigoBatchAndLeavesRegulationAlo
     for (const auto& row : test::reference_rows()) {
         SCOPED_TRACE(row.at("id").get<std::string>());
         const Plant plant = test::plant_of(row);
-        const TuningEntry by_default = tuned(plant, nullptr, 0), one = tuned(plant, "weight", 1);
+        const TuningEntry by_default = weighted(plant, nullptr, 0), one = weighted(plant, "weight", 1);
         ASSERT_EQ(by_default.error.has_value(), one.error.has_value());
         if (!by_default.evaluation) continue;
         const Evaluation &a = *by_default.evaluation, &b = *one.evaluation;
@@ -149,9 +149,9 @@ TEST(Setpoint, OnEquationsTheFilterDoesWhatItDoesOnTheirLinearTwin) {
 TEST(Setpoint, RulesKeepTheirSourcesWeightUnlessAsked) {
     const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};
     const auto b_of = [](const TuningEntry& entry) { return std::get<IdealPid>(entry.evaluation->controller).b; };
-    EXPECT_EQ(b_of(tuned(plant, nullptr, 0, "simc")), 1);
-    EXPECT_EQ(b_of(tuned(plant, "weight", 0.25, "simc")), 0.25);
-    const TuningEntry kept = tuned(plant, "overshoot", 1, "ziegler_nichols_step");
+    EXPECT_EQ(b_of(weighted(plant, nullptr, 0, "simc")), 1);
+    EXPECT_EQ(b_of(weighted(plant, "weight", 0.25, "simc")), 0.25);
+    const TuningEntry kept = weighted(plant, "overshoot", 1, "ziegler_nichols_step");
     EXPECT_LE(*kept.evaluation->performance.setpoint.overshoot_percent, 1);
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kBody = 1000;
 
-std::string get(const std::string& fields) { return "GET /a HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n"; }
+std::string head_of(const std::string& fields) { return "GET /a HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n"; }
 
 /// What becomes of it at a call that takes up to 1,000 bytes.
 Head judge(const std::string& text, bool streamed = false) {
@@ -24,14 +24,14 @@ void expect_refused(const std::string& text, int status, bool streamed = false) 
 }
 
 TEST(Head, IsIncompleteAtEveryPrefix) {
-    const std::string whole = get("Content-Length: 3\r\n");
+    const std::string whole = head_of("Content-Length: 3\r\n");
     for (std::size_t n = 0; n < whole.size(); n++)
         EXPECT_EQ(read_head(whole.substr(0, n)).state, Head::State::incomplete) << n;
     EXPECT_EQ(read_head(whole).state, Head::State::complete);
 }
 
 TEST(Head, TellsWhereItEndsAndHowLongTheBodyIs) {
-    const std::string text = get("Content-Length: 42\r\n");
+    const std::string text = head_of("Content-Length: 42\r\n");
     const Head head = read_head(text + "{\"a\": 1}");
     EXPECT_EQ(head.size, text.size());
     EXPECT_EQ(head.content_length, 42U);
@@ -39,18 +39,18 @@ TEST(Head, TellsWhereItEndsAndHowLongTheBodyIs) {
 }
 
 TEST(Head, KeepsTheConnectionAsVersionAndClientSay) {
-    EXPECT_FALSE(read_head(get("Connection: close\r\n")).keep_alive);
-    EXPECT_FALSE(read_head(get("connection: foo, CLOSE\r\n")).keep_alive);
+    EXPECT_FALSE(read_head(head_of("Connection: close\r\n")).keep_alive);
+    EXPECT_FALSE(read_head(head_of("connection: foo, CLOSE\r\n")).keep_alive);
     EXPECT_FALSE(read_head("GET / HTTP/1.0\r\n\r\n").keep_alive);
     EXPECT_TRUE(read_head("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n").keep_alive);
 }
 
 TEST(Head, GivesTheLibraryNothingThatItWouldActUpon) {
-    const Head head =
-        read_head(get("Range: bytes=0-,0-\r\nREMOTE_ADDR: 1.2.3.4\r\nExpect: 100-continue\r\nA:  b%41 \r\nA: c\r\n"));
+    const Head head = read_head(
+        head_of("Range: bytes=0-,0-\r\nREMOTE_ADDR: 1.2.3.4\r\nExpect: 100-continue\r\nA:  b%41 \r\nA: c\r\n"));
     EXPECT_TRUE(head.expects_continue);
     EXPECT_EQ(head.clean, "GET /a HTTP/1.1\r\n\r\n");
-    EXPECT_EQ(read_head(get("Content-Length: 007\r\n")).clean, "GET /a HTTP/1.1\r\nContent-Length: 7\r\n\r\n");
+    EXPECT_EQ(read_head(head_of("Content-Length: 007\r\n")).clean, "GET /a HTTP/1.1\r\nContent-Length: 7\r\n\r\n");
     // Handlers get the fields as they were sent.
     using Field = std::pair<std::string, std::string>;
     EXPECT_EQ(head.fields.back(), Field("A", "c"));
@@ -58,21 +58,21 @@ TEST(Head, GivesTheLibraryNothingThatItWouldActUpon) {
 }
 
 TEST(Head, RefusesWhatTwoParsersReadDifferently) {
-    expect_refused(get("Content-Length: 1\r\nContent-Length: 1\r\n"), 400);
+    expect_refused(head_of("Content-Length: 1\r\nContent-Length: 1\r\n"), 400);
     for (const char* length : {"", "-1", "+1", "1 1", "0x1", "1e2", "99999999999999999999", "1,1"})
-        expect_refused(get(std::string("Content-Length: ") + length + "\r\n"), 400);
-    expect_refused(get("Transfer-Encoding: chunked\r\n"), 411);
-    expect_refused(get("Transfer-Encoding: identity\r\n"), 411);
-    expect_refused(get("Content-Length: 5\r\nTransfer-Encoding: chunked\r\n"), 400);
-    expect_refused(get("Transfer-Encoding: chunked\r\nContent-Length: 5\r\n"), 400);
-    expect_refused(get("Host: y\r\n"), 400);
+        expect_refused(head_of(std::string("Content-Length: ") + length + "\r\n"), 400);
+    expect_refused(head_of("Transfer-Encoding: chunked\r\n"), 411);
+    expect_refused(head_of("Transfer-Encoding: identity\r\n"), 411);
+    expect_refused(head_of("Content-Length: 5\r\nTransfer-Encoding: chunked\r\n"), 400);
+    expect_refused(head_of("Transfer-Encoding: chunked\r\nContent-Length: 5\r\n"), 400);
+    expect_refused(head_of("Host: y\r\n"), 400);
     expect_refused("GET / HTTP/1.1\r\n\r\n", 400);
-    expect_refused(get("A: b\r\n c\r\n"), 400);
-    expect_refused(get("A : b\r\n"), 400);
-    expect_refused(get(": b\r\n"), 400);
-    expect_refused(get("A b\r\n"), 400);
-    expect_refused(get(std::string("A: b") + '\0' + "\r\n"), 400);
-    expect_refused(get("A: b\rC: d\r\n"), 400);
+    expect_refused(head_of("A: b\r\n c\r\n"), 400);
+    expect_refused(head_of("A : b\r\n"), 400);
+    expect_refused(head_of(": b\r\n"), 400);
+    expect_refused(head_of("A b\r\n"), 400);
+    expect_refused(head_of(std::string("A: b") + '\0' + "\r\n"), 400);
+    expect_refused(head_of("A: b\rC: d\r\n"), 400);
     expect_refused("GET / HTTP/1.1\nHost: x\r\n\r\n", 400);
 }
 
@@ -86,34 +86,34 @@ TEST(Head, RefusesRequestLinesThatAreNone) {
 TEST(Head, RefusesWhatIsTooLarge) {
     expect_refused("GET /" + std::string(9000, 'a'), 414);
     expect_refused("GET /" + std::string(9000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n", 414);
-    expect_refused(get("A: " + std::string(9000, 'b') + "\r\n"), 431);
+    expect_refused(head_of("A: " + std::string(9000, 'b') + "\r\n"), 431);
     std::string many;
     for (int i = 0; i < 101; i++) many += "A: b\r\n";
-    expect_refused(get(many), 431);
+    expect_refused(head_of(many), 431);
     std::string endless = "GET / HTTP/1.1\r\n";
     while (endless.size() < kMaxHeadBytes) endless += "A: " + std::string(1000, 'b') + "\r\n";
     expect_refused(endless, 431);
-    expect_refused(get("Content-Length: 1001\r\n"), 413);
-    EXPECT_EQ(judge(get("Content-Length: 1000\r\n")).state, Head::State::complete);
+    expect_refused(head_of("Content-Length: 1001\r\n"), 413);
+    EXPECT_EQ(judge(head_of("Content-Length: 1000\r\n")).state, Head::State::complete);
 }
 
 TEST(Head, TakesChunksOnlyWhereBodiesAreStreamedAndNothingElseEncodesThem) {
-    const Head head = judge(get("Transfer-Encoding: Chunked\r\n"), true);
+    const Head head = judge(head_of("Transfer-Encoding: Chunked\r\n"), true);
     EXPECT_EQ(head.state, Head::State::complete);
     EXPECT_EQ(head.transfer, Head::Transfer::chunked);
-    EXPECT_EQ(judge(get("Content-Length: 1000\r\n"), true).state, Head::State::complete);
-    expect_refused(get("Content-Length: 1001\r\n"), 413, true);
+    EXPECT_EQ(judge(head_of("Content-Length: 1000\r\n"), true).state, Head::State::complete);
+    expect_refused(head_of("Content-Length: 1001\r\n"), 413, true);
     for (const char* coding :
          {"", "identity", "gzip", "gzip, chunked", "chunked, chunked", "chunked;q=1", "xchunked", "\vchunked"})
-        expect_refused(get(std::string("Transfer-Encoding: ") + coding + "\r\n"), 400, true);
-    expect_refused(get("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n"), 400, true);
-    expect_refused(get("Transfer-Encoding: chunked\r\nContent-Length: 0\r\n"), 400, true);
+        expect_refused(head_of(std::string("Transfer-Encoding: ") + coding + "\r\n"), 400, true);
+    expect_refused(head_of("Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n"), 400, true);
+    expect_refused(head_of("Transfer-Encoding: chunked\r\nContent-Length: 0\r\n"), 400, true);
     expect_refused("POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n", 400, true);
 }
 
 TEST(Head, RefusesCompressedBodiesAndUnknownExpectations) {
-    expect_refused(get("Content-Encoding: gzip\r\n"), 415);
-    expect_refused(get("Expect: wonders\r\n"), 417);
+    expect_refused(head_of("Content-Encoding: gzip\r\n"), 415);
+    expect_refused(head_of("Expect: wonders\r\n"), 417);
 }
 
 }  // namespace

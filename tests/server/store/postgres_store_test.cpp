@@ -178,6 +178,9 @@ TEST_F(PostgresStore, ACommitWhoseAnswerWasLostIsFoundOutAndNotDoneTwice) {
     // A commit that waits for a standby is durable already; whoever is cut off then does not hear of it.
     database_->run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'");
     database_->run("SELECT pg_reload_conf()");
+    // Commits wait once the checkpointer has read it, which a checkpoint of another test's database may hold up.
+    wait_until("SELECT current_setting('synchronous_standby_names') = 'nobody'");
+    database_->run("CHECKPOINT");
     std::promise<Outcome<std::vector<JobRecord>>> claimed;
     std::promise<Outcome<Accepted>> accepted;
     store->accept(job("b"), [&](auto outcome) { accepted.set_value(std::move(outcome)); });

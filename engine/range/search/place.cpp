@@ -77,7 +77,7 @@ double Place::log_price(const DesignPoint& x, double tolerance) const {
 }
 
 robust::CostWithGradient Place::log_price_with_gradient(const DesignPoint& x, double tolerance) const {
-    auto cost = robust::log_cost_with_gradient(problem_, x, tolerance);
+    auto cost = robust::PricedDesign(problem_, x, tolerance).with_gradient();
     cost.value -= optimum_log_cost_;
     return cost;
 }

@@ -32,20 +32,6 @@ CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, d
     return result;
 }
 
-/// ln of one IAE with its gradient.
-CostWithGradient log_iae(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance) {
-    const CostRun base = run(problem, x, setpoint, tolerance, nullptr);
-    CostWithGradient result{std::log(base.IAE), {}};
-    if (!std::isfinite(result.value)) return result;
-    for (int i = 0; i < problem.dimension(); ++i) {
-        DesignPoint moved = x;
-        moved[static_cast<std::size_t>(i)] += kDifference;
-        const CostRun other = run(problem, moved, setpoint, tolerance, &base.schedule);
-        result.gradient[static_cast<std::size_t>(i)] = (std::log(other.IAE) - result.value) / kDifference;
-    }
-    return result;
-}
-
 double mixed(const DesignProblem& problem, double load, double setpoint) {
     return problem.rho * load / problem.load_optimum + (1 - problem.rho) * setpoint / problem.setpoint_optimum;
 }
@@ -58,15 +44,7 @@ std::optional<double> step_iae(const DesignProblem& problem, const DesignPoint& 
 }
 
 double log_cost(const DesignProblem& problem, const DesignPoint& x, double tolerance) {
-    switch (problem.objective) {
-        case Objective::load_ie: return x[1] - x[0];
-        case Objective::load_iae: return std::log(run(problem, x, false, tolerance, nullptr).IAE);
-        case Objective::setpoint_iae: return std::log(run(problem, x, true, tolerance, nullptr).IAE);
-        case Objective::weighted:
-            return std::log(mixed(problem, run(problem, x, false, tolerance, nullptr).IAE,
-                                  run(problem, x, true, tolerance, nullptr).IAE));
-    }
-    return std::numeric_limits<double>::infinity();
+    return PricedDesign(problem, x, tolerance).log_cost();
 }
 
 double log_cost_bound(const DesignProblem& problem, const DesignPoint& x) {
@@ -80,21 +58,55 @@ double log_cost_bound(const DesignProblem& problem, const DesignPoint& x) {
     return std::log(mixed(problem, std::exp(load), setpoint));
 }
 
-CostWithGradient log_cost_with_gradient(const DesignProblem& problem, const DesignPoint& x, double tolerance) {
-    switch (problem.objective) {
-        case Objective::load_ie: return {x[1] - x[0], {-1, 1, 0}};
-        case Objective::load_iae: return log_iae(problem, x, false, tolerance);
-        case Objective::setpoint_iae: return log_iae(problem, x, true, tolerance);
+PricedDesign::PricedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance)
+    : problem_(&problem), x_(x), tolerance_(tolerance) {
+    const Objective objective = problem.objective;
+    if (objective == Objective::load_ie) {
+        log_cost_ = x[1] - x[0];
+        return;
+    }
+    if (objective != Objective::setpoint_iae) load_ = priced(false);
+    if (objective != Objective::load_iae) setpoint_ = priced(true);
+    log_cost_ = objective == Objective::load_iae       ? load_.log_iae
+                : objective == Objective::setpoint_iae ? setpoint_.log_iae
+                                                       : std::log(mixed(problem, std::exp(load_.log_iae),
+                                                                        std::exp(setpoint_.log_iae)));
+}
+
+PricedDesign::Part PricedDesign::priced(bool setpoint) const {
+    CostRun done = run(*problem_, x_, setpoint, tolerance_, nullptr);
+    return {std::log(done.IAE), std::move(done.schedule)};
+}
+
+std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint) const {
+    std::array<double, 3> gradient{};
+    for (std::size_t i = 0; i < std::size_t(problem_->dimension()); ++i) {
+        DesignPoint moved = x_;
+        moved[i] += kDifference;
+        const CostRun other = run(*problem_, moved, setpoint, tolerance_, &part.schedule);
+        gradient[i] = (std::log(other.IAE) - part.log_iae) / kDifference;
+    }
+    return gradient;
+}
+
+std::array<double, 3> PricedDesign::gradient() const {
+    switch (problem_->objective) {
+        case Objective::load_ie: return {-1, 1, 0};
+        case Objective::load_iae: return gradient_of(load_, false);
+        case Objective::setpoint_iae: return gradient_of(setpoint_, true);
         case Objective::weighted: break;
     }
-    const CostWithGradient load = log_iae(problem, x, false, tolerance),
-                           setpoint = log_iae(problem, x, true, tolerance);
-    const double a = problem.rho * std::exp(load.value) / problem.load_optimum;
-    const double b = (1 - problem.rho) * std::exp(setpoint.value) / problem.setpoint_optimum;
-    CostWithGradient result{std::log(a + b), {}};
-    for (std::size_t i = 0; i < 3; ++i)
-        result.gradient[i] = (a * load.gradient[i] + b * setpoint.gradient[i]) / (a + b);
-    return result;
+    const auto load = gradient_of(load_, false), setpoint = gradient_of(setpoint_, true);
+    const double a = problem_->rho * std::exp(load_.log_iae) / problem_->load_optimum;
+    const double b = (1 - problem_->rho) * std::exp(setpoint_.log_iae) / problem_->setpoint_optimum;
+    std::array<double, 3> gradient{};
+    for (std::size_t i = 0; i < 3; ++i) gradient[i] = (a * load[i] + b * setpoint[i]) / (a + b);
+    return gradient;
+}
+
+CostWithGradient PricedDesign::with_gradient() const {
+    if (!std::isfinite(log_cost_)) return {log_cost_, {}};
+    return {log_cost_, gradient()};
 }
 
 }  // namespace tunewright::robust

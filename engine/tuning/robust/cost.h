@@ -29,8 +29,34 @@ struct CostWithGradient {
     std::array<double, 3> gradient{};
 };
 
-/// ln of the cost and its derivatives by the logarithms: forward differences of runs on the same instants, so that the
-/// error of the time grid cancels; exact for `load_ie`.
-CostWithGradient log_cost_with_gradient(const DesignProblem& problem, const DesignPoint& x, double tolerance);
+/// A design whose cost is known, and the instants of the runs that said so.
+class PricedDesign {
+public:
+    PricedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance);
+
+    /// ln of the cost, as `log_cost`.
+    double log_cost() const { return log_cost_; }
+
+    /// Its derivatives by the logarithms: forward differences of runs on the same instants, so that the error of the
+    /// time grid cancels; exact for `load_ie`. The cost must be finite.
+    std::array<double, 3> gradient() const;
+
+    CostWithGradient with_gradient() const;
+
+private:
+    /// One response: ln of its IAE, and its instants.
+    struct Part {
+        double log_iae = 0;
+        StepSchedule schedule;
+    };
+    Part priced(bool setpoint) const;
+    std::array<double, 3> gradient_of(const Part& part, bool setpoint) const;
+
+    const DesignProblem* problem_;
+    DesignPoint x_;
+    double tolerance_;
+    Part load_, setpoint_;  // those that the objective asks for
+    double log_cost_ = 0;
+};
 
 }  // namespace tunewright::robust

@@ -126,7 +126,7 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
     const int n = problem.dimension();
     SqpResult result;
     result.x = restore(sweep, start).value_or(start);
-    CostWithGradient cost = log_cost_with_gradient(problem, result.x, options.simulation_tolerance);
+    CostWithGradient cost = PricedDesign(problem, result.x, options.simulation_tolerance).with_gradient();
     result.log_cost = cost.value;
     if (!std::isfinite(cost.value)) return result;
     std::vector<ActivePeak> peaks = sweep.peaks(result.x, kNear);
@@ -148,18 +148,18 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
         }
         // Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
         const auto candidate = restore(sweep, moved(result.x, step->p));
-        double candidate_cost = INFINITY;
+        std::optional<PricedDesign> priced;
         if (candidate && longest(difference(*candidate, result.x)) < kFarRestored * radius &&
             is_stable(problem, *candidate))
-            candidate_cost = log_cost(problem, *candidate, options.simulation_tolerance);
-        const double won = cost.value - candidate_cost;
+            priced.emplace(problem, *candidate, options.simulation_tolerance);
+        const double won = cost.value - (priced ? priced->log_cost() : INFINITY);
         if (!(won > kEnoughWon * promised)) {
             radius = std::min(radius, longest(step->p)) * 0.3;
             if (radius < kSmallestRadius) break;
             continue;
         }
         if (won > kMuchWon * promised) radius = std::min(2 * radius, 1.0);
-        const CostWithGradient next = log_cost_with_gradient(problem, *candidate, options.simulation_tolerance);
+        const CostWithGradient next = priced->with_gradient();
         const auto next_peaks = sweep.peaks(*candidate, kNear);
         Vector3 y = difference(next.gradient, cost.gradient);
         for (std::size_t i = 0; i < std::min(peaks.size(), kPeaks); ++i) {

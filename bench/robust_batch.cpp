@@ -2,12 +2,13 @@
 // its time counts: it must exist and hold its limits. A plant's time is the shortest of a few runs, which is what the
 // machine takes undisturbed.
 //
-//   robust_batch [runs]        prints a table in Markdown
+//   robust_batch [runs] [label]    prints a table in Markdown; with a label ("PID, fast") only that row, for a profile
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "bench/batch.h"
@@ -78,11 +79,13 @@ Times measure(const Row& row, int runs) {
 int main(int argc, char** argv) {
     using namespace tunewright::bench;
     const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
+    const std::string_view only = argc > 2 ? argv[2] : "";
     std::printf("| design | plants | median ms | worst ms | whole batch ms | without answer | above a limit |\n");
     std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const Row& row :
          {Row{"PID, fast", "PID", "fast"}, Row{"PI, fast", "PI", "fast"}, Row{"PID, nelder_mead", "PID", "nelder_mead"},
           Row{"PI, nelder_mead", "PI", "nelder_mead"}}) {
+        if (!only.empty() && only != row.label) continue;
         const Times times = measure(row, runs);
         if (times.ms.empty()) continue;
         std::printf("| %s | %zu | %.2f | %.1f | %.0f | %d | %d |\n", row.label, times.ms.size(),

@@ -16,27 +16,81 @@ constexpr double kTaylorNorm = 0.5;    // of F h in the states' own units: up to
 constexpr int kMaxTerms = 40;          // of the series: 0.5^40/40! is far below rounding; stops numbers out of range
 constexpr double kNegligible = 1e-18;  // of a component's largest term: well below rounding
 
-/// sum_{m>=0} F^m h^(m+k)/(m+k)! x: k = 0 the exponential's action, k = j + 1 the moment of s^j/j!.
-std::vector<double> phi_action(const std::vector<double>& F, std::vector<double> x, double h, int k) {
-    double factor = 1;
-    for (int i = 1; i <= k; ++i) factor *= h / i;
-    for (double& value : x) value *= factor;
-    std::vector<double> sum = x, next(x.size()), largest(x.size());
-    // Each component by itself: they may be in units far apart.
-    for (Index i = 0; i < x.size(); ++i) largest[i] = std::abs(x[i]);
-    bool adds = true;
-    for (int m = 1; adds && m < kMaxTerms; ++m) {
-        multiply(F, x, next);
-        adds = false;
-        for (Index i = 0; i < x.size(); ++i) {
-            x[i] = next[i] * h / (m + k);
-            sum[i] += x[i];
-            largest[i] = std::max(largest[i], std::abs(x[i]));
-            adds = adds || std::abs(x[i]) > kNegligible * largest[i];
+/// out = A B for A of n x n and B of n rows, both row by row. A's zeros are skipped: a chain of lags has more of them
+/// than of anything else.
+void product(const double* A, const std::vector<double>& B, int n, std::vector<double>& out) {
+    const Index rows = Index(n), columns = B.size() / rows;
+    std::fill(out.begin(), out.end(), 0.0);
+    for (Index i = 0; i < rows; ++i)
+        for (Index k = 0; k < rows; ++k) {
+            const double a = A[i * rows + k];
+            if (a == 0) continue;
+            const double* from = B.data() + k * columns;
+            double* to = out.data() + i * columns;
+            for (Index j = 0; j < columns; ++j) to[j] += a * from[j];
+        }
+}
+
+/// The exponential series of F h on the columns of [I G b], term by term; the moments' series have the same terms with
+/// other weights.
+class Series {
+public:
+    Series(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b, int n, double h)
+        : F_(F), n_(Index(n)), columns_(n_ + 2), h_(h), term_(n_ * columns_, 0.0), next_(term_), largest_(term_) {
+        for (Index i = 0; i < n_; ++i) {
+            term_[i * columns_ + i] = 1;
+            term_[i * columns_ + n_] = G[i];
+            term_[i * columns_ + n_ + 1] = b[i];
+        }
+        step_.h = h;
+        step_.Phi.assign(n_ * n_, 0.0);
+        for (auto* sums : {&step_.Gamma[0], &step_.Gamma[1], &step_.Gamma[2], &step_.Gamma[3], &step_.constant})
+            sums->assign(n_, 0.0);
+    }
+
+    ExactStep sum() {
+        for (int m = 0; m < kMaxTerms; ++m) {
+            add(m);
+            if (negligible() && m > 0) break;
+            product(F_.data(), term_, int(n_), next_);
+            const double factor = h_ / (m + 1);
+            for (Index i = 0; i < next_.size(); ++i) term_[i] = next_[i] * factor;
+        }
+        return std::move(step_);
+    }
+
+private:
+    /// Term m of the exponential is F^m h^m/m! x; of the moment of s^j/j! it is F^m h^(m + k)/(m + k)! x with k = j
+    /// + 1.
+    void add(int m) {
+        std::array<double, 4> weight{};
+        double w = 1;
+        for (int k = 1; k <= 4; ++k) weight[Index(k - 1)] = w *= h_ / (m + k);
+        for (Index i = 0; i < n_; ++i) {
+            const double* row = term_.data() + i * columns_;
+            for (Index j = 0; j < n_; ++j) step_.Phi[i * n_ + j] += row[j];
+            for (Index k = 0; k < 4; ++k) step_.Gamma[k][i] += row[n_] * weight[k];
+            step_.constant[i] += row[n_ + 1] * weight[0];
         }
     }
-    return sum;
-}
+
+    /// Each component by itself: they may be in units far apart.
+    bool negligible() {
+        bool all = true;
+        for (Index i = 0; i < term_.size(); ++i) {
+            const double size = std::abs(term_[i]);
+            largest_[i] = std::max(largest_[i], size);
+            all = all && size <= kNegligible * largest_[i];
+        }
+        return all;
+    }
+
+    const std::vector<double>& F_;
+    Index n_, columns_;
+    double h_;
+    std::vector<double> term_, next_, largest_;
+    ExactStep step_;
+};
 
 }  // namespace
 
@@ -48,18 +102,7 @@ ExactStep Propagator::step(double h) const {
     const int halvings = std::max(
         0,
         static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / kTaylorNorm))));
-    ExactStep step;
-    step.h = std::ldexp(h, -halvings);
-    step.Phi.resize(Index(n_ * n_));
-    std::vector<double> unit(Index(n_), 0.0);
-    for (int j = 0; j < n_; ++j) {
-        unit[Index(j)] = 1;
-        const auto column = phi_action(F_, unit, step.h, 0);
-        for (int i = 0; i < n_; ++i) step.Phi[Index(i * n_ + j)] = column[Index(i)];
-        unit[Index(j)] = 0;
-    }
-    for (int j = 0; j < 4; ++j) step.Gamma[Index(j)] = phi_action(F_, G_, step.h, j + 1);
-    step.constant = phi_action(F_, b_, step.h, 1);
+    ExactStep step = Series(F_, G_, b_, n_, std::ldexp(h, -halvings)).sum();
     for (int i = 0; i < halvings; ++i) step = compose(step, step);
     return step;
 }
@@ -73,21 +116,26 @@ const ExactStep& Propagator::level(int level) {
 ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) const {
     ExactStep whole;
     whole.h = first.h + second.h;
-    whole.Phi = matrix_product(second.Phi, first.Phi, n_);
+    whole.Phi.resize(first.Phi.size());
+    product(second.Phi.data(), first.Phi, n_, whole.Phi);
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
-    for (int j = 0; j < 4; ++j) {
-        std::vector<double>& carried = whole.Gamma[Index(j)];
-        carried.resize(Index(n_));
-        multiply(second.Phi, first.Gamma[Index(j)], carried);
-        double weight = 1;
-        for (int i = j; i >= 0; --i) {
-            for (Index r = 0; r < Index(n_); ++r) carried[r] += second.Gamma[Index(i)][r] * weight;
-            weight *= first.h / (j - i + 1);
-        }
-    }
+    const double a = first.h, a2 = a * a / 2, a3 = a2 * a / 3;
+    for (auto& moments : whole.Gamma) moments.resize(Index(n_));
     whole.constant.resize(Index(n_));
-    multiply(second.Phi, first.constant, whole.constant);
-    for (Index r = 0; r < Index(n_); ++r) whole.constant[r] += second.constant[r];
+    for (Index i = 0; i < Index(n_); ++i) {
+        const double* row = second.Phi.data() + i * Index(n_);
+        std::array<double, 5> carried{};
+        for (Index k = 0; k < Index(n_); ++k) {
+            for (Index j = 0; j < 4; ++j) carried[j] += row[k] * first.Gamma[j][k];
+            carried[4] += row[k] * first.constant[k];
+        }
+        const auto& g = second.Gamma;
+        whole.Gamma[0][i] = carried[0] + g[0][i];
+        whole.Gamma[1][i] = carried[1] + g[1][i] + a * g[0][i];
+        whole.Gamma[2][i] = carried[2] + g[2][i] + a * g[1][i] + a2 * g[0][i];
+        whole.Gamma[3][i] = carried[3] + g[3][i] + a * g[2][i] + a2 * g[1][i] + a3 * g[0][i];
+        whole.constant[i] = carried[4] + second.constant[i];
+    }
     return whole;
 }
 

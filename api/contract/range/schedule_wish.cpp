@@ -63,8 +63,10 @@ void check_given_rows(const std::vector<GivenRow>& rows, Reader& reader) {
 
 Codec<Interpolation> interpolation_word() {
     using enum Interpolation;
-    return choice<Interpolation>(
-        {{"steps", steps}, {"linear_in_gains", linear_in_gains}, {"linear_in_times", linear_in_times}});
+    std::vector<std::pair<std::string, Interpolation>> words;
+    for (const auto interpolation : {steps, linear_in_gains, linear_in_times})
+        words.emplace_back(to_string(interpolation), interpolation);
+    return choice<Interpolation>(std::move(words));
 }
 
 const Description<ScheduleWish>& schedule_wish_contract() {

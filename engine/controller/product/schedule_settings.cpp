@@ -5,15 +5,6 @@
 namespace tunewright::product {
 namespace {
 
-std::string_view word(Interpolation interpolation) {
-    switch (interpolation) {
-        case Interpolation::steps: return "steps";
-        case Interpolation::linear_in_gains: return "linear_in_gains";
-        case Interpolation::linear_in_times: return "linear_in_times";
-    }
-    return "steps";
-}
-
 void note_scheduling(const Product& product, const Schedule& schedule, std::vector<Note>& notes) {
     if (!product.scheduling) {
         notes.push_back(
@@ -28,10 +19,10 @@ void note_scheduling(const Product& product, const Schedule& schedule, std::vect
                                               " rows and the product holds " + std::to_string(own.sets) +
                                               " sets. Design it with \"rows\": " + std::to_string(own.sets) + "."});
     if (schedule.rows.size() < 2 || own.between == schedule.interpolation) return;
-    std::string detail = "The schedule is meant with " + std::string(word(schedule.interpolation)) +
+    std::string detail = "The schedule is meant with " + std::string(to_string(schedule.interpolation)) +
                          "; the product does otherwise between its rows: " + std::string(own.text);
     if (own.between)
-        detail += " Design it with \"interpolation\": \"" + std::string(word(*own.between)) + "\".";
+        detail += " Design it with \"interpolation\": \"" + std::string(to_string(*own.between)) + "\".";
     else
         detail += " At the rows themselves it is exact.";
     notes.push_back({"interpolation", std::move(detail)});

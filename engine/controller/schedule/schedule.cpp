@@ -9,6 +9,15 @@ double mixed(double left, double right, double share) { return left + share * (r
 
 }  // namespace
 
+std::string_view to_string(Interpolation interpolation) {
+    switch (interpolation) {
+        case Interpolation::steps: return "steps";
+        case Interpolation::linear_in_gains: return "linear_in_gains";
+        case Interpolation::linear_in_times: return "linear_in_times";
+    }
+    return "steps";
+}
+
 IdealPid controller_of(const ScheduleRow& row) {
     IdealPid pid{.Kp = row.Kp, .Ti = row.Ti, .Td = row.Td, .b = row.b};
     if (row.Tf > 0) pid.filter = {FilterType::measurement_second_order, row.Tf};

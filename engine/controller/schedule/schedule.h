@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "engine/controller/pid.h"
@@ -14,6 +15,9 @@ enum class Interpolation {
     linear_in_gains,  ///< Kp, 1/Ti and Td are linear between rows
     linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
+
+/// The contract's word for it: "steps", "linear_in_gains", "linear_in_times".
+std::string_view to_string(Interpolation interpolation);
 
 /// The contract's ideal form (controller/pid.h). Tf = 0: no filter.
 struct ScheduleRow {

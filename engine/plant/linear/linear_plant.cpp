@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/numerics/fast_complex.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/factor.h"
 
@@ -209,7 +210,7 @@ std::complex<double> LinearPlant::rational(std::complex<double> s) const {
     for (int i = 0; i < -integrators_; ++i) numerator *= s;
     for (const auto zero : zeros_) numerator *= s - zero;
     for (const auto pole : poles_) denominator *= s - pole;
-    return numerator / denominator;
+    return quotient(numerator, denominator);
 }
 
 std::complex<double> LinearPlant::at(std::complex<double> s) const {

@@ -36,7 +36,7 @@ public:
         : system_(make_response_system(plant, controller, in)),
           scaling_(system_.s.integral_state >= 0 ? scaling : nullptr),
           options_(options),
-          steady_(steady_state(plant, controller, in)),
+          steady_(steady_outputs(plant, controller, in)),
           propagator_(system_.n, system_.F, input(), system_.b, choose_h0(plant, controller)),
           history_(response_.nodes, in.d),
           levels_({.delayed = system_.delayed,

@@ -45,6 +45,21 @@ SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller
     return steady;
 }
 
+SteadyState steady_outputs(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs) {
+    const double gain = plant.integrators() == 0 ? plant.low_frequency_gain() : 1;
+    if (controller.Ki == 0 || plant.integrators() < 0 || gain == 0) return steady_state(plant, controller, inputs);
+    SteadyState steady;
+    steady.exists = true;
+    steady.y = inputs.r;
+    steady.u = (plant.integrators() == 0 ? inputs.r / gain : 0) - inputs.d;
+    // What the integral action has come to, with y_f = r_f = r; then as in error_integral_in_states().
+    const double integral = (steady.u - controller.Kp * (controller.b - 1) * inputs.r) / controller.Ki;
+    const bool filtered = controller.filter.type == FilterType::measurement_first_order ||
+                          controller.filter.type == FilterType::measurement_second_order;
+    steady.error_integral = integral + (controller.setpoint_lag - (filtered ? controller.filter.Tf : 0)) * inputs.r;
+    return steady;
+}
+
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x) {
     // The integral of y - y_f follows from the filter's own equation: Tf y_f, or Tf y_f + Tf z/2 with z = Tf y_f'.
     const int integral = system.integral_state;

@@ -14,11 +14,14 @@ namespace tunewright {
 struct SteadyState {
     bool exists = false;  ///< false where these equations have no single solution; the rest is 0 then
     double y = 0, u = 0;
-    std::vector<double> x;                 ///< states of the delay system
+    std::vector<double> x;                 ///< states of the delay system; not of steady_outputs()
     std::optional<double> error_integral;  ///< integral of r - y from rest at 0 to infinity; with integral action only
 };
 
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
+
+/// The same without the states: with integral action in closed form, from y = r and the plant's gain at rest.
+SteadyState steady_outputs(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
 /// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated r - y_f alone:
 /// that state less the lag of the measurement filter, with that of the set-point filter. Differences of it are

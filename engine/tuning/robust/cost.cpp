@@ -67,10 +67,10 @@ PricedDesign::PricedDesign(const DesignProblem& problem, const DesignPoint& x, d
     }
     if (objective != Objective::setpoint_iae) load_ = priced(false);
     if (objective != Objective::load_iae) setpoint_ = priced(true);
-    log_cost_ = objective == Objective::load_iae       ? load_.log_iae
-                : objective == Objective::setpoint_iae ? setpoint_.log_iae
-                                                       : std::log(mixed(problem, std::exp(load_.log_iae),
-                                                                        std::exp(setpoint_.log_iae)));
+    log_cost_ = objective == Objective::load_iae ? load_.log_iae
+                : objective == Objective::setpoint_iae
+                    ? setpoint_.log_iae
+                    : std::log(mixed(problem, std::exp(load_.log_iae), std::exp(setpoint_.log_iae)));
 }
 
 PricedDesign::Part PricedDesign::priced(bool setpoint) const {

@@ -43,7 +43,8 @@ std::optional<DesignPoint> RobustFront::neighbour(double M) const {
     }
     if (nearest == nullptr) return std::nullopt;
     const IdealPid& pid = nearest->controller;
-    return DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), pid.Td > 0 ? std::log(pid.Td) : 0};
+    const bool PI = terms_.options.controller == ControllerKind::PI;
+    return DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), PI ? 0 : std::log(pid.Td)};
 }
 
 Expected<Found> RobustFront::searched(const RobustOptions& limits, const DesignPoint* before, const RunControl& control,

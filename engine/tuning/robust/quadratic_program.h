@@ -26,7 +26,8 @@ struct QuadraticSolution {
 /// Constraints hold to 1e-9, relative to b where |b| > 1. Empty: infeasible, or every active set that may be the
 /// solution's is singular.
 ///
-/// Cost: at most one system of 2 n unknowns for each set of up to n constraints, so some ten of them at most.
+/// Cost: one system of as many unknowns as there are constraints in a set, for each set of up to n constraints that is
+/// tried.
 std::optional<QuadraticSolution> solve_quadratic_program(int n, const Matrix3& H, const Vector3& g,
                                                          const std::vector<LinearConstraint>& constraints);
 

@@ -68,7 +68,7 @@ public:
                 report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
             return !stop && !known(x);
         };
-        const SqpResult result = minimise(sweep_, problem_, start->x, {}, watch);
+        const SqpResult result = minimise(sweep_, problem_, start->x, {.stable_start = start->stable}, watch);
         const double cost = std::isfinite(result.log_cost) ? result.log_cost : start->log_cost;
         ends_.push_back(result.x);
         take({result.x, cost, stop});
@@ -135,7 +135,8 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& p
     const double shortest = std::log(kMinTd / sweep.reference()), ordinary = std::log(kShortTd / sweep.reference());
     const DesignPoint end = runs.best()->x;
     if (end[2] > ordinary) return;
-    runs.from(Candidate{.x = {end[0], end[1], shortest}});
+    const DesignPoint nearly_PI = {end[0], end[1], shortest};
+    runs.from(Candidate{.x = nearly_PI, .stable = sweep.stays_stable(end, nearly_PI)});
     std::erase_if(points, [&](const ScanPoint& point) { return point.x[2] <= ordinary; });
     runs.from(cheapest(problem, points));
 }
@@ -241,7 +242,7 @@ std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem,
     std::optional<Found> best;
     const auto gains = feasible_gains(sweep, Ti, Td);
     for (std::size_t i = 0; i < gains.size(); ++i) {
-        DesignPoint x = {std::log(gains[i]), std::log(Ti), problem.pid ? std::log(Td) : 0};
+        DesignPoint x = {std::log(gains[i].Kp), std::log(Ti), problem.pid ? std::log(Td) : 0};
         tighten(sweep, x, i % 2 == 0);  // the ends of a gap follow each other, the upper one first
         if (best && log_cost_bound(problem, x) >= best->log_cost) continue;
         const auto peaks = sweep.peaks(x, kNearLimit);

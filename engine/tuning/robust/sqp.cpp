@@ -133,6 +133,11 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
     Matrix3 H = kFirstCurvature * Matrix3::Identity();
     double radius = options.trust_radius;
     int small_steps = 0;
+    std::optional<DesignPoint> stable;  // the last design whose loop was seen to be stable
+    if (options.stable_start) stable = start;
+    const auto stays_stable = [&](const DesignPoint& x) {
+        return (stable && sweep.stays_stable(*stable, x)) || is_stable(problem, x);
+    };
     for (; result.iterations < options.max_iterations; ++result.iterations) {
         const auto constraints = linearised(peaks, sweep, result.x, radius, kPeaks);
         const auto step = solve_quadratic_program(n, H, vector(cost.gradient), constraints);
@@ -150,8 +155,10 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
         const auto candidate = restore(sweep, moved(result.x, step->p));
         std::optional<PricedDesign> priced;
         if (candidate && longest(difference(*candidate, result.x)) < kFarRestored * radius &&
-            is_stable(problem, *candidate))
+            stays_stable(*candidate)) {
+            stable = *candidate;
             priced.emplace(problem, *candidate, options.simulation_tolerance);
+        }
         const double won = cost.value - (priced ? priced->log_cost() : INFINITY);
         if (!(won > kEnoughWon * promised)) {
             radius = std::min(radius, longest(step->p)) * 0.3;
@@ -169,6 +176,7 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
         }
         update(H, difference(*candidate, result.x), y, n);
         result.x = *candidate;
+        result.stable = true;
         cost = next;
         result.log_cost = cost.value;
         peaks = next_peaks;

@@ -15,6 +15,7 @@ struct SqpOptions {
     double cost_tolerance = 1e-5;  ///< stops when the model promises less than this of ln(cost)
     double simulation_tolerance = 3e-4;
     double trust_radius = 0.5;  ///< of a logarithm
+    bool stable_start = false;  ///< the start's loop is known to be stable
 };
 
 struct SqpResult {
@@ -22,6 +23,7 @@ struct SqpResult {
     double log_cost = 0;
     int iterations = 0;
     bool converged = false;
+    bool stable = false;  ///< the loop at x is known to be stable
 };
 
 /// `report` is called after every accepted step; false stops the search.

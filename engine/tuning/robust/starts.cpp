@@ -20,19 +20,22 @@ constexpr double kWiderLimits = 1.4;  // times M - 1
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
 
-void consider(Candidate& best, const DesignProblem& problem, const DesignPoint& x) {
-    if (log_cost_bound(problem, x) >= best.log_cost) return;
-    const double cost = log_cost(problem, x, kScanTolerance);
-    if (cost < best.log_cost) best = {x, cost};
+void consider(Candidate& best, const DesignProblem& problem, const ScanPoint& point) {
+    if (log_cost_bound(problem, point.x) >= best.log_cost) return;
+    if (!point.proved && !is_stable(problem, point.x)) return;
+    const double cost = log_cost(problem, point.x, kScanTolerance);
+    if (cost < best.log_cost) best = {point.x, cost, true};
 }
 
 /// The least integrated error Ti/Kp costs sweeps only, and often is next to the optimum (Garpinger and Hagglund 2008;
 /// Hast et al. 2013).
-DesignPoint least_integrated_error(const Sweep& sweep, DesignProblem problem, const DesignPoint& start) {
+ScanPoint least_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
     problem.objective = Objective::load_ie;
     SqpOptions options;
     options.cost_tolerance = kRoughCost;
-    return minimise(sweep, problem, start, options, {}).x;
+    options.stable_start = start.proved;
+    const SqpResult found = minimise(sweep, problem, start.x, options, {});
+    return {found.x, found.x[1] - found.x[0], found.stable};
 }
 
 std::optional<Candidate> if_below(const Candidate& best, double below) {
@@ -43,19 +46,19 @@ std::optional<Candidate> if_below(const Candidate& best, double below) {
 
 std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& problem,
                                     const std::vector<ScanPoint>& points) {
-    const DesignPoint integrated = least_integrated_error(sweep, problem, points.front().x);
+    const ScanPoint integrated = least_integrated_error(sweep, problem, points.front());
     Candidate best;
-    if (is_stable(problem, integrated)) consider(best, problem, integrated);
+    consider(best, problem, integrated);
     int compared = 0;
     for (const auto& point : points) {
         if (log_cost_bound(problem, point.x) >= best.log_cost) break;  // the points ascend in it
         if (++compared > kMaxCompared && std::isfinite(best.log_cost)) break;
-        consider(best, problem, point.x);
+        consider(best, problem, point);
     }
     if (std::isfinite(best.log_cost)) return best;
     // No response settles within the steps allowed (time scales too far apart): the least integrated error still is a
     // design.
-    if (feasible_near(sweep, integrated)) return Candidate{integrated, integrated[1] - integrated[0]};
+    if (feasible_near(sweep, integrated.x)) return Candidate{integrated.x, integrated.log_ie, false};
     return std::nullopt;
 }
 
@@ -65,7 +68,7 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
         const auto same_Td = [&](const Candidate& c) { return std::abs(c.x[2] - point.x[2]) < kSameTd; };
         auto at = std::find_if(starts.begin(), starts.end(), same_Td);
         if (at == starts.end()) at = starts.insert(starts.end(), Candidate{.x = point.x});
-        consider(*at, problem, point.x);
+        consider(*at, problem, point);
     }
     std::erase_if(starts, [](const Candidate& c) { return !std::isfinite(c.log_cost); });
     std::sort(starts.begin(), starts.end(),
@@ -77,7 +80,7 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
 
 std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points, double below) {
     Candidate best{.log_cost = below};
-    for (const auto& point : points) consider(best, problem, point.x);
+    for (const auto& point : points) consider(best, problem, point);
     return if_below(best, below);
 }
 
@@ -87,14 +90,13 @@ std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem
     Candidate best{.log_cost = below};
     for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox)) {
         if (log_cost_bound(problem, point.x) >= best.log_cost) continue;
-        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, *inside);
+        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, {.x = *inside, .proved = true});
     }
     return if_below(best, below);
 }
 
 namespace {
 
-constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
 constexpr double kInside = 1e-9;  // of a gain: from the end of a gap
 
 std::vector<double> spaced(double low, double high, int n) {
@@ -104,41 +106,28 @@ std::vector<double> spaced(double low, double high, int n) {
     return values;
 }
 
-/// A stable plant with an integral of the right sign is stable at low gain, so the first gap needs no count.
-bool stable_at_low_gain(const LinearPlant& plant, double sign) {
-    if (plant.integrators() != 0 || plant.unstable_poles() != 0) return false;
-    for (const auto pole : plant.poles())
-        if (pole.real() > -kOnAxis * std::abs(pole)) return false;
-    return sign * plant.low_frequency_gain() > 0;
-}
-
-bool first_gap_is_stable(const DesignProblem& problem) {
-    if (problem.measured) return false;
-    for (std::size_t i = 0; i < problem.plants(); ++i)
-        if (!stable_at_low_gain(problem.plant_at(i), problem.sign)) return false;
-    return true;
-}
-
 }  // namespace
 
-std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td) {
+std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double Td, Stability wanted) {
     const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
-    std::vector<double> gains;
-    const bool first_is_stable = first_gap_is_stable(problem);
+    std::vector<FeasibleGain> gains;
     for (std::size_t i = gaps.size(); i-- > 0;) {
         const GainGap& gap = gaps[i];
         if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + kInside)) continue;
-        const double middle = gap.lower > 0 ? std::sqrt(gap.lower * gap.upper) : 0.5 * gap.upper;
-        const bool known = gap.lower == 0 && first_is_stable;
-        if (!known && !is_stable(problem, {std::log(middle), std::log(Ti), problem.pid ? std::log(Td) : 0})) continue;
-        gains.push_back(gap.upper * (1 - kInside));
-        if (gap.lower > 0) gains.push_back(gap.lower * (1 + kInside));
+        if (gap.stable == false) continue;
+        bool proved = gap.proved;
+        if (!proved && (wanted == Stability::proved || !gap.stable)) {
+            if (!is_stable(problem, {std::log(gap.middle()), std::log(Ti), problem.pid ? std::log(Td) : 0})) continue;
+            proved = true;
+        }
+        gains.push_back({gap.upper * (1 - kInside), proved});
+        if (gap.lower > 0) gains.push_back({gap.lower * (1 + kInside), proved});
     }
     return gains;
 }
 
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box) {
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted) {
     const DesignProblem& problem = sweep.problem();
     const double unit = 1 / sweep.reference();
     std::vector<ScanPoint> found;
@@ -146,10 +135,12 @@ std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box) {
         problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
     for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
         for (const double Td : Td_values) {
-            const auto gains = feasible_gains(sweep, Ti, Td);
+            const auto gains = feasible_gains(sweep, Ti, Td, wanted);
             if (gains.empty()) continue;
-            const double Kp = *std::max_element(gains.begin(), gains.end());
-            found.push_back({{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp)});
+            const FeasibleGain largest = *std::ranges::max_element(gains, {}, &FeasibleGain::Kp);
+            found.push_back({{std::log(largest.Kp), std::log(Ti), problem.pid ? std::log(Td) : 0},
+                             std::log(Ti / largest.Kp),
+                             largest.proved});
         }
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
     return found;

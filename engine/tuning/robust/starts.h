@@ -13,11 +13,23 @@ namespace tunewright::robust {
 
 struct ScanPoint {
     DesignPoint x{};
-    double log_ie = 0;  ///< ln(Ti/|Kp|), a lower bound of ln(load IAE)
+    double log_ie = 0;    ///< ln(Ti/|Kp|), a lower bound of ln(load IAE)
+    bool proved = false;  ///< the loop is stable, not only by what the sweep's grid tells
+};
+
+/// How sure it must be that a loop is stable: by what the sweep's grid tells of the encirclements of -1, where it does;
+/// or by an exact count.
+enum class Stability { told, proved };
+
+/// A gain at the end of a gap.
+struct FeasibleGain {
+    double Kp = 0;  ///< > 0: its magnitude
+    bool proved = false;
 };
 
 /// The gains at the ends of the gaps (feasible, stable, largest first) for one (Ti, Td).
-std::vector<double> feasible_gains(const Sweep& sweep, double Ti, double Td);
+std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double Td,
+                                         Stability wanted = Stability::proved);
 
 /// The points looked at, spaced evenly in logarithms; times in 1/reference frequency. The default box holds what
 /// optimal designs of lag-dominant to dead-time-dominant plants use.
@@ -28,11 +40,13 @@ struct ScanBox {
 };
 
 /// The feasible points of the box with their largest gain, ascending in `log_ie`. Empty: no point of it is feasible.
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {});
+/// Where stability is only told, whoever uses a point has it proved first: few of them are used.
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::told);
 
 struct Candidate {
     DesignPoint x{};
     double log_cost = std::numeric_limits<double>::infinity();  ///< to a thousandth; infinite: no response settles
+    bool stable = false;                                        ///< known to be
 };
 
 /// The cheapest of the least integrated error and the scan's points; empty if there is no design. `points` ascend in

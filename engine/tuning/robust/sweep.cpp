@@ -4,7 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/loop/loop.h"
+#include "engine/numerics/fast_complex.h"
+#include "engine/tuning/robust/encirclements.h"
 
 namespace tunewright::robust {
 namespace {
@@ -29,6 +30,8 @@ constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's 
 constexpr double kSameFrequency = 1e-7;  // ln omega: an error of 1e-14 of ln M
 constexpr double kSameValue = 1e-10;     // ln M
 constexpr double kBeyondAll = 50;        // ln of a ratio that has no end
+constexpr double kMostChange =
+    0.5;  // of L, over its distance from -1: far from what could hide between the grid's points
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double fastest_root(const LinearPlant& plant) {
@@ -76,10 +79,10 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
 /// ln of the ratio at a frequency, from L and C.
 double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits& limits, double centre, double radius) {
     switch (kind) {
-        case ConstraintKind::S: return -std::log(limits.Ms * std::abs(1.0 + L));
-        case ConstraintKind::T: return std::log(std::abs(L / (1.0 + L)) / limits.Mt);
-        case ConstraintKind::CS: return std::log(std::abs(C / (1.0 + L)) / *limits.Mks);
-        case ConstraintKind::circle: return std::log(radius / std::abs(L - centre));
+        case ConstraintKind::S: return -std::log(limits.Ms * magnitude(1.0 + L));
+        case ConstraintKind::T: return std::log(magnitude(L) / (magnitude(1.0 + L) * limits.Mt));
+        case ConstraintKind::CS: return std::log(magnitude(C) / (magnitude(1.0 + L) * *limits.Mks));
+        case ConstraintKind::circle: return std::log(radius / magnitude(L - centre));
     }
     return 0;
 }
@@ -92,8 +95,7 @@ Sweep::Sweep(const DesignProblem& problem, double reference) : problem_(problem)
     for (Curve& curve : curves_) complete(curve);
     // The smallest circle around both: from -Mt/(Mt - 1) to -1 + 1/Ms on the real axis.
     const double left = -problem.limits.Mt / (problem.limits.Mt - 1), right = -1 + 1 / problem.limits.Ms;
-    circle_centre_ = 0.5 * (left + right);
-    circle_radius_ = 0.5 * (right - left);
+    circle_ = {.centre = 0.5 * (left + right), .radius = 0.5 * (right - left)};
 }
 
 Sweep::Curve Sweep::curve_of(std::size_t index) const {
@@ -142,20 +144,24 @@ Complex Sweep::plant_at(const Curve& curve, double omega) const {
 void Sweep::complete(Curve& curve) const {
     const auto first = std::lower_bound(curve.omega.begin(), curve.omega.end(), curve.resolved_to);
     curve.resolved = static_cast<std::size_t>(first - curve.omega.begin());
-    for (auto* level : {&curve.S, &curve.T, &curve.CS, &curve.circle}) level->resize(curve.omega.size());
+    for (auto* scratch : {&curve.S, &curve.T, &curve.CS, &curve.circle, &curve.L_re, &curve.L_im, &curve.lower,
+                          &curve.upper, &curve.other_lower, &curve.other_upper})
+        scratch->resize(curve.omega.size());
+    if (curve.plant == nullptr) return;
+    curve.phase_at_low = phase_from_rest(*curve.plant, curve.omega.front());
+    curve.unstable_poles = curve.plant->unstable_poles();
 }
 
-Sweep::Gains Sweep::gains(const DesignPoint& x) const {
+LoopGains Sweep::gains(const DesignPoint& x) const {
     const IdealPid pid = controller_at(problem_, x);
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
 
 /// The constraint's value at one frequency, exactly.
-double Sweep::value(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const {
-    const Complex s(0, omega);
-    const Complex C = (c.Kp + c.Ki / s + c.Kd * s) / (1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s));
+double Sweep::value(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const {
+    const Complex C = controller_response(c, omega);
     return constraint_value(kind, worst_phase(curve, plant_at(curve, omega) * C, omega), C, problem_.limits,
-                            circle_centre_, circle_radius_);
+                            circle_.centre, circle_.radius);
 }
 
 Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
@@ -163,34 +169,36 @@ Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
     return -std::min(std::abs(L), 1 - kLeastDistance);  // reached within a turn of the dead time
 }
 
-std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const {
-    const Complex s(0, omega), integral = c.Ki / s, derivative = c.Kd * s, sum = c.Kp + integral + derivative;
+std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const {
+    const Complex s(0, omega), integral(0, -c.Ki / omega), derivative = c.Kd * s, sum = c.Kp + integral + derivative;
     const Complex filter = 1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s);
     // d ln C by ln Kp, ln Ti, ln Td.
-    std::array<Complex, 3> dC = {1.0, -integral / sum, derivative / sum};
-    if (problem_.filter.Tf_over_Td) dC[2] -= c.Tf * s * (1.0 + c.Tf * s) / filter;
-    const Complex L = worst_phase(curve, plant_at(curve, omega) * sum / filter, omega), S = 1.0 / (1.0 + L), T = L * S;
+    std::array<Complex, 3> dC = {1.0, -quotient(integral, sum), quotient(derivative, sum)};
+    if (problem_.filter.Tf_over_Td) dC[2] -= quotient(c.Tf * s * (1.0 + c.Tf * s), filter);
+    const Complex L = worst_phase(curve, plant_at(curve, omega) * quotient(sum, filter), omega),
+                  S = quotient(1.0, 1.0 + L), T = L * S;
     std::array<double, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
         switch (kind) {
             case ConstraintKind::S: result[i] = -(T * dC[i]).real(); break;
             case ConstraintKind::T:
             case ConstraintKind::CS: result[i] = (S * dC[i]).real(); break;
-            case ConstraintKind::circle: result[i] = -(L * dC[i] / (L - circle_centre_)).real(); break;
+            case ConstraintKind::circle: result[i] = -quotient(L * dC[i], L - circle_.centre).real(); break;
         }
     }
     if (!problem_.pid) result[2] = 0;
     return result;
 }
 
-void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Gains& c,
+void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
     // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
     const double from = std::exp(2 * (threshold - kPeakRoom));
     for (std::size_t i = 0; i < n; ++i) {
+        if (level[i] < from) continue;
         const bool first = i == 0, last = i + 1 == n;
-        if (level[i] < from || (!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
+        if ((!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
         ActivePeak peak{.kind = kind, .plant = curve.index, .omega = curve.omega[i], .value = 0.5 * std::log(level[i])};
         if (i != curve.resolved && !first && !last) {
             // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
@@ -225,7 +233,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
     }
 }
 
-void Sweep::add_limits(const Curve& curve, const Gains& c, double threshold, std::vector<ActivePeak>& found) const {
+void Sweep::add_limits(const Curve& curve, const LoopGains& c, double threshold, std::vector<ActivePeak>& found) const {
     // Without filter a direct loop gain q remains at infinite frequency.
     if (c.Tf > 0 || curve.plant == nullptr) return;
     const int excess = curve.plant->pole_excess() - (problem_.pid ? 1 : 0);
@@ -249,39 +257,29 @@ void Sweep::add_limits(const Curve& curve, const Gains& c, double threshold, std
 }
 
 /// Squared ratios to the limits at every frequency of the grid.
-void Sweep::fill_levels(Curve& curve, const Gains& c) const {
+void Sweep::fill_levels(Curve& curve, const LoopGains& c) const {
     const Limits& limits = problem_.limits;
-    const double s_limit = 1 / (limits.Ms * limits.Ms), t_limit = 1 / (limits.Mt * limits.Mt);
-    const double cs_limit = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0,
-                 circle_limit = circle_radius_ * circle_radius_;
-    const std::size_t n = curve.omega.size();
-    const double *w = curve.omega.data(), *pr = curve.P_re.data(), *pi = curve.P_im.data();
-    double *S = curve.S.data(), *T = curve.T.data(), *CS = curve.CS.data(), *circle = curve.circle.data();
-    for (std::size_t i = 0; i < n; ++i) {
-        const double fr = 1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, fi = w[i] * c.Tf, scale = 1 / (fr * fr + fi * fi);
-        const double nr = c.Kp, ni = c.Kd * w[i] - c.Ki / w[i];
-        const double cr = (nr * fr + ni * fi) * scale, ci = (ni * fr - nr * fi) * scale;
-        const double lr = pr[i] * cr - pi[i] * ci, li = pr[i] * ci + pi[i] * cr;
-        const double size = lr * lr + li * li, distance = 1 / ((1 + lr) * (1 + lr) + li * li);
-        S[i] = distance * s_limit;
-        T[i] = size * distance * t_limit;
-        CS[i] = (cr * cr + ci * ci) * distance * cs_limit;
-        circle[i] = circle_limit / ((lr - circle_centre_) * (lr - circle_centre_) + li * li);
-    }
-    for (std::size_t i = curve.resolved; i < n; ++i) {
-        const Complex C =
-            Complex(c.Kp, c.Kd * w[i] - c.Ki / w[i]) / Complex(1 - 0.5 * w[i] * w[i] * c.Tf * c.Tf, w[i] * c.Tf);
-        const double size = std::abs(C) * std::hypot(pr[i], pi[i]), nearest = size < 1 ? 1 - size : kLeastDistance;
-        S[i] = s_limit / (nearest * nearest);
-        T[i] = size * size * t_limit / (nearest * nearest);
-        CS[i] = std::norm(C) * cs_limit / (nearest * nearest);
-        const double to_circle = std::abs(circle_centre_) - size;
-        circle[i] = circle_limit / std::max(to_circle * to_circle, kLeastDistance * kLeastDistance);
+    const InverseLimits inverse{.S = 1 / (limits.Ms * limits.Ms),
+                                .T = 1 / (limits.Mt * limits.Mt),
+                                .CS = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0};
+    if (limits.m_circle) circle_levels(curve.followed(), c, circle_, curve.circle.data());
+    if (!limits.m_circle || limits.Mks)
+        peak_levels(curve.followed(), c, inverse, curve.S.data(), curve.T.data(), curve.CS.data());
+    for (std::size_t i = curve.resolved; i < curve.omega.size(); ++i) {
+        const Complex C = controller_response(c, curve.omega[i]);
+        const double size = magnitude(C) * magnitude({curve.P_re[i], curve.P_im[i]});
+        const double nearest = size < 1 ? 1 - size : kLeastDistance;
+        curve.S[i] = inverse.S / (nearest * nearest);
+        curve.T[i] = size * size * inverse.T / (nearest * nearest);
+        curve.CS[i] = std::norm(C) * inverse.CS / (nearest * nearest);
+        const double to_circle = std::abs(circle_.centre) - size;
+        curve.circle[i] =
+            circle_.radius * circle_.radius / std::max(to_circle * to_circle, kLeastDistance * kLeastDistance);
     }
 }
 
 std::vector<ActivePeak> Sweep::peaks(const DesignPoint& x, double threshold) const {
-    const Gains c = gains(x);
+    const LoopGains c = gains(x);
     std::vector<ActivePeak> found;
     for (Curve& curve : curves_) {
         fill_levels(curve, c);
@@ -298,87 +296,13 @@ std::vector<ActivePeak> Sweep::peaks(const DesignPoint& x, double threshold) con
     return found;
 }
 
-namespace {
-
-/// Joins the intervals of neighbouring frequencies, which nearly always overlap, before they are sorted with others.
-class JoinedIntervals {
-public:
-    explicit JoinedIntervals(std::vector<GainGap>& out) : out_(out) {}
-    ~JoinedIntervals() { close(); }
-    JoinedIntervals(const JoinedIntervals&) = delete;
-    JoinedIntervals& operator=(const JoinedIntervals&) = delete;
-
-    void add(double lower, double upper) {
-        if (open_ && lower <= joined_.upper && upper >= joined_.lower) {
-            joined_ = {std::min(lower, joined_.lower), std::max(upper, joined_.upper)};
-            return;
-        }
-        close();
-        joined_ = {lower, upper};
-        open_ = true;
-    }
-
-private:
-    void close() {
-        if (open_) out_.push_back(joined_);
-    }
-
-    std::vector<GainGap>& out_;
-    GainGap joined_;
-    bool open_ = false;
-};
-
-}  // namespace
-
-/// Adds the intervals of |Kp| that one plant forbids.
-void Sweep::forbid(const Curve& curve, const Gains& c, std::vector<GainGap>& forbidden) const {
-    const Limits& limits = problem_.limits;
-    JoinedIntervals first(forbidden), second(forbidden);
-    const auto forbid_circle = [](JoinedIntervals& joined, double X, double Y, double centre, double radius) {
-        const double size = X * X + Y * Y, discriminant = radius * radius * size - centre * centre * Y * Y;
-        if (discriminant <= 0) return;
-        const double root = std::sqrt(discriminant);
-        const double upper = (centre * X + root) / size;
-        if (upper <= 0) return;
-        joined.add(std::max(0.0, (centre * X - root) / size), upper);
-    };
-    const double t_centre = -limits.Mt * limits.Mt / (limits.Mt * limits.Mt - 1),
-                 t_radius = limits.Mt / (limits.Mt * limits.Mt - 1);
-    for (std::size_t i = 0; i < curve.omega.size(); ++i) {
-        const double w = curve.omega[i];
-        const Complex C = Complex(c.Kp, c.Kd * w - c.Ki / w) / Complex(1 - 0.5 * w * w * c.Tf * c.Tf, w * c.Tf);
-        Complex G = Complex(curve.P_re[i], curve.P_im[i]) * C;
-        if (i >= curve.resolved) G = -std::abs(G);
-        if (limits.m_circle) {
-            forbid_circle(first, G.real(), G.imag(), circle_centre_, circle_radius_);
-        } else {
-            forbid_circle(first, G.real(), G.imag(), -1, 1 / limits.Ms);
-            forbid_circle(second, G.real(), G.imag(), t_centre, t_radius);
-        }
-        if (limits.Mks) {
-            // K^2 |C|^2 <= Mks^2 |1 + K G|^2.
-            const double M = *limits.Mks * *limits.Mks, a = std::norm(C) - M * std::norm(G), b = M * G.real();
-            const double discriminant = b * b + a * M;
-            if (a > 0) forbidden.push_back({(b + std::sqrt(discriminant)) / a, kInfinity});
-            if (a < 0 && discriminant > 0 && b < 0)
-                forbidden.push_back({(b + std::sqrt(discriminant)) / a, (b - std::sqrt(discriminant)) / a});
-        }
-    }
-}
-
-std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
-    const Gains c = gains({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
-    std::vector<GainGap> forbidden;
-    for (const Curve& curve : curves_) forbid(curve, c, forbidden);
-    std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
-    std::vector<GainGap> gaps;
-    double reached = 0;
-    for (const auto& interval : forbidden) {
-        if (interval.lower > reached) gaps.push_back({reached, interval.lower});
-        reached = std::max(reached, interval.upper);
-    }
-    if (reached < kInfinity) gaps.push_back({reached, kInfinity});
-    return gaps;
+bool Sweep::stays_stable(const DesignPoint& from, const DesignPoint& to) const {
+    const LoopGains a = gains(from), b = gains(to);
+    if (!(std::abs(b.Ki / a.Ki - 1) < kMostChange)) return false;  // at rest, with the integral
+    return std::ranges::all_of(curves_, [&](const Curve& curve) {
+        return curve.plant != nullptr && moves_less(curve.followed(), a, b, kMostChange, Phase::as_it_is) &&
+               moves_less(curve.turning(), a, b, kMostChange, Phase::worst);
+    });
 }
 
 }  // namespace tunewright::robust

@@ -8,9 +8,12 @@
 #include <array>
 #include <complex>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/tuning/robust/design.h"
+#include "engine/tuning/robust/gain_gaps.h"
+#include "engine/tuning/robust/sweep_loops.h"
 
 namespace tunewright::robust {
 
@@ -26,11 +29,6 @@ struct ActivePeak {
     std::array<double, 3> gradient{};
 };
 
-/// Gains between which no frequency forbids anything; upper is infinite for the last gap.
-struct GainGap {
-    double lower = 0, upper = 0;
-};
-
 class Sweep {
 public:
     /// `reference` is the frequency around which the loop will live (phase crossover or the like).
@@ -44,6 +42,11 @@ public:
     /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 
+    /// Whether the loop at `to` is stable because that at `from` is: L moves by less than the distance of L(from) from
+    /// -1 at every frequency (Rouche's theorem), with room for what lies between those of the grid. False: it may be
+    /// stable or not.
+    bool stays_stable(const DesignPoint& from, const DesignPoint& to) const;
+
     /// The constraint's value on the nominal plant at one frequency, exactly.
     double value(ConstraintKind kind, const DesignPoint& x, double omega) const {
         return value(curves_.front(), kind, gains(x), omega);
@@ -53,9 +56,6 @@ public:
     double reference() const { return reference_; }
 
 private:
-    struct Gains {
-        double Kp, Ki, Kd, Tf;
-    };
     /// One plant on its own grid.
     struct Curve {
         const LinearPlant* plant = nullptr;  // null: measured points
@@ -64,25 +64,37 @@ private:
                                                                        // grid: worst phase assumed
         std::size_t resolved = 0;                                      // index of the first such frequency
         std::vector<double> omega, P_re, P_im;
+        std::optional<double> phase_at_low;  // of P, followed from rest
+        int unstable_poles = 0;
         std::vector<double> S, T, CS, circle;  // scratch: one sweep per thread of work
+        std::vector<double> L_re, L_im, lower, upper, other_lower, other_upper;
+
+        CurveGrid grid() const { return {omega, P_re, P_im}; }
+        CurveGrid followed() const { return grid().part(0, resolved); }
+        CurveGrid turning() const { return grid().part(resolved, omega.size()); }
     };
     Curve curve_of(std::size_t index) const;
     Curve measured_curve() const;
     void complete(Curve& curve) const;  // what follows from its frequencies
     std::complex<double> plant_at(const Curve& curve, double omega) const;
-    Gains gains(const DesignPoint& x) const;
-    double value(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const;
-    void fill_levels(Curve& curve, const Gains& c) const;
-    void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const Gains& c,
+    LoopGains gains(const DesignPoint& x) const;
+    double value(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const;
+    void fill_levels(Curve& curve, const LoopGains& c) const;
+    void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                    double threshold, std::vector<ActivePeak>& found) const;
-    void add_limits(const Curve& curve, const Gains& c, double threshold, std::vector<ActivePeak>& found) const;
-    void forbid(const Curve& curve, const Gains& c, std::vector<GainGap>& forbidden) const;
+    void add_limits(const Curve& curve, const LoopGains& c, double threshold, std::vector<ActivePeak>& found) const;
+    void fill_open_loop(Curve& curve, const LoopGains& c) const;
+    void forbid(Curve& curve, std::vector<GainGap>& forbidden) const;
+    void forbid_activity(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
+    std::optional<int> crossed_below(const Curve& curve, const LoopGains& c, double k) const;
+    bool stable_at_low_gain() const;
+    void tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;
-    std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const Gains& c, double omega) const;
+    std::array<double, 3> gradient(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const;
 
     DesignProblem problem_;
     double reference_;
-    double circle_centre_ = 0, circle_radius_ = 0;
+    Circle circle_{};  // the smallest around both
     mutable std::vector<Curve> curves_;
 };
 

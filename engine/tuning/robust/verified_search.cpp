@@ -181,6 +181,7 @@ constexpr double kLeastTightening = 1e-6;  // of ln M - 1: what moves a design a
 constexpr double kMostTightening = 0.5;
 
 constexpr double kShortLags = 0.01;            // of the dead time
+constexpr double kExactRuns = 1e-5;            // tolerance of runs that compare two designs
 constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
 
 /// The search and its check. `promising`: a search from the usual starts may find something.
@@ -223,17 +224,25 @@ bool all_dead_time(const DesignProblem& problem) {
 
 /// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what
 /// the derivative makes of lags far shorter than it; and it is the one that is left where no PID passes the check.
-Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, const RunControl& control) {
+Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, double reference,
+                                      const RunControl& control, const DesignPoint* before) {
     if (!problem.pid || (found && found->stopped)) return found;
-    const bool doubtful =
-        found ? all_dead_time(problem) || std::exp(found->x[2]) * reference_frequency(problem) <= kShortestTd
-              : found.error().kind == ErrorKind::numerical_failure;
+    const bool doubtful = found ? all_dead_time(problem) || std::exp(found->x[2]) * reference <= kShortestTd
+                                : found.error().kind == ErrorKind::numerical_failure;
     if (!doubtful) return found;
     DesignProblem without = problem;
     without.pid = false;
     const Sweep sweep(without, reference_frequency(without));
-    auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control, nullptr);
-    if (!other || (found && found->log_cost <= other->log_cost)) return found;
+    const DesignPoint near = before != nullptr ? DesignPoint{(*before)[0], (*before)[1], 0} : DesignPoint{};
+    auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
+                                before != nullptr ? &near : nullptr);
+    if (!other) return found;
+    // The two may differ by less than the search's runs are exact to.
+    const auto exactly = [](const DesignProblem& one, const Found& design) {
+        const double cost = log_cost(one, design.x, kExactRuns);
+        return std::isfinite(cost) ? cost : design.log_cost;
+    };
+    if (found && exactly(problem, *found) <= exactly(without, *other)) return found;
     other->x[2] = -INFINITY;
     return other;
 }
@@ -243,10 +252,11 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
                                 const RunControl& control, const DesignPoint* before) {
     const Sweep sweep(problem, reference_frequency(problem));
-    const DesignPoint* near = before != nullptr && std::isfinite((*before)[2]) ? before : nullptr;
+    // A design without derivative is no start for one with it.
+    const DesignPoint* near = before != nullptr && (!problem.pid || std::isfinite((*before)[2])) ? before : nullptr;
     const bool promising = has_reference_optima(problem, sweep);
     return or_without_derivative(checked_search(kind, sweep, problem, promising, start, surface, control, near),
-                                 problem, control);
+                                 problem, sweep.reference(), control, before);
 }
 
 namespace {
@@ -282,8 +292,8 @@ std::optional<DesignPoint> stabilising_point(DesignProblem problem, double refer
     for (double excess = 0.5; excess < 40; excess *= 1.6) {
         problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
         const Sweep sweep(problem, reference);
-        auto points = scan(sweep, {.Ti_points = 13, .Td_points = 11});
-        if (!points.empty()) return points.front().x;
+        for (const auto& point : scan(sweep, {.Ti_points = 13, .Td_points = 11}))
+            if (point.proved || is_stable(problem, point.x)) return point.x;
     }
     return std::nullopt;
 }
@@ -344,7 +354,7 @@ bool has_no_finite_optimum(const DesignProblem& problem) {
     limit.plant = &*asymptote;
     limit.others = {};
     limit.sign = 1;
-    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}).empty();
+    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}, Stability::proved).empty();
 }
 
 }  // namespace tunewright::robust

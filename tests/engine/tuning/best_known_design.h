@@ -69,7 +69,7 @@ inline std::optional<double> best_from_random_starts(const robust::DesignProblem
         const auto gains = robust::feasible_gains(sweep, Ti, Td);
         if (gains.empty()) continue;
         ++started;
-        const double Kp = gains[static_cast<std::size_t>(random.whole(0, static_cast<int>(gains.size()) - 1))];
+        const double Kp = gains[static_cast<std::size_t>(random.whole(0, static_cast<int>(gains.size()) - 1))].Kp;
         const auto found = robust::minimise(
             sweep, problem, {std::log(Kp * random.uniform(0.5, 1)), std::log(Ti), std::log(Td)}, {}, {});
         const auto cost = std::isfinite(found.log_cost) ? checked_cost(problem, found.x) : std::nullopt;

@@ -1,0 +1,52 @@
+#include "engine/tuning/robust/encirclements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace tunewright::robust {
+namespace {
+
+constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
+
+}  // namespace
+
+AxisCrossings::AxisCrossings(std::span<const double> L_re, std::span<const double> L_im)
+    : doubtful_from_(std::numeric_limits<double>::infinity()) {
+    for (std::size_t i = 1; i < L_re.size(); ++i) {
+        const double re0 = L_re[i - 1], im0 = L_im[i - 1], re1 = L_re[i], im1 = L_im[i];
+        // More than a quarter of a turn: the curve may have gone either way between them.
+        if (re0 * re1 + im0 * im1 < 0)
+            doubtful_from_ = std::min(doubtful_from_, 1 / std::max(std::hypot(re0, im0), std::hypot(re1, im1)));
+        if ((im0 > 0) == (im1 > 0)) continue;
+        const double re = re0 + (re1 - re0) * im0 / (im0 - im1);
+        if (re < 0) crossings_.push_back({-1 / re, im1 > 0 ? 1 : -1});
+    }
+}
+
+std::optional<int> AxisCrossings::beyond(double k) const {
+    if (k >= doubtful_from_) return std::nullopt;
+    int count = 0;
+    for (const Crossing& crossing : crossings_)
+        if (crossing.factor < k) count += crossing.upward;
+    return count;
+}
+
+std::optional<double> phase_from_rest(const LinearPlant& plant, double omega) {
+    if (plant.integrators() < 0) return std::nullopt;
+    const auto turned = [omega](std::complex<double> root) {
+        return std::atan((omega - root.imag()) / std::abs(root.real()));
+    };
+    double phase = -omega * plant.dead_time() - 0.5 * std::numbers::pi * plant.integrators();
+    // A root to the right turns P the other way round.
+    for (const auto zero : plant.zeros()) phase += zero.real() > 0 ? -turned(zero) : turned(zero);
+    for (const auto pole : plant.poles()) {
+        if (std::abs(pole.real()) < kOnAxis * std::abs(pole)) return std::nullopt;
+        phase -= pole.real() > 0 ? -turned(pole) : turned(pole);
+    }
+    return phase;
+}
+
+}  // namespace tunewright::robust

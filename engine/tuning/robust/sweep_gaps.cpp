@@ -1,0 +1,111 @@
+// Which gains a sweep's plants leave for given times, and whether the loop is stable with them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/numerics/fast_complex.h"
+#include "engine/tuning/robust/encirclements.h"
+#include "engine/tuning/robust/sweep.h"
+
+namespace tunewright::robust {
+namespace {
+
+constexpr double kFarOutside = 2;  // |L| where a loop enters the grid: it has not been near -1 before
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void Sweep::fill_open_loop(Curve& curve, const LoopGains& c) const {
+    double *re = curve.L_re.data(), *im = curve.L_im.data();
+    open_loops(curve.followed(), c, Phase::as_it_is, re, im);
+    open_loops(curve.turning(), c, Phase::worst, re + curve.resolved, im + curve.resolved);
+}
+
+/// Adds the intervals of |Kp| that the circles forbid on one plant.
+void Sweep::forbid(Curve& curve, std::vector<GainGap>& forbidden) const {
+    const Limits& limits = problem_.limits;
+    const double Mt2 = limits.Mt * limits.Mt;
+    const Circle of_S{.centre = -1, .radius = 1 / limits.Ms},
+        of_T{.centre = -Mt2 / (Mt2 - 1), .radius = limits.Mt / (Mt2 - 1)};
+    const Intervals first{curve.lower, curve.upper}, second{curve.other_lower, curve.other_upper};
+    forbidden_factors(curve.L_re, curve.L_im, limits.m_circle ? circle_ : of_S, limits.m_circle ? circle_ : of_T, first,
+                      second);
+    for (const Intervals& intervals : {first, second}) {
+        JoinedIntervals joined(forbidden);
+        for (std::size_t i = 0; i < intervals.upper.size(); ++i)
+            if (intervals.upper[i] > 0) joined.add(std::max(0.0, intervals.lower[i]), intervals.upper[i]);
+    }
+}
+
+/// Those that Mks forbids: K^2 |C|^2 <= Mks^2 |1 + K L|^2.
+void Sweep::forbid_activity(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const {
+    const double M = *problem_.limits.Mks * *problem_.limits.Mks;
+    for (std::size_t i = 0; i < curve.omega.size(); ++i) {
+        const double re = curve.L_re[i], im = curve.L_im[i];
+        const std::complex<double> C = controller_response(c, curve.omega[i]);
+        const double a = std::norm(C) - M * (re * re + im * im), b = M * re, discriminant = b * b + a * M;
+        if (a > 0) forbidden.push_back({.lower = (b + std::sqrt(discriminant)) / a, .upper = kInfinity});
+        if (a < 0 && discriminant > 0 && b < 0)
+            forbidden.push_back(
+                {.lower = (b + std::sqrt(discriminant)) / a, .upper = (b - std::sqrt(discriminant)) / a});
+    }
+}
+
+/// Twice the crossings of the negative real axis on the way from rest to the grid's lowest frequency, where the loop's
+/// gain there is k. At rest the integral makes L infinite: to the right, or to the left, which counts as half a
+/// crossing. Empty where the curve may have passed between -1 and 0 before the grid takes over.
+std::optional<int> Sweep::crossed_below(const Curve& curve, const LoopGains& c, double k) const {
+    using std::numbers::pi;
+    const double w = curve.omega.front();
+    const double lead = std::atan((c.Kd * w - c.Ki / w) / c.Kp),
+                 lag = std::atan2(w * c.Tf, 1 - 0.5 * w * w * c.Tf * c.Tf);
+    const bool from_left = problem_.sign * curve.plant->low_frequency_gain() < 0;
+    const double phase = (from_left ? pi : 0) + *curve.phase_at_low + lead - lag;
+    if (std::abs(phase) < pi) return from_left ? 1 : 0;
+    if (std::abs(phase) > 3 * pi || k * magnitude({curve.L_re.front(), curve.L_im.front()}) < kFarOutside)
+        return std::nullopt;
+    return (from_left ? 1 : 0) + (phase < 0 ? 2 : -2);
+}
+
+/// A stable plant with an integral of the right sign is stable at low gain.
+bool Sweep::stable_at_low_gain() const {
+    return std::ranges::all_of(curves_, [this](const Curve& curve) {
+        return curve.phase_at_low && curve.unstable_poles == 0 && curve.plant->integrators() == 0 &&
+               problem_.sign * curve.plant->low_frequency_gain() > 0;
+    });
+}
+
+void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
+    if (!std::ranges::all_of(curves_, [](const Curve& curve) { return curve.phase_at_low.has_value(); })) return;
+    std::vector<AxisCrossings> crossings;
+    for (GainGap& gap : gaps) {
+        if (gap.upper == kInfinity) continue;
+        gap.stable = gap.proved = gap.lower == 0 && stable_at_low_gain();
+        if (gap.proved) continue;
+        if (crossings.empty())
+            for (const Curve& curve : curves_) crossings.emplace_back(curve.L_re, curve.L_im);
+        gap.stable = true;
+        for (std::size_t i = 0; i < curves_.size() && gap.stable == true; ++i) {
+            const double k = gap.middle();
+            const auto below = crossed_below(curves_[i], c, k), on_grid = crossings[i].beyond(k);
+            const int open = curves_[i].unstable_poles;
+            gap.stable = below && on_grid ? std::optional(open + *below + 2 * *on_grid == 0) : std::nullopt;
+        }
+    }
+}
+
+std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
+    const LoopGains c = gains({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
+    std::vector<GainGap> forbidden;
+    for (Curve& curve : curves_) {
+        fill_open_loop(curve, c);
+        forbid(curve, forbidden);
+        if (problem_.limits.Mks) forbid_activity(curve, c, forbidden);
+    }
+    auto gaps = gaps_between(forbidden);
+    tell_stability(c, gaps);
+    return gaps;
+}
+
+}  // namespace tunewright::robust

@@ -1,0 +1,215 @@
+#include "engine/tuning/robust/sweep_loops.h"
+
+#include <algorithm>
+#include <cmath>
+
+// The bodies are inlined into a function for each kind of register. A sanitizer's own code must not run in functions
+// for registers that the processor may not have, and other compilers and processors get the common one alone.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#define TUNEWRIGHT_WIDE 1
+#define TUNEWRIGHT_FOR_AVX2 [[gnu::target("avx2")]]
+#else
+#define TUNEWRIGHT_WIDE 0
+#define TUNEWRIGHT_FOR_AVX2
+#endif
+#define TUNEWRIGHT_INLINED [[gnu::always_inline]] inline
+
+namespace tunewright::robust {
+namespace {
+
+struct Response {
+    double re, im;
+};
+
+TUNEWRIGHT_INLINED double squared(Response z) { return z.re * z.re + z.im * z.im; }
+
+TUNEWRIGHT_INLINED Response response_of(const LoopGains& c, double w) {
+    const double fr = 1 - 0.5 * w * w * c.Tf * c.Tf, fi = w * c.Tf, scale = 1 / (fr * fr + fi * fi);
+    const double nr = c.Kp, ni = c.Kd * w - c.Ki / w;
+    return {(nr * fr + ni * fi) * scale, (ni * fr - nr * fi) * scale};
+}
+
+TUNEWRIGHT_INLINED Response product(Response a, Response b) {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+TUNEWRIGHT_INLINED void peak_loop(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
+                                  double* __restrict S, double* __restrict T, double* __restrict CS) {
+    const LoopGains c = gains;
+    const InverseLimits limit = limits;
+    const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
+    const std::size_t n = grid.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Response C = response_of(c, w[i]), L = product({pr[i], pi[i]}, C);
+        const double distance = 1 / squared({1 + L.re, L.im});
+        S[i] = distance * limit.S;
+        T[i] = squared(L) * distance * limit.T;
+        CS[i] = squared(C) * distance * limit.CS;
+    }
+}
+
+TUNEWRIGHT_INLINED void circle_loop(const CurveGrid& grid, const LoopGains& gains, const Circle& circle,
+                                    double* __restrict level) {
+    const LoopGains c = gains;
+    const Circle around = circle;
+    const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
+    const std::size_t n = grid.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Response L = product({pr[i], pi[i]}, response_of(c, w[i]));
+        level[i] = around.radius * around.radius / squared({L.re - around.centre, L.im});
+    }
+}
+
+TUNEWRIGHT_INLINED void open_loop(const CurveGrid& grid, const LoopGains& gains, double* __restrict L_re,
+                                  double* __restrict L_im) {
+    const LoopGains c = gains;
+    const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
+    const std::size_t n = grid.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Response L = product({pr[i], pi[i]}, response_of(c, w[i]));
+        L_re[i] = L.re;
+        L_im[i] = L.im;
+    }
+}
+
+TUNEWRIGHT_INLINED void factor_loop(const double* re, const double* im, std::size_t n, const Circle& a, const Circle& b,
+                                    double* __restrict lower, double* __restrict upper, double* __restrict other_lower,
+                                    double* __restrict other_upper) {
+    const double a2 = a.radius * a.radius, ac = a.centre, ac2 = ac * ac;
+    const double b2 = b.radius * b.radius, bc = b.centre, bc2 = bc * bc;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double x = re[i], y2 = im[i] * im[i], size = x * x + y2, inverse = 1 / (size > 0 ? size : 1.0);
+        const double a_inside = a2 * size - ac2 * y2, b_inside = b2 * size - bc2 * y2;
+        const double a_root = std::sqrt(a_inside > 0 ? a_inside : 0.0),
+                     b_root = std::sqrt(b_inside > 0 ? b_inside : 0.0);
+        const double a_high = a_inside > 0 ? (ac * x + a_root) * inverse : -1.0,
+                     b_high = b_inside > 0 ? (bc * x + b_root) * inverse : -1.0;
+        const double a_low = (ac * x - a_root) * inverse, b_low = (bc * x - b_root) * inverse;
+        // Where only one is there it stands for both.
+        const double low0 = a_high > 0 ? a_low : b_low, high0 = a_high > 0 ? a_high : b_high;
+        const double low1 = b_high > 0 ? b_low : a_low, high1 = b_high > 0 ? b_high : a_high;
+        const double least = low0 < low1 ? low0 : low1, most = high0 > high1 ? high0 : high1;
+        const double between = (low0 > low1 ? low0 : low1) - (high0 < high1 ? high0 : high1);
+        lower[i] = between > 0 ? low0 : least;
+        upper[i] = between > 0 ? high0 : most;
+        other_lower[i] = low1;
+        other_upper[i] = between > 0 ? high1 : -1.0;
+    }
+}
+
+/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2 at the worst frequency. Four running maxima, so that
+/// neighbouring lanes do not wait for each other: the maximum does not depend on the order.
+template <bool worst>
+TUNEWRIGHT_INLINED double change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most) {
+    const LoopGains a = from, b = to;
+    const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
+    const std::size_t n = grid.size();
+    const double most2 = most * most;
+    constexpr std::size_t kLanes = 4;
+    double largest[kLanes] = {-1, -1, -1, -1};
+    const auto excess = [&](std::size_t i) __attribute__((always_inline)) {
+        const Response P{pr[i], pi[i]}, before = response_of(a, w[i]), after = response_of(b, w[i]);
+        const Response L = product(P, before);
+        const double change = squared(P) * squared({after.re - before.re, after.im - before.im});
+        if constexpr (!worst) return change - most2 * squared({1 + L.re, L.im});
+        const double nearest = 1 - std::sqrt(squared(L));
+        return nearest > 0 ? change - most2 * nearest * nearest : 1.0;
+    };
+    std::size_t i = 0;
+    for (; i + kLanes <= n; i += kLanes)
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const double here = excess(i + k);
+            largest[k] = here > largest[k] ? here : largest[k];
+        }
+    for (; i < n; ++i) {
+        const double here = excess(i);
+        largest[0] = here > largest[0] ? here : largest[0];
+    }
+    return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
+}
+
+TUNEWRIGHT_INLINED bool change_within(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most,
+                                      Phase phase) {
+    return (phase == Phase::worst ? change_loop<true>(grid, from, to, most)
+                                  : change_loop<false>(grid, from, to, most)) < 0;
+}
+
+TUNEWRIGHT_FOR_AVX2 void peak_loop_avx2(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
+                                        double* S, double* T, double* CS) {
+    peak_loop(grid, gains, limits, S, T, CS);
+}
+
+TUNEWRIGHT_FOR_AVX2 void circle_loop_avx2(const CurveGrid& grid, const LoopGains& gains, const Circle& circle,
+                                          double* level) {
+    circle_loop(grid, gains, circle, level);
+}
+
+TUNEWRIGHT_FOR_AVX2 void open_loop_avx2(const CurveGrid& grid, const LoopGains& gains, double* L_re, double* L_im) {
+    open_loop(grid, gains, L_re, L_im);
+}
+
+TUNEWRIGHT_FOR_AVX2 void factor_loop_avx2(const double* re, const double* im, std::size_t n, const Circle& a,
+                                          const Circle& b, const Intervals& first, const Intervals& second) {
+    factor_loop(re, im, n, a, b, first.lower.data(), first.upper.data(), second.lower.data(), second.upper.data());
+}
+
+TUNEWRIGHT_FOR_AVX2 bool change_within_avx2(const CurveGrid& grid, const LoopGains& from, const LoopGains& to,
+                                            double most, Phase phase) {
+    return change_within(grid, from, to, most, phase);
+}
+
+}  // namespace
+
+std::complex<double> controller_response(const LoopGains& gains, double omega) {
+    const Response C = response_of(gains, omega);
+    return {C.re, C.im};
+}
+
+Registers widest_registers() {
+#if TUNEWRIGHT_WIDE
+    static const bool wide = __builtin_cpu_supports("avx2");
+    return wide ? Registers::avx2 : Registers::common;
+#else
+    return Registers::common;
+#endif
+}
+
+void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
+                 double* CS, Registers registers) {
+    if (registers == Registers::avx2) return peak_loop_avx2(grid, gains, limits, S, T, CS);
+    peak_loop(grid, gains, limits, S, T, CS);
+}
+
+void circle_levels(const CurveGrid& grid, const LoopGains& gains, const Circle& circle, double* level,
+                   Registers registers) {
+    if (registers == Registers::avx2) return circle_loop_avx2(grid, gains, circle, level);
+    circle_loop(grid, gains, circle, level);
+}
+
+void open_loops(const CurveGrid& grid, const LoopGains& gains, Phase phase, double* L_re, double* L_im,
+                Registers registers) {
+    if (registers == Registers::avx2)
+        open_loop_avx2(grid, gains, L_re, L_im);
+    else
+        open_loop(grid, gains, L_re, L_im);
+    for (std::size_t i = 0; phase == Phase::worst && i < grid.size(); ++i) {
+        L_re[i] = -std::hypot(L_re[i], L_im[i]);
+        L_im[i] = 0;
+    }
+}
+
+void forbidden_factors(std::span<const double> L_re, std::span<const double> L_im, const Circle& a, const Circle& b,
+                       Intervals first, Intervals second, Registers registers) {
+    const double *re = L_re.data(), *im = L_im.data();
+    if (registers == Registers::avx2) return factor_loop_avx2(re, im, L_re.size(), a, b, first, second);
+    factor_loop(re, im, L_re.size(), a, b, first.lower.data(), first.upper.data(), second.lower.data(),
+                second.upper.data());
+}
+
+bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most, Phase phase,
+                Registers registers) {
+    if (registers == Registers::avx2) return change_within_avx2(grid, from, to, most, phase);
+    return change_within(grid, from, to, most, phase);
+}
+
+}  // namespace tunewright::robust

@@ -1,0 +1,73 @@
+// The loops of a sweep over a curve's grid: thousands of controllers on hundreds of frequencies each, so they decide
+// how long a design takes. Each is compiled for the registers that every amd64 processor has and, where the processor
+// has them, for those of AVX2. Both give the same digits: the same operations in the same order, none of them fused.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <span>
+
+namespace tunewright::robust {
+
+/// A curve's frequencies and P there; all of one length.
+struct CurveGrid {
+    std::span<const double> omega, P_re, P_im;
+
+    std::size_t size() const { return omega.size(); }
+    CurveGrid part(std::size_t from, std::size_t to) const {
+        return {omega.subspan(from, to - from), P_re.subspan(from, to - from), P_im.subspan(from, to - from)};
+    }
+};
+
+/// C = (Kp + Ki/s + Kd s)/(1 + Tf s + Tf^2 s^2/2).
+struct LoopGains {
+    double Kp, Ki, Kd, Tf;
+};
+
+std::complex<double> controller_response(const LoopGains& gains, double omega);
+
+/// 1/limit^2, by which squared peaks become 1 at their limits; 0 leaves a constraint out.
+struct InverseLimits {
+    double S, T, CS;
+};
+
+/// On the real axis.
+struct Circle {
+    double centre, radius;
+};
+
+enum class Registers { common, avx2 };
+/// What this processor has.
+Registers widest_registers();
+
+/// Where the dead time turns faster than the grid, a loop is taken at its worst phase: L = -|L|.
+enum class Phase { as_it_is, worst };
+
+/// |S|^2, |T|^2 and |C S|^2 over their limits' squares.
+void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
+                 double* CS, Registers registers = widest_registers());
+
+/// radius^2/|L - centre|^2.
+void circle_levels(const CurveGrid& grid, const LoopGains& gains, const Circle& circle, double* level,
+                   Registers registers = widest_registers());
+
+/// L.
+void open_loops(const CurveGrid& grid, const LoopGains& gains, Phase phase, double* L_re, double* L_im,
+                Registers registers = widest_registers());
+
+/// Intervals of factors, one for each frequency; upper <= 0 where there is none. Lower ends may be negative.
+struct Intervals {
+    std::span<double> lower, upper;
+};
+
+/// The factors k > 0 for which k L lies inside one of the circles. `first` has the interval of either circle, or of
+/// both where they overlap; `second` has that of b where it does not overlap that of a.
+void forbidden_factors(std::span<const double> L_re, std::span<const double> L_im, const Circle& a, const Circle& b,
+                       Intervals first, Intervals second, Registers registers = widest_registers());
+
+/// Whether |L_to - L_from| < most |1 + L_from| at every frequency. At the worst phase 1 - |L_from| takes the place of
+/// |1 + L_from|, and must be positive.
+bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most, Phase phase,
+                Registers registers = widest_registers());
+
+}  // namespace tunewright::robust

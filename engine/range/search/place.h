@@ -8,7 +8,7 @@
 #include "engine/range/model/range_model.h"
 #include "engine/range/problem.h"
 #include "engine/tuning/robust/cost.h"
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright::range {
 

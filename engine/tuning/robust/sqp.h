@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/tuning/robust/cost.h"
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright::robust {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright::robust {
 

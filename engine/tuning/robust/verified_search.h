@@ -10,7 +10,7 @@
 #include "engine/expected.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/robust/robust.h"
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright::robust {
 

@@ -9,7 +9,7 @@
 #include "engine/evaluation/evaluate.h"
 #include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/quadratic_program.h"
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright {
 namespace {

@@ -1,14 +1,14 @@
 // What a search trusts instead of counting or dividing again: the sweep's loops in every kind of register, the gains
 // that circles forbid, and what the grid tells of stability.
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
 #include <complex>
 #include <vector>
 
-#include "engine/tuning/robust/encirclements.h"
 #include "engine/tuning/robust/sqp.h"
+#include "engine/tuning/robust/sweep/encirclements.h"
 #include "tests/engine/tuning/random_plants.h"
 
 namespace tunewright::robust {

@@ -1,4 +1,4 @@
-#include "engine/tuning/robust/encirclements.h"
+#include "engine/tuning/robust/sweep/encirclements.h"
 
 #include <algorithm>
 #include <cmath>

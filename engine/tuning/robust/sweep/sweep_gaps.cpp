@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "engine/numerics/fast_complex.h"
-#include "engine/tuning/robust/encirclements.h"
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/encirclements.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright::robust {
 namespace {
@@ -14,7 +14,51 @@ namespace {
 constexpr double kFarOutside = 2;  // |L| where a loop enters the grid: it has not been near -1 before
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Joins the intervals of neighbouring frequencies, which nearly always overlap, before they are sorted with others.
+class JoinedIntervals {
+public:
+    explicit JoinedIntervals(std::vector<GainGap>& out) : out_(out) {}
+    ~JoinedIntervals() { close(); }
+    JoinedIntervals(const JoinedIntervals&) = delete;
+    JoinedIntervals& operator=(const JoinedIntervals&) = delete;
+
+    void add(double lower, double upper) {
+        if (open_ && lower <= joined_.upper && upper >= joined_.lower) {
+            if (lower < joined_.lower) joined_.lower = lower;
+            if (upper > joined_.upper) joined_.upper = upper;
+            return;
+        }
+        close();
+        joined_ = {.lower = lower, .upper = upper};
+        open_ = true;
+    }
+
+private:
+    void close() {
+        if (open_) out_.push_back(joined_);
+    }
+
+    std::vector<GainGap>& out_;
+    GainGap joined_;
+    bool open_ = false;
+};
+
+/// What the forbidden intervals leave, in ascending order. `forbidden` is sorted on the way.
+std::vector<GainGap> gaps_between(std::vector<GainGap>& forbidden) {
+    std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
+    std::vector<GainGap> gaps;
+    double reached = 0;
+    for (const auto& interval : forbidden) {
+        if (interval.lower > reached) gaps.push_back({.lower = reached, .upper = interval.lower});
+        reached = std::max(reached, interval.upper);
+    }
+    if (reached < kInfinity) gaps.push_back({.lower = reached, .upper = kInfinity});
+    return gaps;
+}
+
 }  // namespace
+
+double GainGap::middle() const { return lower > 0 ? std::sqrt(lower * upper) : 0.5 * upper; }
 
 void Sweep::fill_open_loop(Curve& curve, const LoopGains& c) const {
     double *re = curve.L_re.data(), *im = curve.L_im.data();

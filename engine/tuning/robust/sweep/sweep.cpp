@@ -1,11 +1,11 @@
-#include "engine/tuning/robust/sweep.h"
+#include "engine/tuning/robust/sweep/sweep.h"
 
 #include <algorithm>
 #include <limits>
 #include <numbers>
 
 #include "engine/numerics/fast_complex.h"
-#include "engine/tuning/robust/encirclements.h"
+#include "engine/tuning/robust/sweep/encirclements.h"
 
 namespace tunewright::robust {
 namespace {

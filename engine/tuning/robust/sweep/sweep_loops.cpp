@@ -1,4 +1,4 @@
-#include "engine/tuning/robust/sweep_loops.h"
+#include "engine/tuning/robust/sweep/sweep_loops.h"
 
 #include <algorithm>
 #include <cmath>

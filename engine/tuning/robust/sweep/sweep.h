@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "engine/tuning/robust/design.h"
-#include "engine/tuning/robust/gain_gaps.h"
-#include "engine/tuning/robust/sweep_loops.h"
+#include "engine/tuning/robust/sweep/sweep_loops.h"
 
 namespace tunewright::robust {
 
@@ -27,6 +26,19 @@ struct ActivePeak {
     double omega = 0;
     double value = 0;  ///< <= 0 is allowed
     std::array<double, 3> gradient{};
+};
+
+/// Gains between which no frequency forbids anything; upper is infinite for the last gap.
+struct GainGap {
+    double lower = 0, upper = 0;
+    /// Whether the loop is stable inside, on every plant, by what the grid tells of the encirclements of -1. Empty: it
+    /// does not tell.
+    std::optional<bool> stable = std::nullopt;
+    /// It is, for certain: a stable plant at low gain.
+    bool proved = false;
+
+    /// A gain inside; finite gaps only.
+    double middle() const;
 };
 
 class Sweep {

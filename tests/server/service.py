@@ -15,11 +15,13 @@ BINARY = os.environ.get("TUNEWRIGHT_BIN", str(ROOT / "build" / "release" / "tune
 
 FOPDT = {"type": "fopdt", "K": 2, "T": 10, "L": 3}
 QUICK = {"plant": FOPDT, "tune": [{"method": "simc"}], "evaluate": {"points": 0}}
-# A grid search over a plant of high order: minutes of work, so that it can be caught in the middle.
+# Grid searches over a plant of high order that swings: more than half a minute of work, so that it can be caught in the
+# middle.
 LONG = {
     "name": "long",
-    "plant": {"type": "zpk", "zeros": [], "poles": [-1, -1.1, -1.2, -1.3, -1.4, -1.5], "K": 7.2, "L": 0.5},
-    "tune": [{"method": "robust", "search": "grid", "surface": True, "Ms": 1.2 + 0.02 * i} for i in range(40)],
+    "plant": {"type": "zpk", "zeros": [], "K": 7, "L": 0.5,
+              "poles": [[-0.02, 1], [-0.02, -1], [-0.03, 1.7], [-0.03, -1.7], -0.5, -1.5, -1.4, -1.3]},
+    "tune": [{"method": "robust", "search": "grid", "surface": True, "Ms": 1.2 + 0.02 * i} for i in range(50)],
     "timeout_s": 600,
 }
 

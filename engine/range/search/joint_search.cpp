@@ -44,6 +44,7 @@ struct Layout {
 struct PlaceState {
     DesignPoint x{};
     double price = kInfinity;
+    std::optional<robust::PricedDesign> priced;  // the runs behind the price
     std::vector<ActivePeak> peaks;
     SettingsSlope slope;
     Eigen::Vector3d price_gradient = Eigen::Vector3d::Zero();
@@ -142,7 +143,8 @@ private:
         double worst = -kInfinity, sum = 0;
         for (std::size_t k = 0; k < state.places.size(); ++k) {
             PlaceState& one = state.places[k];
-            one.price = problem_.places[k]->log_price(one.x, options_.simulation_tolerance);
+            one.priced = problem_.places[k]->priced(one.x, options_.simulation_tolerance);
+            one.price = problem_.places[k]->log_price(*one.priced);
             worst = std::max(worst, one.price);
             sum += std::exp(one.price);
         }
@@ -150,11 +152,9 @@ private:
     }
 
     void add_gradients(State& state) const {
-        for (std::size_t k = 0; k < state.places.size(); ++k) {
-            PlaceState& one = state.places[k];
+        for (PlaceState& one : state.places) {
             if (problem_.aim == Aim::worst && one.price < state.price - kNearPrice) continue;
-            const auto cost = problem_.places[k]->log_price_with_gradient(one.x, options_.simulation_tolerance);
-            one.price_gradient = as_vector(cost.gradient);
+            one.price_gradient = as_vector(one.priced->with_gradient().gradient);
             one.has_gradient = one.price_gradient.allFinite();
         }
     }

@@ -72,15 +72,7 @@ void Place::keep_active_members() {
     pose();
 }
 
-double Place::log_price(const DesignPoint& x, double tolerance) const {
-    return robust::log_cost(problem_, x, tolerance) - optimum_log_cost_;
-}
-
-robust::CostWithGradient Place::log_price_with_gradient(const DesignPoint& x, double tolerance) const {
-    auto cost = robust::PricedDesign(problem_, x, tolerance).with_gradient();
-    cost.value -= optimum_log_cost_;
-    return cost;
-}
+double Place::log_price(const DesignPoint& x, double tolerance) const { return log_price(priced(x, tolerance)); }
 
 double Place::excess(const DesignPoint& x) const {
     if (model_.measured) return robust::excess_on_points(problem_, x);

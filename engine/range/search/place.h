@@ -42,7 +42,11 @@ public:
 
     /// ln of IAE over that of the own optimum; infinite where it does not settle. The loop must be stable.
     double log_price(const robust::DesignPoint& x, double tolerance) const;
-    robust::CostWithGradient log_price_with_gradient(const robust::DesignPoint& x, double tolerance) const;
+    double log_price(const robust::PricedDesign& design) const { return design.log_cost() - optimum_log_cost_; }
+    /// The runs behind a price, from which its gradient follows.
+    robust::PricedDesign priced(const robust::DesignPoint& x, double tolerance) const {
+        return {problem_, x, tolerance};
+    }
 
     /// The largest relative excess over a limit, on grids that no search sees; infinite where the loop is unstable.
     double excess(const robust::DesignPoint& x) const;

@@ -34,13 +34,13 @@ SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller
     const double v = solution->back();
     solution->pop_back();
     steady.exists = true;
-    steady.x = std::move(*solution);
+    const std::vector<double>& x = *solution;
     steady.u = v - inputs.d;
     steady.y = s.Z * v;
-    for (int i = 0; i < s.n; ++i) steady.y += s.Y[Index(i)] * steady.x[Index(i)];
+    for (int i = 0; i < s.n; ++i) steady.y += s.Y[Index(i)] * x[Index(i)];
     if (s.integral_state >= 0) {
         steady.y = inputs.r;
-        steady.error_integral = error_integral_in_states(s, controller.filter, steady.x);
+        steady.error_integral = error_integral_in_states(s, controller.filter, x);
     }
     return steady;
 }

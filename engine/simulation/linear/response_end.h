@@ -14,13 +14,12 @@ namespace tunewright {
 struct SteadyState {
     bool exists = false;  ///< false where these equations have no single solution; the rest is 0 then
     double y = 0, u = 0;
-    std::vector<double> x;                 ///< states of the delay system; not of steady_outputs()
     std::optional<double> error_integral;  ///< integral of r - y from rest at 0 to infinity; with integral action only
 };
 
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
-/// The same without the states: with integral action in closed form, from y = r and the plant's gain at rest.
+/// The same; with integral action in closed form, from y = r and the plant's gain at rest, for runs by the thousand.
 SteadyState steady_outputs(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
 /// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated r - y_f alone:

@@ -37,10 +37,8 @@ public:
     /// ln of the cost, as `log_cost`.
     double log_cost() const { return log_cost_; }
 
-    /// Its derivatives by the logarithms: forward differences of runs on the same instants, so that the error of the
-    /// time grid cancels; exact for `load_ie`. The cost must be finite.
-    std::array<double, 3> gradient() const;
-
+    /// With its derivatives by the logarithms: forward differences of runs on the same instants, so that the error of
+    /// the time grid cancels; exact for `load_ie`. All 0 where the cost is infinite.
     CostWithGradient with_gradient() const;
 
 private:
@@ -50,6 +48,7 @@ private:
         StepSchedule schedule;
     };
     Part priced(bool setpoint) const;
+    std::array<double, 3> gradient() const;  // the cost must be finite
     std::array<double, 3> gradient_of(const Part& part, bool setpoint) const;
 
     const DesignProblem* problem_;

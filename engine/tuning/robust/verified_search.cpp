@@ -232,7 +232,7 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     if (!doubtful) return found;
     DesignProblem without = problem;
     without.pid = false;
-    const Sweep sweep(without, reference_frequency(without));
+    const Sweep sweep(without, reference);
     const DesignPoint near = before != nullptr ? DesignPoint{(*before)[0], (*before)[1], 0} : DesignPoint{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
                                 before != nullptr ? &near : nullptr);

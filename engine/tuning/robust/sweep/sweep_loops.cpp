@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-// The bodies are inlined into a function for each kind of register. A sanitizer's own code must not run in functions
-// for registers that the processor may not have, and other compilers and processors get the common one alone.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+// The bodies are inlined into a function for each kind of register. Other compilers and processors get the common one
+// alone.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define TUNEWRIGHT_WIDE 1
 #define TUNEWRIGHT_FOR_AVX2 [[gnu::target("avx2")]]
 #else

@@ -134,22 +134,26 @@ bool resonates(const LinearPlant& plant) {
 
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor) {
-    const double f_0 = -std::log(factor), longest = kLongest / omega_Ms;
+    const double f_0 = -std::log(factor), shortest = kShortest / omega_Ms, longest = kLongest / omega_Ms;
     const auto whole = [&](double Ts) {
         return std::log(SampledLoop(plant, {.gains = gains, .Ts = Ts}).Ms() / (factor * Ms));
     };
-    // Where nothing resonates the continuous loop's own peak decides: a guess from it alone, which the whole loop
-    // confirms.
+    // Where nothing resonates the continuous loop's own peak decides, nearly: a guess from it alone, which the whole
+    // loop confirms.
     TrackedPeak peak(plant, gains, omega_Ms);
     const auto near_peak = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
-    double high = kFirstSample / omega_Ms, f_high = near_peak(high);
+    double high = kFirstSample / omega_Ms, f_high = near_peak(high), low = shortest;
     while (f_high <= 0 && high < longest) f_high = near_peak(high *= 2);
     if (f_high > 0 && !resonates(plant)) {
         const double guess = root_between(near_peak, 0, high, f_0, f_high, kSampleTolerance * high);
         if (std::abs(whole(guess)) <= kWholeLoop && whole(kShorter * guess) <= 0) return guess;
+        // Another peak of the loop has become the higher one: what is looked for lies not far below.
+        low = std::max(kShorter * guess, shortest);
+        while (low > shortest && !(whole(low) <= 0 && whole(kShorter * low) <= 0))
+            low = std::max(kShorter * low, shortest);
     }
-    // Otherwise the first sample time, from short ones on, that the whole loop does not bear.
-    double low = kShortest / omega_Ms, f_low = whole(low);
+    // The first sample time, from short ones on, that the whole loop does not bear.
+    double f_low = whole(low);
     if (f_low > 0) return std::nullopt;
     for (high = low * kNext; (f_high = whole(high)) <= 0; high *= kNext) {
         if (high > longest) return std::nullopt;

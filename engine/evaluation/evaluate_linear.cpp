@@ -98,8 +98,8 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
                      of_load = respond(plant, loop, delta_r, {0, o.load_step}, o);
     const StepResponse &setpoint = of_setpoint.response, &load = of_load.response;
     const bool to_infinity = !o.horizon.has_value();
-    evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity);
-    evaluation.performance.load = load_figures(load, to_infinity);
+    evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity, of_setpoint.indices);
+    evaluation.performance.load = load_figures(load, to_infinity, of_load.indices);
     if (o.noise) evaluation.performance.noise = noise_figures(loop, *o.noise);
     evaluation.verification = verify(loop, peaks);
     evaluation.verification.setpoint_errors = of_setpoint.errors;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/evaluation/performance_figures.h"
 #include "engine/simulation/linear/indices.h"
 
 namespace tunewright {
@@ -15,19 +14,6 @@ constexpr double kTail = 1e-6;             // of the integral of t |e|, left aft
 constexpr std::size_t kMaxNodes = 1000000;
 constexpr double kMoreNodes = 1.4;
 constexpr int kMaxTightenings = 3;
-
-struct Indices {
-    std::optional<ErrorIntegrals> error;  // where they exist
-    double TV = 0;
-};
-
-Indices indices_of(const StepResponse& response, const ResponseOptions& options, double target) {
-    Indices indices{std::nullopt, total_variation(response.nodes)};
-    if (why_no_integral(response, target, !options.horizon) == nullptr)
-        indices.error =
-            error_integrals(response.nodes, target, options.horizon ? std::nullopt : response.error_integral_final);
-    return indices;
-}
 
 double relative(double coarse, double fine) {
     const double size = std::max(std::abs(coarse), std::abs(fine));
@@ -76,16 +62,16 @@ bool as_promised(const MeasuredResponse& measured) {
 
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target) {
     options.tail = kTail;
-    MeasuredResponse measured{simulate(options), {}};
+    const bool to_infinity = !options.horizon;
+    MeasuredResponse measured{.response = simulate(options), .errors = {}, .indices = {}};
     if (!measured.response.settles) return measured;
-    Indices last = indices_of(measured.response, options, target);
+    measured.indices = indices_of(measured.response, target, to_infinity);
     for (int i = 0; i < kMaxRefinements && measured.response.nodes.size() < kMaxNodes; ++i) {
         StepResponse finer = refined(simulate, options, measured.response);
         if (!finer.settles) break;
-        const Indices now = indices_of(finer, options, target);
-        measured = {std::move(finer), moved(last, now)};
+        const Indices now = indices_of(finer, target, to_infinity);
+        measured = {.response = std::move(finer), .errors = moved(*measured.indices, now), .indices = now};
         if (within_promise(measured.errors)) break;
-        last = now;
     }
     return measured;
 }

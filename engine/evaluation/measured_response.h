@@ -7,8 +7,10 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "engine/evaluation/evaluation.h"
+#include "engine/evaluation/performance_figures.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
@@ -18,7 +20,8 @@ inline constexpr double kPromisedIae = 1e-5, kPromisedIse = 1e-5, kPromisedItae 
 
 struct MeasuredResponse {
     StepResponse response;
-    IndexErrors errors;  ///< of the indices that exist
+    IndexErrors errors;              ///< of the indices that exist
+    std::optional<Indices> indices;  ///< of a response that settles
 };
 
 using Simulate = std::function<StepResponse(const ResponseOptions&)>;

@@ -12,17 +12,18 @@ namespace {
 constexpr double kSettlingBand = 0.02;
 constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
 
-/// The indices of one kind of performance, from the error's integrals or with the reason why there are none.
+/// The indices of one kind of performance, or the reason why there are none.
 template <class Figures>
-void store_integrals(Figures& p, const StepResponse& response, double target, bool to_infinity) {
-    if (const char* reason = why_no_integral(response, target, to_infinity)) {
-        p.IAE = p.ISE = p.ITAE = no_figure(reason);
+void store(Figures& p, const Indices& indices, const StepResponse& response, double target, bool to_infinity) {
+    p.TV = indices.TV;
+    if (!indices.error) {
+        const char* reason = why_no_integral(response, target, to_infinity);
+        p.IAE = p.ISE = p.ITAE = no_figure(reason != nullptr ? reason : "");
         return;
     }
-    const auto e = error_integrals(response.nodes, target, to_infinity ? response.error_integral_final : std::nullopt);
-    p.IAE = e.IAE;
-    p.ISE = e.ISE;
-    p.ITAE = e.ITAE;
+    p.IAE = indices.error->IAE;
+    p.ISE = indices.error->ISE;
+    p.ITAE = indices.error->ITAE;
 }
 
 }  // namespace
@@ -49,10 +50,19 @@ Performance no_performance(const std::string& reason) {
     return performance;
 }
 
-SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity) {
+Indices indices_of(const StepResponse& response, double target, bool to_infinity) {
+    Indices indices{std::nullopt, total_variation(response.nodes)};
+    if (why_no_integral(response, target, to_infinity) == nullptr)
+        indices.error =
+            error_integrals(response.nodes, target, to_infinity ? response.error_integral_final : std::nullopt);
+    return indices;
+}
+
+SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity,
+                                     const std::optional<Indices>& indices) {
     SetpointPerformance p;
     const auto& nodes = response.nodes;
-    store_integrals(p, response, step, to_infinity);
+    store(p, indices ? *indices : indices_of(response, step, to_infinity), response, step, to_infinity);
     const Extremes extremes = extremes_of_y(nodes);
     p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
     const auto rise = [&](double from, double to) {
@@ -63,20 +73,18 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
     p.rise_time_5_95 = rise(0.05, 0.95);
     p.settling_time = Figure(last_outside(nodes, step, kSettlingBand * std::abs(step)),
                              "The response does not stay within 2 % of the set point.");
-    p.TV = total_variation(nodes);
     p.first_move = nodes.front().u;
     return p;
 }
 
-LoadPerformance load_figures(const StepResponse& response, bool to_infinity) {
+LoadPerformance load_figures(const StepResponse& response, bool to_infinity, const std::optional<Indices>& indices) {
     LoadPerformance p;
     const auto& nodes = response.nodes;
-    store_integrals(p, response, 0, to_infinity);
+    store(p, indices ? *indices : indices_of(response, 0, to_infinity), response, 0, to_infinity);
     const Extremes extremes = extremes_of_y(nodes);
     p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
     p.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)),
                              "The response does not come back within 2 % of its peak.");
-    p.TV = total_variation(nodes);
     return p;
 }
 

@@ -1,15 +1,29 @@
 // The time-domain figures of the contract from simulated responses, and the traces that show them.
 #pragma once
 
+#include <optional>
+
 #include "engine/evaluation/evaluation.h"
 #include "engine/loop/loop.h"
+#include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
 
-/// `to_infinity`: integrals run to infinity (the response settled), else to the last node.
-SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity);
-LoadPerformance load_figures(const StepResponse& response, bool to_infinity);
+/// What is integrated over a response.
+struct Indices {
+    std::optional<ErrorIntegrals> error;  ///< where they have a value
+    double TV = 0;
+};
+/// `target` is what y is to reach. `to_infinity`: integrals run to infinity (the response settled), else to the last
+/// node.
+Indices indices_of(const StepResponse& response, double target, bool to_infinity);
+
+/// `indices`: the response's own, where they are known already.
+SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity,
+                                     const std::optional<Indices>& indices = {});
+LoadPerformance load_figures(const StepResponse& response, bool to_infinity,
+                             const std::optional<Indices>& indices = {});
 
 /// The loop must be stable; `noise.sample_time` 0 takes the loop's own (loop/noise.h).
 NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise);

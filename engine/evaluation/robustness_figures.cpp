@@ -169,13 +169,18 @@ std::vector<double> spread(const std::vector<Sample>& samples, const std::vector
                            const std::vector<double>& kept) {
     const std::size_t count = most > kept.size() + 2 ? most - kept.size() : most;
     std::vector<double> omega;
-    std::size_t i = 1;
+    omega.reserve(most);
+    std::size_t i = 1, spaced = 0;  // `ratio` is that of the samples around `spaced`
+    double ratio = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double wanted = along.back() * static_cast<double>(k) / static_cast<double>(count - 1);
         while (i + 1 < along.size() && along[i] < wanted) ++i;
-        const double part = (wanted - along[i - 1]) / (along[i] - along[i - 1]);
-        omega.push_back(samples[i - 1].omega *
-                        std::pow(samples[i].omega / samples[i - 1].omega, std::clamp(part, 0.0, 1.0)));
+        const double part = std::clamp((wanted - along[i - 1]) / (along[i] - along[i - 1]), 0.0, 1.0);
+        if (i != spaced) {
+            spaced = i;
+            ratio = std::log(samples[i].omega / samples[i - 1].omega);
+        }
+        omega.push_back(samples[i - 1].omega * std::exp(part * ratio));
     }
     const double first = omega.front(), last = omega.back();
     if (count < most)
@@ -188,15 +193,18 @@ std::vector<double> spread(const std::vector<Sample>& samples, const std::vector
 
 FrequencyTraces traces_of(const std::vector<Sample>& samples, const std::vector<double>& turns) {
     FrequencyTraces traces;
+    for (auto* trace :
+         {&traces.omega, &traces.L_re, &traces.L_im, &traces.L_phase_deg, &traces.S_abs, &traces.T_abs, &traces.CS_abs})
+        trace->reserve(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const LoopPoint& p = samples[i].point;
         traces.omega.push_back(samples[i].omega);
         traces.L_re.push_back(p.L.real());
         traces.L_im.push_back(p.L.imag());
         traces.L_phase_deg.push_back(turns[i] * 180 / std::numbers::pi);
-        traces.S_abs.push_back(std::abs(p.S));
-        traces.T_abs.push_back(std::abs(p.T));
-        traces.CS_abs.push_back(std::abs(p.CS));
+        traces.S_abs.push_back(magnitude(p.S));
+        traces.T_abs.push_back(magnitude(p.T));
+        traces.CS_abs.push_back(magnitude(p.CS));
     }
     return traces;
 }

@@ -122,13 +122,13 @@ LoopPoint Loop::at(double omega) const {
     const Parts p = parts({0, omega});
     const Complex numerator = p.controller_numerator * p.plant_numerator;
     const Complex denominator = p.controller_denominator * p.plant_denominator;
-    const Complex sum = denominator + numerator;
+    const Divisor sum(denominator + numerator);
     LoopPoint point;
     point.L = quotient(numerator, denominator);
-    point.S = quotient(denominator, sum);
-    point.T = quotient(numerator, sum);
+    point.S = sum.under(denominator);
+    point.T = sum.under(numerator);
     // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
-    point.CS = quotient(p.controller_numerator * p.plant_denominator, sum);
+    point.CS = sum.under(p.controller_numerator * p.plant_denominator);
     return point;
 }
 

@@ -28,4 +28,22 @@ inline std::complex<double> quotient(std::complex<double> n, std::complex<double
     return {(n.real() * re + n.imag() * im) * inverse, (n.imag() * re - n.real() * im) * inverse};
 }
 
+/// What several numbers are divided by.
+class Divisor {
+public:
+    explicit Divisor(std::complex<double> d) : d_(d), inverse_(quotient(1, d)) {
+        const double size = std::max(std::abs(d.real()), std::abs(d.imag()));
+        ordinary_ = size > kLeastDivisor && size < kLargestDivisor;
+    }
+    std::complex<double> under(std::complex<double> n) const {
+        if (!ordinary_) return quotient(n, d_);
+        return {n.real() * inverse_.real() - n.imag() * inverse_.imag(),
+                n.real() * inverse_.imag() + n.imag() * inverse_.real()};
+    }
+
+private:
+    std::complex<double> d_, inverse_;
+    bool ordinary_;
+};
+
 }  // namespace tunewright

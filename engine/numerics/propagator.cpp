@@ -1,8 +1,13 @@
 #include "engine/numerics/propagator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <type_traits>
+#include <utility>
 
 #include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
@@ -16,45 +21,93 @@ constexpr double kTaylorNorm = 0.5;    // of F h in the states' own units: up to
 constexpr int kMaxTerms = 40;          // of the series: 0.5^40/40! is far below rounding; stops numbers out of range
 constexpr double kNegligible = 1e-18;  // of a component's largest term: well below rounding
 
-/// out = A B for A of n x n and B of n rows, both row by row. A's zeros are skipped: a chain of lags has more of them
-/// than of anything else.
-void product(const double* A, const std::vector<double>& B, int n, std::vector<double>& out) {
-    const Index rows = Index(n), columns = B.size() / rows;
-    std::fill(out.begin(), out.end(), 0.0);
-    for (Index i = 0; i < rows; ++i)
-        for (Index k = 0; k < rows; ++k) {
-            const double a = A[i * rows + k];
-            if (a == 0) continue;
-            const double* from = B.data() + k * columns;
-            double* to = out.data() + i * columns;
-            for (Index j = 0; j < columns; ++j) to[j] += a * from[j];
+constexpr Index kInputs = 5;  // of a step beside its states: the cubic's coefficients and the constant
+
+/// Two neighbours of a column, for registers of that width.
+using Pair = double __attribute__((vector_size(16)));
+
+Pair load(const double* from) {
+    Pair pair;
+    std::memcpy(&pair, from, sizeof pair);
+    return pair;
+}
+
+void store(double* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
+
+Index pairs_of(Index n) { return (n + 1) / 2; }
+
+/// Calls `act` with the number of pairs as a constant of the program; false: there are too many.
+template <class Act>
+bool with_pairs(Index pairs, const Act& act) {
+    switch (pairs) {
+        case 1: act(std::integral_constant<Index, 1>()); return true;
+        case 2: act(std::integral_constant<Index, 2>()); return true;
+        case 3: act(std::integral_constant<Index, 3>()); return true;
+        case 4: act(std::integral_constant<Index, 4>()); return true;
+        case 5: act(std::integral_constant<Index, 5>()); return true;
+        case 6: act(std::integral_constant<Index, 6>()); return true;
+        default: return false;
+    }
+}
+
+/// out += the columns' combination with these weights, for columns of kPairs pairs: so many sums stay in registers.
+template <Index kPairs>
+void combine(const double* columns, const double* weights, Index count, std::array<Pair, kPairs>& out) {
+    for (Index k = 0; k < count; ++k)
+        for (Index i = 0; i < kPairs; ++i) out[i] += load(columns + 2 * (k * kPairs + i)) * weights[k];
+}
+
+/// For any number of pairs; what is not weighted costs nothing: a chain of lags has more of that than of anything else.
+void combine(const double* columns, Index pairs, const double* weights, Index count, double* out) {
+    for (Index k = 0; k < count; ++k) {
+        if (weights[k] == 0) continue;
+        for (Index i = 0; i < pairs; ++i)
+            store(out + 2 * i, load(out + 2 * i) + load(columns + 2 * (k * pairs + i)) * weights[k]);
+    }
+}
+
+/// to_k := factor times the columns' combination with weights_k, for every k: a product of matrices whose columns have
+/// the same length. `to` may be `weights`.
+void multiply_columns(const double* columns, const double* weights, Index n, Index count, double factor, double* to) {
+    const Index pairs = pairs_of(n);
+    const auto in_registers = [&]<Index kPairs>(std::integral_constant<Index, kPairs>) {
+        for (Index k = 0; k < count; ++k) {
+            std::array<Pair, kPairs> sum{};
+            combine<kPairs>(columns, weights + 2 * kPairs * k, n, sum);
+            for (Index i = 0; i < kPairs; ++i) store(to + 2 * (k * kPairs + i), factor * sum[i]);
         }
+    };
+    if (with_pairs(pairs, in_registers)) return;
+    std::vector<double> sum(2 * pairs);
+    for (Index k = 0; k < count; ++k) {
+        std::fill(sum.begin(), sum.end(), 0.0);
+        combine(columns, pairs, weights + 2 * pairs * k, n, sum.data());
+        for (Index i = 0; i < sum.size(); ++i) to[2 * pairs * k + i] = factor * sum[i];
+    }
 }
 
 /// The exponential series of F h on the columns of [I G b], term by term; the moments' series have the same terms with
 /// other weights.
 class Series {
 public:
-    Series(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b, int n, double h)
-        : F_(F), n_(Index(n)), columns_(n_ + 2), h_(h), term_(n_ * columns_, 0.0), next_(term_), largest_(term_) {
+    /// `F`: in columns of ExactStep's length.
+    Series(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b, double h)
+        : F_(F), n_(G.size()), length_(2 * pairs_of(n_)), h_(h), term_(length_ * (n_ + 2), 0.0), largest_(term_) {
         for (Index i = 0; i < n_; ++i) {
-            term_[i * columns_ + i] = 1;
-            term_[i * columns_ + n_] = G[i];
-            term_[i * columns_ + n_ + 1] = b[i];
+            term_[i * length_ + i] = 1;
+            term_[n_ * length_ + i] = G[i];
+            term_[(n_ + 1) * length_ + i] = b[i];
         }
         step_.h = h;
-        step_.Phi.assign(n_ * n_, 0.0);
-        for (auto* sums : {&step_.Gamma[0], &step_.Gamma[1], &step_.Gamma[2], &step_.Gamma[3], &step_.constant})
-            sums->assign(n_, 0.0);
+        step_.n = n_;
+        step_.columns.assign(length_ * (n_ + kInputs), 0.0);
     }
 
     ExactStep sum() {
         for (int m = 0; m < kMaxTerms; ++m) {
             add(m);
             if (negligible() && m > 0) break;
-            product(F_.data(), term_, int(n_), next_);
-            const double factor = h_ / (m + 1);
-            for (Index i = 0; i < next_.size(); ++i) term_[i] = next_[i] * factor;
+            multiply_columns(F_.data(), term_.data(), n_, n_ + 2, h_ / (m + 1), term_.data());
         }
         return std::move(step_);
     }
@@ -63,46 +116,59 @@ private:
     /// Term m of the exponential is F^m h^m/m! x; of the moment of s^j/j! it is F^m h^(m + k)/(m + k)! x with k = j
     /// + 1.
     void add(int m) {
-        std::array<double, 4> weight{};
-        double w = 1;
-        for (int k = 1; k <= 4; ++k) weight[Index(k - 1)] = w *= h_ / (m + k);
-        for (Index i = 0; i < n_; ++i) {
-            const double* row = term_.data() + i * columns_;
-            for (Index j = 0; j < n_; ++j) step_.Phi[i * n_ + j] += row[j];
-            for (Index k = 0; k < 4; ++k) step_.Gamma[k][i] += row[n_] * weight[k];
-            step_.constant[i] += row[n_ + 1] * weight[0];
+        double* to = step_.columns.data();
+        const double* from = term_.data();
+        const Index of_G = n_ * length_, of_b = of_G + length_;
+        for (Index i = 0; i < of_G; ++i) to[i] += from[i];
+        double weight = 1;
+        for (Index k = 0; k < 4; ++k) {
+            weight *= h_ / (m + int(k) + 1);
+            for (Index i = 0; i < length_; ++i) to[of_G + k * length_ + i] += from[of_G + i] * weight;
         }
+        for (Index i = 0; i < length_; ++i) to[of_G + 4 * length_ + i] += from[of_b + i] * (h_ / (m + 1));
     }
 
     /// Each component by itself: they may be in units far apart.
     bool negligible() {
-        bool all = true;
-        for (Index i = 0; i < term_.size(); ++i) {
-            const double size = std::abs(term_[i]);
-            largest_[i] = std::max(largest_[i], size);
-            all = all && size <= kNegligible * largest_[i];
+        using Counting = decltype(Pair{} < Pair{});
+        Counting counting{};
+        for (Index i = 0; i < term_.size(); i += 2) {
+            const Pair term = load(term_.data() + i), size = term < 0 ? -term : term,
+                       before = load(largest_.data() + i);
+            const Pair largest = size > before ? size : before;
+            store(largest_.data() + i, largest);
+            counting |= size > kNegligible * largest;
         }
-        return all;
+        return (counting[0] | counting[1]) == 0;
     }
 
     const std::vector<double>& F_;
-    Index n_, columns_;
+    Index n_, length_;
     double h_;
-    std::vector<double> term_, next_, largest_;
+    std::vector<double> term_, largest_;
     ExactStep step_;
 };
 
+/// Row by row to columns of ExactStep's length.
+std::vector<double> in_columns(const std::vector<double>& F, Index n) {
+    const Index length = 2 * pairs_of(n);
+    std::vector<double> columns(n * length, 0.0);
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) columns[j * length + i] = F[i * n + j];
+    return columns;
+}
+
 }  // namespace
 
-Propagator::Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0)
-    : n_(n), F_(std::move(F)), G_(std::move(G)), b_(std::move(b)), h0_(h0), norm_(balanced_norm(F_, n)) {}
+Propagator::Propagator(int n, const std::vector<double>& F, std::vector<double> G, std::vector<double> b, double h0)
+    : n_(n), F_(in_columns(F, Index(n))), G_(std::move(G)), b_(std::move(b)), h0_(h0), norm_(balanced_norm(F, n)) {}
 
 ExactStep Propagator::step(double h) const {
     // Taylor series on a step short enough for it (norm <= 1/2 in the states' own units), then doubling up to h.
     const int halvings = std::max(
         0,
         static_cast<int>(std::ceil(std::log2(std::max(norm_ * h, std::numeric_limits<double>::min()) / kTaylorNorm))));
-    ExactStep step = Series(F_, G_, b_, n_, std::ldexp(h, -halvings)).sum();
+    ExactStep step = Series(F_, G_, b_, std::ldexp(h, -halvings)).sum();
     for (int i = 0; i < halvings; ++i) step = compose(step, step);
     return step;
 }
@@ -114,43 +180,46 @@ const ExactStep& Propagator::level(int level) {
 }
 
 ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) const {
-    ExactStep whole;
-    whole.h = first.h + second.h;
-    whole.Phi.resize(first.Phi.size());
-    product(second.Phi.data(), first.Phi, n_, whole.Phi);
+    const Index n = Index(n_), length = first.length();
+    ExactStep whole{.h = first.h + second.h, .n = n, .columns = std::vector<double>(first.columns.size())};
+    multiply_columns(second.columns.data(), first.columns.data(), n, n + kInputs, 1, whole.columns.data());
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
     const double a = first.h, a2 = a * a / 2, a3 = a2 * a / 3;
-    for (auto& moments : whole.Gamma) moments.resize(Index(n_));
-    whole.constant.resize(Index(n_));
-    for (Index i = 0; i < Index(n_); ++i) {
-        const double* row = second.Phi.data() + i * Index(n_);
-        std::array<double, 5> carried{};
-        for (Index k = 0; k < Index(n_); ++k) {
-            for (Index j = 0; j < 4; ++j) carried[j] += row[k] * first.Gamma[j][k];
-            carried[4] += row[k] * first.constant[k];
-        }
-        const auto& g = second.Gamma;
-        whole.Gamma[0][i] = carried[0] + g[0][i];
-        whole.Gamma[1][i] = carried[1] + g[1][i] + a * g[0][i];
-        whole.Gamma[2][i] = carried[2] + g[2][i] + a * g[1][i] + a2 * g[0][i];
-        whole.Gamma[3][i] = carried[3] + g[3][i] + a * g[2][i] + a2 * g[1][i] + a3 * g[0][i];
-        whole.constant[i] = carried[4] + second.constant[i];
+    const double* from = second.columns.data() + n * length;
+    double* to = whole.columns.data() + n * length;
+    for (Index i = 0; i < length; ++i) {
+        const double g0 = from[i], g1 = from[length + i], g2 = from[2 * length + i], g3 = from[3 * length + i];
+        to[i] += g0;
+        to[length + i] += g1 + a * g0;
+        to[2 * length + i] += g2 + a * g1 + a2 * g0;
+        to[3 * length + i] += g3 + a * g2 + a2 * g1 + a3 * g0;
+        to[4 * length + i] += from[4 * length + i];
     }
     return whole;
 }
 
-void advance(const ExactStep& step, const std::array<double, 4>& v, std::vector<double>& x,
-             std::vector<double>& scratch) {
-    const Index n = x.size();
-    const double *row = step.Phi.data(), *in = x.data();
-    const double *g0 = step.Gamma[0].data(), *g1 = step.Gamma[1].data(), *g2 = step.Gamma[2].data(),
-                 *g3 = step.Gamma[3].data();
-    for (Index i = 0; i < n; ++i, row += n) {
-        double sum = step.constant[i] + g0[i] * v[0] + g1[i] * v[1] + g2[i] * v[2] + g3[i] * v[3];
-        for (Index j = 0; j < n; ++j) sum += row[j] * in[j];
-        scratch[i] = sum;
-    }
-    x.swap(scratch);
+void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x, std::vector<double>& scratch) {
+    const Index n = step.n, length = step.length();
+    const double *inputs = step.columns.data() + n * length, *constant = inputs + v.size() * length;
+    const auto in_registers = [&]<Index kPairs>(std::integral_constant<Index, kPairs>) {
+        std::array<Pair, kPairs> sum{}, forced;
+        for (Index i = 0; i < kPairs; ++i) forced[i] = load(constant + 2 * i);
+        combine<kPairs>(inputs, v.data(), v.size(), forced);
+        combine<kPairs>(step.columns.data(), x.data(), n, sum);
+        for (Index i = 0; i < n / 2; ++i) store(x.data() + 2 * i, sum[i] + forced[i]);
+        if (n % 2 == 1) x[n - 1] = (sum[n / 2] + forced[n / 2])[0];
+    };
+    if (with_pairs(pairs_of(n), in_registers)) return;
+    scratch.assign(constant, constant + length);
+    combine(inputs, pairs_of(n), v.data(), v.size(), scratch.data());
+    combine(step.columns.data(), pairs_of(n), x.data(), n, scratch.data());
+    std::copy_n(scratch.begin(), n, x.begin());
+}
+
+std::vector<double> carried_over(const ExactStep& step, std::span<const double> row) {
+    std::vector<double> carried(step.n);
+    for (Index k = 0; k < step.n; ++k) carried[k] = dot(row, step.column(k));
+    return carried;
 }
 
 }  // namespace tunewright

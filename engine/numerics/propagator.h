@@ -1,7 +1,7 @@
 // Exact steps of x' = F x + G v + b for an input v that is a cubic polynomial within the step.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -9,20 +9,29 @@
 
 namespace tunewright {
 
-/// One step of length h: x(h) = Phi x(0) + sum_j Gamma[j] v_j + constant with v(s) = sum_j v_j s^j/j!.
+/// One step of length h: x(h) = Phi x(0) + sum_j Gamma_j v_j + constant with v(s) = sum_j v_j s^j/j!.
 struct ExactStep {
     double h = 0;
-    std::vector<double> Phi;                   // n x n, row by row
-    std::array<std::vector<double>, 4> Gamma;  // integral of e^(F (h - s)) G s^j/j!
-    std::vector<double> constant;              // integral of e^(F s) b
+    std::size_t n = 0;
+    /// n + 5 columns: those of Phi; Gamma_j, the integrals of e^(F (h - s)) G s^j/j!, j = 0 to 3; the constant, the
+    /// integral of e^(F s) b. Together, so that a step is one product; each filled up to an even length.
+    std::vector<double> columns;
+
+    std::size_t length() const { return n + n % 2; }
+    std::span<const double> column(std::size_t k) const { return {columns.data() + k * length(), n}; }
+    std::span<const double> Gamma(std::size_t j) const { return column(n + j); }
 };
 
-/// x := Phi x + Gamma v + constant. `scratch` has as many entries as x.
+/// x := Phi x + Gamma v + constant. `scratch`: of any size.
 void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x, std::vector<double>& scratch);
+
+/// row Phi for a row of n numbers.
+std::vector<double> carried_over(const ExactStep& step, std::span<const double> row);
 
 class Propagator {
 public:
-    Propagator(int n, std::vector<double> F, std::vector<double> G, std::vector<double> b, double h0);
+    /// `F`: n x n, row by row.
+    Propagator(int n, const std::vector<double>& F, std::vector<double> G, std::vector<double> b, double h0);
 
     /// The step of length h0 2^level, computed once by doubling.
     const ExactStep& level(int level);
@@ -36,7 +45,7 @@ public:
 
 private:
     int n_;
-    std::vector<double> F_, G_, b_;
+    std::vector<double> F_, G_, b_;  // F in columns as ExactStep's
     double h0_, norm_;
     std::vector<ExactStep> levels_;
 };

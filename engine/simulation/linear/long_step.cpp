@@ -24,11 +24,11 @@ LongStep::LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep res
 void LongStep::work_out_rows() {
     std::vector<double> row = system_->s.M;
     row.resize(Index(system_->n), 0.0);  // the error's integral is no part of the output
-    for (Index j = 0; j < 4; ++j) rest_moments_[j] = dot(row, rest_.Gamma[j]);
-    row = row_times(row, rest_.Phi);
+    for (Index j = 0; j < 4; ++j) rest_moments_[j] = dot(row, rest_.Gamma(j));
+    row = carried_over(rest_, row);
     rest_G_ = dot(row, system_->G);
-    for (Index j = 0; j < 4; ++j) over_L_moments_[j] = dot(row, over_L_.Gamma[j]);
-    row = row_times(row, over_L_.Phi);
+    for (Index j = 0; j < 4; ++j) over_L_moments_[j] = dot(row, over_L_.Gamma(j));
+    row = carried_over(over_L_, row);
     whole_G_ = dot(row, system_->G);
     whole_b_ = dot(row, system_->b);
     to_slope_ = row_times(row, system_->F);
@@ -98,7 +98,7 @@ LongStep::Effect LongStep::effect(const Jet& end) const {
     const Cubic c = cubic(0, end);
     Effect e{std::vector<double>(Index(system_->n), 0.0), delayed_end(c), through_cubic(c)};
     for (Index j = 0; j < 4; ++j)
-        for (Index i = 0; i < e.x.size(); ++i) e.x[i] += rest_.Gamma[j][i] * c[j];
+        for (Index i = 0; i < e.x.size(); ++i) e.x[i] += rest_.Gamma(j)[i] * c[j];
     e.out[1] *= h_;
     e.out[2] *= h_ * h_;
     return e;

@@ -150,10 +150,10 @@ double least(const F& f) {
     return 0.5 * (low + high);
 }
 
-/// The last x from `good` towards `bad` at which `keeps` holds.
-template <class F>
-double border(double good, double bad, const F& keeps) {
-    for (int i = 0; i < kHalvings; ++i) {
+/// The last x from `good` towards `bad` at which `keeps` holds; not looked for any closer once both ends are `alike`.
+template <class F, class Alike>
+double border(double good, double bad, const F& keeps, const Alike& alike) {
+    for (int i = 0; i < kHalvings && !alike(good, bad); ++i) {
         const double middle = 0.5 * (good + bad);
         (keeps(middle) ? good : bad) = middle;
     }
@@ -161,6 +161,8 @@ double border(double good, double bad, const F& keeps) {
 }
 
 double down(double b) { return std::floor(b * kDigits) / kDigits; }
+bool same_digits(double a, double b) { return down(a) == down(b); }
+bool never(double, double) { return false; }
 
 /// The shortest filter that keeps the limit, with b = 0; empty: none that was looked at does.
 std::optional<double> shortest_filter(const StepResponses& responses, double limit) {
@@ -168,7 +170,7 @@ std::optional<double> shortest_filter(const StepResponses& responses, double lim
     double T = kFirstFilter * responses.time();
     if (keeps(T)) return T;
     for (int i = 0; i < kLongestFilter; ++i, T *= 2)
-        if (keeps(2 * T)) return border(2 * T, T, keeps);
+        if (keeps(2 * T)) return border(2 * T, T, keeps, never);
     return std::nullopt;
 }
 
@@ -181,8 +183,8 @@ std::vector<Warning> keep_overshoot(const StepResponses& responses, double asked
     if (keeps(1)) return {};
     const double best = keeps(0) ? 0 : least(overshoot);
     if (keeps(best)) {
-        const double b = border(best, 1, keeps);
-        pid.b = keeps(down(b)) ? down(b) : b;
+        const double b = down(border(best, 1, keeps, same_digits));
+        pid.b = keeps(b) ? b : border(best, 1, keeps, never);
         return {};
     }
     pid.b = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "engine/tuning/robust/family.h"
@@ -13,7 +14,9 @@ using namespace robust;
 
 namespace {
 
-constexpr double kNeighbour = 1;  // how far apart() a start may be
+constexpr double kNeighbour = 1;         // how far apart() a start may be
+constexpr double kFarthestBeyond = 1.5;  // of the distance between two designs: how far their line leads beyond them
+constexpr double kAlike = 0.5;           // of each logarithm of a design: more is another valley
 
 // Distance between two limits: what matters is how far they lie above 1.
 double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
@@ -33,18 +36,34 @@ bool RobustFront::in_order(double M, double load_IAE) const {
     });
 }
 
-std::optional<DesignPoint> RobustFront::neighbour(double M) const {
-    const Design* nearest = nullptr;
-    double distance = kNeighbour;
-    for (const auto& [other, design] : known_) {
-        if (!design || apart(M, other) >= distance) continue;
-        nearest = &*design;
-        distance = apart(M, other);
-    }
-    if (nearest == nullptr) return std::nullopt;
-    const IdealPid& pid = nearest->controller;
+DesignPoint RobustFront::point_of(const Design& design) const {
+    const IdealPid& pid = design.controller;
     const bool PI = terms_.options.controller == ControllerKind::PI;
-    return DesignPoint{std::log(std::abs(pid.Kp)), std::log(pid.Ti), PI ? 0 : std::log(pid.Td)};
+    return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), PI ? 0 : std::log(pid.Td)};
+}
+
+/// On the straight line through the two nearest neighbours, where both are near and alike; else the nearest one.
+std::optional<DesignPoint> RobustFront::expected_at(double M) const {
+    std::vector<std::pair<double, const Design*>> near;
+    for (const auto& [other, design] : known_)
+        if (design && apart(M, other) < kNeighbour) near.emplace_back(other, &*design);
+    if (near.empty()) return std::nullopt;
+    const auto nearest_two = near.begin() + std::min<std::ptrdiff_t>(2, std::ssize(near));
+    std::partial_sort(near.begin(), nearest_two, near.end(),
+                      [M](const auto& a, const auto& b) { return apart(M, a.first) < apart(M, b.first); });
+    const DesignPoint nearest = point_of(*near[0].second);
+    if (near.size() < 2) return nearest;
+    const DesignPoint next = point_of(*near[1].second);
+    const double from = std::log(near[0].first - 1), to = std::log(near[1].first - 1);
+    const double part = (std::log(M - 1) - from) / (to - from);
+    if (part < -kFarthestBeyond) return nearest;
+    DesignPoint expected = nearest;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const double change = next[i] - nearest[i];
+        if (!(std::abs(change) < kAlike)) return nearest;
+        expected[i] += part * change;
+    }
+    return expected;
 }
 
 Expected<Found> RobustFront::searched(const RobustOptions& limits, const DesignPoint* before, const RunControl& control,
@@ -75,7 +94,7 @@ Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& contro
     limits.Ms = M;
     limits.Mt = terms_.Mt.value_or(M);
     Design design;
-    const auto before = neighbour(M);
+    const auto before = expected_at(M);
     auto found = searched(limits, before ? &*before : nullptr, control, design);
     if (before && (!found || !in_order(M, design.load_IAE))) found = searched(limits, nullptr, control, design);
     if (found && found->stopped)

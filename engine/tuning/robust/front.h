@@ -10,8 +10,8 @@
 
 namespace tunewright {
 
-/// Robust designs of one plant that differ in their limit on Ms alone. A new one is searched from its nearest
-/// neighbour; where that breaks the front's order (more room never costs more) the whole search is made.
+/// Robust designs of one plant that differ in their limit on Ms alone. A new one is searched from where its neighbours
+/// lead; where that breaks the front's order (more room never costs more) the whole search is made.
 class RobustFront {
 public:
     /// Whose limits they are: the options but for Ms and Mt, which is M as well where `Mt` is empty, and the plants on
@@ -36,7 +36,8 @@ public:
 
 private:
     bool in_order(double M, double load_IAE) const;
-    std::optional<robust::DesignPoint> neighbour(double M) const;
+    std::optional<robust::DesignPoint> expected_at(double M) const;
+    robust::DesignPoint point_of(const Design& design) const;
     Expected<robust::Found> searched(const RobustOptions& limits, const robust::DesignPoint* before,
                                      const RunControl& control, Design& design);
 

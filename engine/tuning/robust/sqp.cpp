@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/stability.h"
@@ -15,7 +16,6 @@ constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
 constexpr double kFeasible = 1e-8;  // and accepted with this much slack
 
 constexpr int kMaxRestoring = 12;           // Newton steps back to the feasible side; three or four are usual
-constexpr double kNearOfRestoring = -0.1;   // constraints below it do not stop a step back
 constexpr double kRestoringRadius = 0.5;    // of a logarithm
 constexpr std::size_t kRestoringPeaks = 6;  // the largest ones, as constraints of a step back
 constexpr double kMinLessGain = 1e-6;       // ln: less gain where the peaks have no common linear way out
@@ -25,6 +25,7 @@ constexpr double kFirstCurvature = 0.3;     // of ln(cost) over logarithms, befo
 constexpr double kLeastCurvature = 1e-300;  // of a step whose update would divide by nothing
 constexpr double kPowellDamping = 0.2;      // of s.H s, which s.y keeps at least (Powell 1978)
 constexpr double kSamePeak = 0.3;           // ln omega: a peak that moves further is another one
+constexpr int kSmallStepsToEnd = 2;         // in a row, each within the tolerance of the cost
 constexpr double kEnoughWon = 0.05;         // of what the model promised, for a step to be taken
 constexpr double kMuchWon = 0.7;            // of it, for the trust region to grow
 constexpr double kSmallestRadius = 1e-5;    // of a logarithm: nothing is left to win in it
@@ -97,11 +98,19 @@ bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
     return true;
 }
 
-std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
+namespace {
+
+/// A design within the limits, and its peaks above kNear.
+struct Restored {
+    DesignPoint x;
+    std::vector<ActivePeak> peaks;
+};
+
+std::optional<Restored> restored(const Sweep& sweep, DesignPoint x) {
     const int n = sweep.problem().dimension();
     for (int k = 0; k < kMaxRestoring; ++k) {
-        const auto peaks = sweep.peaks(x, kNearOfRestoring);
-        if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return x;
+        auto peaks = sweep.peaks(x, kNear);
+        if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return Restored{x, std::move(peaks)};
         const auto step = solve_quadratic_program(n, Matrix3::Identity(), Vector3::Zero(),
                                                   linearised(peaks, sweep, x, kRestoringRadius, kRestoringPeaks));
         if (step) {
@@ -111,9 +120,16 @@ std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
                 std::clamp(1.5 * peaks[0].value, kMinLessGain, kMaxLessGain);  // no common linear way out: less gain
         }
     }
-    const auto peaks = sweep.peaks(x, kNearOfRestoring);
-    if (peaks.empty() || peaks[0].value <= kFeasible) return x;
+    auto peaks = sweep.peaks(x, kNear);
+    if (peaks.empty() || peaks[0].value <= kFeasible) return Restored{x, std::move(peaks)};
     return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x) {
+    const auto found = restored(sweep, x);
+    return found ? std::optional(found->x) : std::nullopt;
 }
 
 std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& x) {
@@ -125,11 +141,12 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
                    const SqpOptions& options, const Report& report) {
     const int n = problem.dimension();
     SqpResult result;
-    result.x = restore(sweep, start).value_or(start);
+    auto here = restored(sweep, start);
+    result.x = here ? here->x : start;
     CostWithGradient cost = PricedDesign(problem, result.x, options.simulation_tolerance).with_gradient();
     result.log_cost = cost.value;
     if (!std::isfinite(cost.value)) return result;
-    std::vector<ActivePeak> peaks = sweep.peaks(result.x, kNear);
+    std::vector<ActivePeak> peaks = here ? std::move(here->peaks) : sweep.peaks(result.x, kNear);
     Matrix3 H = kFirstCurvature * Matrix3::Identity();
     double radius = options.trust_radius;
     int small_steps = 0;
@@ -152,12 +169,12 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
             break;
         }
         // Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
-        const auto candidate = restore(sweep, moved(result.x, step->p));
+        auto candidate = restored(sweep, moved(result.x, step->p));
         std::optional<PricedDesign> priced;
-        if (candidate && longest(difference(*candidate, result.x)) < kFarRestored * radius &&
-            stays_stable(*candidate)) {
-            stable = *candidate;
-            priced.emplace(problem, *candidate, options.simulation_tolerance);
+        if (candidate && longest(difference(candidate->x, result.x)) < kFarRestored * radius &&
+            stays_stable(candidate->x)) {
+            stable = candidate->x;
+            priced.emplace(problem, candidate->x, options.simulation_tolerance);
         }
         const double won = cost.value - (priced ? priced->log_cost() : INFINITY);
         if (!(won > kEnoughWon * promised)) {
@@ -166,26 +183,22 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
             continue;
         }
         if (won > kMuchWon * promised) radius = std::min(2 * radius, 1.0);
+        small_steps = won < options.cost_tolerance ? small_steps + 1 : 0;
+        const DesignPoint before = std::exchange(result.x, candidate->x);
+        result.stable = true;
+        result.log_cost = priced->log_cost();
+        result.converged = small_steps >= kSmallStepsToEnd;
+        if ((report && !report(result.x, result.log_cost)) || result.converged) break;
         const CostWithGradient next = priced->with_gradient();
-        const auto next_peaks = sweep.peaks(*candidate, kNear);
         Vector3 y = difference(next.gradient, cost.gradient);
         for (std::size_t i = 0; i < std::min(peaks.size(), kPeaks); ++i) {
             const double lambda = step->multipliers[i];
             if (lambda == 0) continue;
-            y += lambda * difference(followed(next_peaks, peaks[i]), peaks[i].gradient);
+            y += lambda * difference(followed(candidate->peaks, peaks[i]), peaks[i].gradient);
         }
-        update(H, difference(*candidate, result.x), y, n);
-        result.x = *candidate;
-        result.stable = true;
+        update(H, difference(result.x, before), y, n);
         cost = next;
-        result.log_cost = cost.value;
-        peaks = next_peaks;
-        if (report && !report(result.x, cost.value)) break;
-        small_steps = won < options.cost_tolerance ? small_steps + 1 : 0;
-        if (small_steps >= 2) {
-            result.converged = true;
-            break;
-        }
+        peaks = std::move(candidate->peaks);
     }
     return result;
 }

@@ -108,21 +108,37 @@ std::vector<double> spaced(double low, double high, int n) {
 
 }  // namespace
 
+namespace {
+
+/// Whether the loop is proved stable between a gap's ends; empty: there is no design.
+std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
+    if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + kInside) || gap.stable == false) return std::nullopt;
+    if (gap.proved || (wanted == Stability::told && gap.stable)) return gap.proved;
+    if (!is_stable(problem, {std::log(gap.middle()), std::log(Ti), problem.pid ? std::log(Td) : 0}))
+        return std::nullopt;
+    return true;
+}
+
+/// The largest of feasible_gains.
+std::optional<FeasibleGain> largest_gain(const Sweep& sweep, double Ti, double Td, Stability wanted) {
+    const auto gaps = sweep.gain_gaps(Ti, Td);
+    for (std::size_t i = gaps.size(); i-- > 0;)
+        if (const auto proved = usable(sweep.problem(), gaps[i], Ti, Td, wanted))
+            return FeasibleGain{gaps[i].upper * (1 - kInside), *proved};
+    return std::nullopt;
+}
+
+}  // namespace
+
 std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double Td, Stability wanted) {
-    const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
     std::vector<FeasibleGain> gains;
     for (std::size_t i = gaps.size(); i-- > 0;) {
         const GainGap& gap = gaps[i];
-        if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + kInside)) continue;
-        if (gap.stable == false) continue;
-        bool proved = gap.proved;
-        if (!proved && (wanted == Stability::proved || !gap.stable)) {
-            if (!is_stable(problem, {std::log(gap.middle()), std::log(Ti), problem.pid ? std::log(Td) : 0})) continue;
-            proved = true;
-        }
-        gains.push_back({gap.upper * (1 - kInside), proved});
-        if (gap.lower > 0) gains.push_back({gap.lower * (1 + kInside), proved});
+        const auto proved = usable(sweep.problem(), gap, Ti, Td, wanted);
+        if (!proved) continue;
+        gains.push_back({gap.upper * (1 - kInside), *proved});
+        if (gap.lower > 0) gains.push_back({gap.lower * (1 + kInside), *proved});
     }
     return gains;
 }
@@ -135,12 +151,11 @@ std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wa
         problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
     for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
         for (const double Td : Td_values) {
-            const auto gains = feasible_gains(sweep, Ti, Td, wanted);
-            if (gains.empty()) continue;
-            const FeasibleGain largest = *std::ranges::max_element(gains, {}, &FeasibleGain::Kp);
-            found.push_back({{std::log(largest.Kp), std::log(Ti), problem.pid ? std::log(Td) : 0},
-                             std::log(Ti / largest.Kp),
-                             largest.proved});
+            const auto largest = largest_gain(sweep, Ti, Td, wanted);
+            if (!largest) continue;
+            found.push_back({{std::log(largest->Kp), std::log(Ti), problem.pid ? std::log(Td) : 0},
+                             std::log(Ti / largest->Kp),
+                             largest->proved});
         }
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
     return found;

@@ -7,6 +7,7 @@
 #include <complex>
 #include <vector>
 
+#include "engine/loop/peaks.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/sweep/encirclements.h"
 #include "tests/engine/tuning/random_plants.h"
@@ -168,6 +169,36 @@ TEST(Sweep, WhatTheGridTellsOfStabilityIsTrue) {
     EXPECT_GT(told, 0.8 * finite);
     EXPECT_GT(stable, 0.1 * told);
     EXPECT_GT(told - stable, 0.1 * told);
+}
+
+// Judged on the loop's own grid, which goes as far down as the loop does: what the sweep's grid cannot see counts too.
+TEST(Sweep, GainsInsideAGapHoldTheLimits) {
+    int judged = 0, integrating = 0;
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        const auto drawn = random_plant(seed, false);
+        const auto plant = LinearPlant::make(drawn.plant);
+        const DesignProblem problem = problem_on(*plant, drawn.M);
+        const Sweep sweep(problem, reference_frequency(problem));
+        Random random(seed + 2000);
+        for (int tries = 0; tries < 6; ++tries) {
+            const double Ti = random.log_uniform(0.05, 60) / sweep.reference(),
+                         Td = random.log_uniform(0.02, 8) / sweep.reference();
+            for (const GainGap& gap : sweep.gain_gaps(Ti, Td)) {
+                if (!std::isfinite(gap.upper) || gap.upper < gap.lower * (1 + 1e-3)) continue;
+                const DesignPoint x = {std::log(gap.middle()), std::log(Ti), std::log(Td)};
+                if (!is_stable(problem, x)) continue;
+                const auto loop = Loop::make(*plant, to_parallel(controller_at(problem, x)));
+                const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));
+                EXPECT_LE(std::max(peaks.S.value, peaks.T.value), drawn.M * (1 + 1e-3))
+                    << drawn.description << ", Ti " << Ti << ", Td " << Td << ", gap from " << gap.lower << " to "
+                    << gap.upper;
+                ++judged;
+                integrating += plant->integrators() > 0;
+            }
+        }
+    }
+    EXPECT_GT(judged, 300);
+    EXPECT_GT(integrating, 30);
 }
 
 TEST(Sweep, WhatStaysStableIsStable) {

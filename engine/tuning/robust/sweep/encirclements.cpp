@@ -13,17 +13,19 @@ constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so nea
 
 }  // namespace
 
-AxisCrossings::AxisCrossings(std::span<const double> L_re, std::span<const double> L_im)
-    : doubtful_from_(std::numeric_limits<double>::infinity()) {
+AxisCrossings::AxisCrossings(std::span<const double> L_re, std::span<const double> L_im) {
+    double doubtful = 0;  // the largest |L|^2 of a doubtful stretch
     for (std::size_t i = 1; i < L_re.size(); ++i) {
         const double re0 = L_re[i - 1], im0 = L_im[i - 1], re1 = L_re[i], im1 = L_im[i];
+        const bool doubted = re0 * re1 + im0 * im1 < 0, crosses = (im0 > 0) != (im1 > 0);
+        if (!(doubted | crosses)) continue;
         // More than a quarter of a turn: the curve may have gone either way between them.
-        if (re0 * re1 + im0 * im1 < 0)
-            doubtful_from_ = std::min(doubtful_from_, 1 / std::max(std::hypot(re0, im0), std::hypot(re1, im1)));
-        if ((im0 > 0) == (im1 > 0)) continue;
+        if (doubted) doubtful = std::max({doubtful, re0 * re0 + im0 * im0, re1 * re1 + im1 * im1});
+        if (!crosses) continue;
         const double re = re0 + (re1 - re0) * im0 / (im0 - im1);
         if (re < 0) crossings_.push_back({-1 / re, im1 > 0 ? 1 : -1});
     }
+    if (doubtful > 0) doubtful_from_ = 1 / std::sqrt(doubtful);
 }
 
 std::optional<int> AxisCrossings::beyond(double k) const {

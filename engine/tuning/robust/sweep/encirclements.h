@@ -2,6 +2,7 @@
 // axis, from the values on a grid.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,7 +27,7 @@ private:
         int upward;
     };
     std::vector<Crossing> crossings_;
-    double doubtful_from_;  // factor
+    double doubtful_from_ = std::numeric_limits<double>::infinity();  // factor
 };
 
 /// The phase of P(jw) over that of its low-frequency gain, followed from w = 0 and from 0 just beside integrators.

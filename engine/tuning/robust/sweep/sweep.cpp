@@ -24,11 +24,14 @@ constexpr double kResonant = 0.3;        // damping below which a root gets poin
 constexpr double kLeastWidth = 1e-5;     // of a resonance, over its frequency
 constexpr int kResonancePoints = 12;     // to either side, ever wider apart
 constexpr double kLeastDistance = 1e-6;  // of L from -1 where the dead time takes every phase: far beyond any limit
-constexpr double kPeakRoom = 0.1;        // ln: grid points so far below the threshold may lie beside a peak above it
+constexpr double kPeakRoom = 0.05;       // ln: grid points so far below the threshold may lie beside a peak above it
 constexpr int kMaxParabolas = 6;         // around one peak; three are usual
 constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's top stays away from
 constexpr double kSameFrequency = 1e-7;  // ln omega: an error of 1e-14 of ln M
 constexpr double kSameValue = 1e-10;     // ln M
+constexpr double kFarBelow = -0.05;      // ln M: below it a peak limits no step, and is known well enough sooner
+constexpr double kSameFarBelow = 1e-6;   // ln M
+constexpr double kParabolaRoom = 0.03;   // ln M: how much higher than the first parabola says a peak may be
 constexpr double kBeyondAll = 50;        // ln of a ratio that has no end
 constexpr double kMostChange =
     0.5;  // of L, over its distance from -1: far from what could hide between the grid's points
@@ -147,6 +150,7 @@ void Sweep::complete(Curve& curve) const {
     for (auto* scratch : {&curve.S, &curve.T, &curve.CS, &curve.circle, &curve.L_re, &curve.L_im, &curve.lower,
                           &curve.upper, &curve.other_lower, &curve.other_upper})
         scratch->resize(curve.omega.size());
+    for (const double omega : curve.omega) curve.log_omega.push_back(std::log(omega));
     if (curve.plant == nullptr) return;
     curve.phase_at_low = phase_from_rest(*curve.plant, curve.omega.front());
     curve.unstable_poles = curve.plant->unstable_poles();
@@ -190,9 +194,39 @@ std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, c
     return result;
 }
 
+/// The top of the hill around a grid point, by parabolas through three points of ln(value) over ln(omega), renewed
+/// around the best until it no longer moves. Empty where the first of them shows that it stays below the threshold.
+std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, const std::vector<double>& level,
+                                          ConstraintKind kind, const LoopGains& c, double threshold) const {
+    const auto at = [&](std::size_t k) { return Top{curve.log_omega[k], 0.5 * std::log(level[k])}; };
+    Top left = at(i - 1), best = at(i), right = at(i + 1);
+    for (int k = 0; k < kMaxParabolas; ++k) {
+        const double rise = (best.value - left.value) / (best.log_omega - left.log_omega),
+                     fall = (right.value - best.value) / (right.log_omega - best.log_omega),
+                     bend = (fall - rise) / (right.log_omega - left.log_omega);
+        if (!(bend < 0)) break;
+        const double middle = 0.5 * (left.log_omega + best.log_omega) - 0.5 * rise / bend;
+        const double log_omega = std::clamp(middle, left.log_omega + kParabolaEdge * (best.log_omega - left.log_omega),
+                                            right.log_omega - kParabolaEdge * (right.log_omega - best.log_omega));
+        const double step = log_omega - best.log_omega;
+        if (k == 0 && best.value - bend * step * step < threshold - kParabolaRoom) return std::nullopt;
+        if (std::abs(step) < kSameFrequency) break;
+        const Top here{log_omega, value(curve, kind, c, std::exp(log_omega))};
+        const double gain = here.value - best.value;
+        if (gain >= 0) {
+            (step > 0 ? left : right) = best;
+            best = here;
+        } else {
+            (step > 0 ? right : left) = here;
+        }
+        if (std::abs(gain) < (best.value < kFarBelow ? kSameFarBelow : kSameValue)) break;
+    }
+    return best;
+}
+
+/// `level` holds squared ratios: limit reached at 1.
 void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
-    // `level` holds squared ratios: limit reached at 1.
     const std::size_t n = level.size();
     const double from = std::exp(2 * (threshold - kPeakRoom));
     for (std::size_t i = 0; i < n; ++i) {
@@ -201,31 +235,10 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
         if ((!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
         ActivePeak peak{.kind = kind, .plant = curve.index, .omega = curve.omega[i], .value = 0.5 * std::log(level[i])};
         if (i != curve.resolved && !first && !last) {
-            // Parabolas through three points of ln(value) over ln(omega), renewed around the best until it no longer
-            // moves.
-            double a = std::log(curve.omega[i - 1]), b = std::log(curve.omega[i]), d = std::log(curve.omega[i + 1]);
-            double fa = 0.5 * std::log(level[i - 1]), fb = peak.value, fd = 0.5 * std::log(level[i + 1]);
-            for (int k = 0; k < kMaxParabolas; ++k) {
-                const double left = (fb - fa) / (b - a), right = (fd - fb) / (d - b), bend = (right - left) / (d - a);
-                if (!(bend < 0)) break;
-                const double top = std::clamp(0.5 * (a + b) - 0.5 * left / bend, a + kParabolaEdge * (b - a),
-                                              d - kParabolaEdge * (d - b));
-                if (std::abs(top - b) < kSameFrequency) break;
-                const double f = value(curve, kind, c, std::exp(top));
-                const double gain = f - fb;
-                if (f >= fb) {
-                    (top > b ? a : d) = b;
-                    (top > b ? fa : fd) = fb;
-                    b = top;
-                    fb = f;
-                } else {
-                    (top > b ? d : a) = top;
-                    (top > b ? fd : fa) = f;
-                }
-                if (std::abs(gain) < kSameValue) break;
-            }
-            peak.omega = std::exp(b);
-            peak.value = fb;
+            const auto top = top_near(curve, i, level, kind, c, threshold);
+            if (!top) continue;
+            peak.omega = std::exp(top->log_omega);
+            peak.value = top->value;
         }
         if (peak.value < threshold) continue;
         peak.gradient = gradient(curve, kind, c, peak.omega);

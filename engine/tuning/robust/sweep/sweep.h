@@ -16,6 +16,8 @@
 
 namespace tunewright::robust {
 
+class AxisCrossings;
+
 enum class ConstraintKind { S, T, CS, circle };
 
 /// A local maximum of a constraint over frequency, with its exact gradient in the point's logarithms (envelope
@@ -75,7 +77,7 @@ private:
         double resolved_to = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
                                                                        // grid: worst phase assumed
         std::size_t resolved = 0;                                      // index of the first such frequency
-        std::vector<double> omega, P_re, P_im;
+        std::vector<double> omega, log_omega, P_re, P_im;
         std::optional<double> phase_at_low;  // of P, followed from rest
         int unstable_poles = 0;
         std::vector<double> S, T, CS, circle;  // scratch: one sweep per thread of work
@@ -92,13 +94,27 @@ private:
     LoopGains gains(const DesignPoint& x) const;
     double value(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const;
     void fill_levels(Curve& curve, const LoopGains& c) const;
+    struct Top {
+        double log_omega = 0, value = 0;
+    };
+    std::optional<Top> top_near(const Curve& curve, std::size_t i, const std::vector<double>& level,
+                                ConstraintKind kind, const LoopGains& c, double threshold) const;
     void add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                    double threshold, std::vector<ActivePeak>& found) const;
     void add_limits(const Curve& curve, const LoopGains& c, double threshold, std::vector<ActivePeak>& found) const;
     void fill_open_loop(Curve& curve, const LoopGains& c) const;
     void forbid(Curve& curve, std::vector<GainGap>& forbidden) const;
     void forbid_activity(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
-    std::optional<int> crossed_below(const Curve& curve, const LoopGains& c, double k) const;
+    struct Entrance {
+        bool from_left = false;
+        double phase = 0;  // rad
+        double size = 0;   // |L| there, with the gain 1
+    };
+    Entrance entrance(const Curve& curve, const LoopGains& c) const;
+    static std::optional<int> crossed_below(const Entrance& in, double k);
+    void forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
+    std::optional<bool> told_stable(const Curve& curve, const Entrance& in, const AxisCrossings& crossings,
+                                    const GainGap& gap) const;
     bool stable_at_low_gain() const;
     void tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;

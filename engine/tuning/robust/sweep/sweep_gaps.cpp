@@ -14,34 +14,24 @@ namespace {
 constexpr double kFarOutside = 2;  // |L| where a loop enters the grid: it has not been near -1 before
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Joins the intervals of neighbouring frequencies, which nearly always overlap, before they are sorted with others.
-class JoinedIntervals {
-public:
-    explicit JoinedIntervals(std::vector<GainGap>& out) : out_(out) {}
-    ~JoinedIntervals() { close(); }
-    JoinedIntervals(const JoinedIntervals&) = delete;
-    JoinedIntervals& operator=(const JoinedIntervals&) = delete;
-
-    void add(double lower, double upper) {
-        if (open_ && lower <= joined_.upper && upper >= joined_.lower) {
-            if (lower < joined_.lower) joined_.lower = lower;
-            if (upper > joined_.upper) joined_.upper = upper;
-            return;
+/// Adds the intervals of positive numbers; those of neighbouring frequencies, which nearly always overlap, are joined
+/// before they are sorted with others.
+void add_joined(const Intervals& intervals, std::vector<GainGap>& out) {
+    const double *lower = intervals.lower.data(), *upper = intervals.upper.data();
+    const std::size_t n = intervals.upper.size();
+    for (std::size_t i = 0; i < n;) {
+        if (!(upper[i] > 0)) {
+            ++i;
+            continue;
         }
-        close();
-        joined_ = {.lower = lower, .upper = upper};
-        open_ = true;
+        double least = lower[i], most = upper[i];
+        for (++i; i < n && lower[i] <= most && upper[i] >= least && upper[i] > 0; ++i) {
+            least = lower[i] < least ? lower[i] : least;
+            most = upper[i] > most ? upper[i] : most;
+        }
+        out.push_back({.lower = std::max(0.0, least), .upper = most});
     }
-
-private:
-    void close() {
-        if (open_) out_.push_back(joined_);
-    }
-
-    std::vector<GainGap>& out_;
-    GainGap joined_;
-    bool open_ = false;
-};
+}
 
 /// What the forbidden intervals leave, in ascending order. `forbidden` is sorted on the way.
 std::vector<GainGap> gaps_between(std::vector<GainGap>& forbidden) {
@@ -75,11 +65,7 @@ void Sweep::forbid(Curve& curve, std::vector<GainGap>& forbidden) const {
     const Intervals first{curve.lower, curve.upper}, second{curve.other_lower, curve.other_upper};
     forbidden_factors(curve.L_re, curve.L_im, limits.m_circle ? circle_ : of_S, limits.m_circle ? circle_ : of_T, first,
                       second);
-    for (const Intervals& intervals : {first, second}) {
-        JoinedIntervals joined(forbidden);
-        for (std::size_t i = 0; i < intervals.upper.size(); ++i)
-            if (intervals.upper[i] > 0) joined.add(std::max(0.0, intervals.lower[i]), intervals.upper[i]);
-    }
+    for (const Intervals& intervals : {first, second}) add_joined(intervals, forbidden);
 }
 
 /// Those that Mks forbids: K^2 |C|^2 <= Mks^2 |1 + K L|^2.
@@ -96,20 +82,35 @@ void Sweep::forbid_activity(const Curve& curve, const LoopGains& c, std::vector<
     }
 }
 
-/// Twice the crossings of the negative real axis on the way from rest to the grid's lowest frequency, where the loop's
-/// gain there is k. At rest the integral makes L infinite: to the right, or to the left, which counts as half a
-/// crossing. Empty where the curve may have passed between -1 and 0 before the grid takes over.
-std::optional<int> Sweep::crossed_below(const Curve& curve, const LoopGains& c, double k) const {
-    using std::numbers::pi;
+/// Where the loop comes from at rest, the integral making L infinite: to the right, or to the left; and its phase at
+/// the grid's lowest frequency, followed from there.
+Sweep::Entrance Sweep::entrance(const Curve& curve, const LoopGains& c) const {
     const double w = curve.omega.front();
     const double lead = std::atan((c.Kd * w - c.Ki / w) / c.Kp),
                  lag = std::atan2(w * c.Tf, 1 - 0.5 * w * w * c.Tf * c.Tf);
     const bool from_left = problem_.sign * curve.plant->low_frequency_gain() < 0;
-    const double phase = (from_left ? pi : 0) + *curve.phase_at_low + lead - lag;
-    if (std::abs(phase) < pi) return from_left ? 1 : 0;
-    if (std::abs(phase) > 3 * pi || k * magnitude({curve.L_re.front(), curve.L_im.front()}) < kFarOutside)
-        return std::nullopt;
-    return (from_left ? 1 : 0) + (phase < 0 ? 2 : -2);
+    return {.from_left = from_left,
+            .phase = (from_left ? std::numbers::pi : 0) + *curve.phase_at_low + lead - lag,
+            .size = magnitude({curve.L_re.front(), curve.L_im.front()})};
+}
+
+/// Twice the crossings of the negative real axis on the way from rest to the grid's lowest frequency, where the loop's
+/// gain there is k; at rest to the left counts as half a crossing. Empty where the curve may have passed between -1 and
+/// 0 before the grid takes over.
+std::optional<int> Sweep::crossed_below(const Entrance& in, double k) {
+    using std::numbers::pi;
+    if (std::abs(in.phase) < pi) return in.from_left ? 1 : 0;
+    if (std::abs(in.phase) > 3 * pi || k * in.size < kFarOutside) return std::nullopt;
+    return (in.from_left ? 1 : 0) + (in.phase < 0 ? 2 : -2);
+}
+
+/// Gains so low that two integrators without enough lead take the loop past -1, nearer than the limit on |S| allows,
+/// before the grid takes over.
+void Sweep::forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const {
+    if (!curve.phase_at_low || curve.plant->integrators() != 1) return;
+    const Entrance in = entrance(curve, c);
+    if (!in.from_left && in.size > 0 && std::abs(in.phase + std::numbers::pi) < 0.5 / problem_.limits.Ms)
+        forbidden.push_back({.lower = 0, .upper = 1 / in.size});
 }
 
 /// A stable plant with an integral of the right sign is stable at low gain.
@@ -130,13 +131,16 @@ void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const
         if (crossings.empty())
             for (const Curve& curve : curves_) crossings.emplace_back(curve.L_re, curve.L_im);
         gap.stable = true;
-        for (std::size_t i = 0; i < curves_.size() && gap.stable == true; ++i) {
-            const double k = gap.middle();
-            const auto below = crossed_below(curves_[i], c, k), on_grid = crossings[i].beyond(k);
-            const int open = curves_[i].unstable_poles;
-            gap.stable = below && on_grid ? std::optional(open + *below + 2 * *on_grid == 0) : std::nullopt;
-        }
+        for (std::size_t i = 0; i < curves_.size() && gap.stable == true; ++i)
+            gap.stable = told_stable(curves_[i], entrance(curves_[i], c), crossings[i], gap);
     }
+}
+
+std::optional<bool> Sweep::told_stable(const Curve& curve, const Entrance& in, const AxisCrossings& crossings,
+                                       const GainGap& gap) const {
+    const auto below = crossed_below(in, gap.middle()), on_grid = crossings.beyond(gap.middle());
+    if (!below || !on_grid) return std::nullopt;
+    return curve.unstable_poles + *below + 2 * *on_grid == 0;
 }
 
 std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
@@ -145,6 +149,7 @@ std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
     for (Curve& curve : curves_) {
         fill_open_loop(curve, c);
         forbid(curve, forbidden);
+        forbid_below(curve, c, forbidden);
         if (problem_.limits.Mks) forbid_activity(curve, c, forbidden);
     }
     auto gaps = gaps_between(forbidden);

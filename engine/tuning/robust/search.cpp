@@ -15,11 +15,13 @@ constexpr double kResonant = 0.4;          // damping of a pair below which a pl
 constexpr double kShortTd = 0.1;           // times 1/reference: below it the cost hardly depends on ln Td
 constexpr double kSameDesign = 0.02;       // of each logarithm
 constexpr double kHopeless = 0.7;          // of ln of the cost: a start so much dearer than the best is left out
-constexpr double kPolishTolerance = 1e-5;  // of ln of the cost
-constexpr double kPolishStep = 0.1;        // of a logarithm
-constexpr int kMaxPolishing = 100;         // simulations of one simplex
+constexpr double kRoughTolerance = 3e-3;   // of ln of the cost: of a run that only shows how deep a valley is
+constexpr double kWorthFollowing = 0.02;   // of ln of the cost: so much dearer a valley may still be the deepest
+constexpr double kPolishTolerance = 1e-4;  // of ln of the cost
+constexpr double kPolishStep = 0.05;       // of a logarithm
+constexpr int kMaxPolishing = 50;          // simulations of one simplex
 constexpr int kMaxSimplices = 10;
-constexpr double kWorthAnother = 1e-4;  // of ln of the cost: what a simplex won, for the next to begin
+constexpr double kWorthAnother = 5e-4;  // of ln of the cost: what a simplex won, for the next to begin
 
 // Where the valleys of a resonant plant lie. Beside ordinary designs it may want an integral alone, behind a filter
 // that takes the resonance away: short Ti, long Td.
@@ -61,17 +63,17 @@ public:
 
     /// A start without a settled response may be given: nothing then comes of it.
     void from(const std::optional<Candidate>& start) {
+        if (start && !stopped()) run(*start, SqpOptions{}.cost_tolerance);
+    }
+
+    /// The same of a valley that is likely not the deepest: it is followed to its end only where it may be.
+    void explore(const std::optional<Candidate>& start) {
         if (!start || stopped()) return;
-        bool stop = false;
-        const Report watch = [&](const DesignPoint& x, double cost) {
-            stop =
-                report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
-            return !stop && !known(x);
-        };
-        const SqpResult result = minimise(sweep_, problem_, start->x, {.stable_start = start->stable}, watch);
-        const double cost = std::isfinite(result.log_cost) ? result.log_cost : start->log_cost;
-        ends_.push_back(result.x);
-        take({result.x, cost, stop});
+        const double before = best_ ? best_->log_cost : kNoDesign;
+        const SqpResult rough = run(*start, kRoughTolerance);
+        if (stopped() || !rough.converged || rough.log_cost > before + kWorthFollowing) return;
+        ends_.pop_back();
+        run({rough.x, rough.log_cost, rough.stable}, SqpOptions{}.cost_tolerance);
     }
 
     /// By simplices, from the best so far: the integral of |e| has kinks where a slow tail after a set-point step, or a
@@ -88,6 +90,21 @@ public:
     const std::optional<Found>& best() const { return best_; }
 
 private:
+    SqpResult run(const Candidate& start, double cost_tolerance) {
+        bool stop = false;
+        const Report watch = [&](const DesignPoint& x, double cost) {
+            stop =
+                report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
+            return !stop && !known(x);
+        };
+        const SqpOptions options{.cost_tolerance = cost_tolerance, .stable_start = start.stable};
+        const SqpResult result = minimise(sweep_, problem_, start.x, options, watch);
+        const double cost = std::isfinite(result.log_cost) ? result.log_cost : start.log_cost;
+        ends_.push_back(result.x);
+        take({result.x, cost, stop});
+        return result;
+    }
+
     void simplex() {
         const DesignPoint start = best_->x;
         // The unknowns are steps from the start: a logarithm's own size depends on the unit of time.
@@ -159,9 +176,9 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
     if (!has_resonant_plant(problem)) return;
-    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox))) runs.from(valley);
-    runs.from(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
-    runs.from(cheapest_island(sweep, problem, runs.best()->log_cost));
+    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox))) runs.explore(valley);
+    runs.explore(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
+    runs.explore(cheapest_island(sweep, problem, runs.best()->log_cost));
 }
 
 }  // namespace

@@ -23,6 +23,10 @@ constexpr int kMaxPolishing = 50;          // simulations of one simplex
 constexpr int kMaxSimplices = 10;
 constexpr double kWorthAnother = 5e-4;  // of ln of the cost: what a simplex won, for the next to begin
 
+// A PI on two slow lags, or on one and an integrator, acts far below the frequency at which a PID would.
+constexpr ScanBox kSlowBox = {.Ti_low = 60, .Ti_high = 1000};
+// The usual box, looked at more closely.
+constexpr ScanBox kCloseBox = {.Ti_points = 27, .Td_points = 21};
 // Where the valleys of a resonant plant lie. Beside ordinary designs it may want an integral alone, behind a filter
 // that takes the resonance away: short Ti, long Td.
 constexpr ScanBox kWideBox = {
@@ -184,8 +188,9 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
 }  // namespace
 
 std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
-    std::vector<ScanPoint> points = scan(sweep);
-    if (points.empty()) points = scan(sweep, {.Ti_points = 27, .Td_points = 21});
+    std::vector<ScanPoint> points;
+    for (const ScanBox& box : {ScanBox{}, kSlowBox, kCloseBox})
+        if (points.empty()) points = scan(sweep, box);
     if (points.empty()) return std::nullopt;
     const auto start = best_start(sweep, problem, points);
     if (!start) return std::nullopt;

@@ -1,9 +1,11 @@
 #include "engine/tuning/robust/verified_search.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
@@ -321,10 +323,12 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
         return larger_peak(problem, x) + 0.1 * beyond;
     };
     double least = kUnstable;
-    // Started anew with shorter steps: the larger of two peaks has kinks on which a search stalls.
-    for (const double step : {0.4, 0.1, 0.1}) {
+    // Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
+    constexpr std::array<std::pair<double, double>, 3> kStages = {
+        {{0.4, 100 * kPeakTolerance}, {0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}}};
+    for (const auto& [step, tolerance] : kStages) {
         const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
-                                              {.step = std::vector<double>(n, step), .tolerance = kPeakTolerance});
+                                              {.step = std::vector<double>(n, step), .tolerance = tolerance});
         centre = stepped(found.x);
         least = found.value;
     }

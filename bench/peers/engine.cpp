@@ -2,16 +2,20 @@
 //
 //   peers_engine plants              name, num, den (descending powers, between spaces), dead time
 //   peers_engine design SEARCH       name, Kp, Ti, Td, ms: the method `robust`, shortest of three runs
+//   peers_engine version
 //   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td beside the name; nan where unstable
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <iostream>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "bench/batch.h"
 #include "engine/evaluation/evaluate.h"
@@ -103,9 +107,11 @@ int main(int argc, char** argv) {
         print_plants();
     else if (command == "design" && argc > 2)
         print_designs(argv[2]);
+    else if (command == "version")
+        std::puts(TUNEWRIGHT_VERSION);
     else if (command == "price")
         price_answers();
     else
-        return std::fprintf(stderr, "peers_engine plants | design SEARCH | price\n"), 2;
+        return std::fprintf(stderr, "peers_engine plants | design SEARCH | version | price\n"), 2;
     return 0;
 }

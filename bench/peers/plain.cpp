@@ -343,7 +343,8 @@ std::vector<double> ascending(const std::string& text) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    if (argc > 1 && std::string(argv[1]) == "--version") return std::printf("g++ %s\n", __VERSION__), 0;
     for (std::string line; std::getline(std::cin, line);) {
         std::istringstream fields(line);
         std::string name, num, den, L;

@@ -1,8 +1,7 @@
 // The engine's side of the comparison. Lines of fields between tabs, a plant's name first:
 //
 //   peers_engine plants              name, num, den (descending powers, between spaces), dead time
-//   peers_engine design SEARCH       name, Kp, Ti, Td, ms: the method `robust`, shortest of three runs
-//   peers_engine version
+//   peers_engine design SEARCH       name, Kp, Ti, Td, ms: the method `robust`, the shorter of two runs
 //   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td beside the name; nan where unstable
 
 #include <algorithm>
@@ -25,7 +24,7 @@ namespace tunewright::bench {
 namespace {
 
 constexpr double kTfOverTd = 0.1;
-constexpr int kRuns = 3;
+constexpr int kRuns = 2;
 
 /// gain prod(s - root), real, in descending powers.
 std::vector<double> polynomial(double gain, std::span<const std::complex<double>> roots, int at_origin = 0) {
@@ -103,15 +102,15 @@ void price_answers() {
 int main(int argc, char** argv) {
     using namespace tunewright::bench;
     const std::string command = argc > 1 ? argv[1] : "";
-    if (command == "plants")
+    if (argc > 1 && std::string(argv[argc - 1]) == "--version")
+        std::puts(TUNEWRIGHT_VERSION);
+    else if (command == "plants")
         print_plants();
     else if (command == "design" && argc > 2)
         print_designs(argv[2]);
-    else if (command == "version")
-        std::puts(TUNEWRIGHT_VERSION);
     else if (command == "price")
         price_answers();
     else
-        return std::fprintf(stderr, "peers_engine plants | design SEARCH | version | price\n"), 2;
+        return std::fprintf(stderr, "peers_engine plants | design SEARCH | price\n"), 2;
     return 0;
 }

@@ -3,7 +3,7 @@
 // frequency grid, the load IAE by a simulation of fixed step with a buffer for the dead time.
 //
 //   peers_plain < plants    reads name, num, den, dead time between tabs; writes name, Kp, Ti, Td, ms, IAE of its own
-//                           simulation; ms is the shortest of three runs
+//                           simulation; ms is the shorter of two runs
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ constexpr int kFrequencies = 500;  // log-spaced over the next two, in phase cro
 constexpr double kLowest = 0.005, kHighest = 50;
 constexpr double kStep = 0.1;  // of the simulation, in 1/phase crossover
 constexpr int kMostSteps = 40000;
-constexpr int kRuns = 3;
+constexpr int kRuns = 2;
 
 /// num(s)/den(s) e^(-Ls), coefficients in ascending powers of s, in a unit of time in which the phase crossover is 1.
 struct Plant {

@@ -14,12 +14,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = sorted(path.name for path in (ROOT / "script").iterdir() if path.suffix == "")
 # The word that a script does not know, and what its refusal names instead.
 WRONG = {
-    "bootstrap": (["biuld"], ["build", "page", "test", "style", "check", "bench"]),
+    "bootstrap": (["biuld"], ["build", "page", "test", "style", "check", "bench", "peers"]),
     "build": (["alles"], ["all"]),
     "test": (["engine"], ["--style", "tests/README.md"]),
     "check": (["tydi"], ["format", "tidy", "asan", "tsan", "fuzz", "api-fuzz", "--changed"]),
     "format": (["--chek"], ["--check"]),
-    "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records"]),
+    "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records", "peers"]),
     "pictures": (["--only", "desing"], ["design", "identify"]),
 }
 

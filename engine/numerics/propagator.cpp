@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
 #include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/pair.h"
 
 namespace tunewright {
 namespace {
@@ -22,17 +21,6 @@ constexpr int kMaxTerms = 40;          // of the series: 0.5^40/40! is far below
 constexpr double kNegligible = 1e-18;  // of a component's largest term: well below rounding
 
 constexpr Index kInputs = 5;  // of a step beside its states: the cubic's coefficients and the constant
-
-/// Two neighbours of a column, for registers of that width.
-using Pair = double __attribute__((vector_size(16)));
-
-Pair load(const double* from) {
-    Pair pair;
-    std::memcpy(&pair, from, sizeof pair);
-    return pair;
-}
-
-void store(double* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
 
 Index pairs_of(Index n) { return (n + 1) / 2; }
 
@@ -130,16 +118,13 @@ private:
 
     /// Each component by itself: they may be in units far apart.
     bool negligible() {
-        using Counting = decltype(Pair{} < Pair{});
-        Counting counting{};
+        PairMask counting{};
         for (Index i = 0; i < term_.size(); i += 2) {
-            const Pair term = load(term_.data() + i), size = term < 0 ? -term : term,
-                       before = load(largest_.data() + i);
-            const Pair largest = size > before ? size : before;
+            const Pair here = size(load(term_.data() + i)), largest = larger(here, load(largest_.data() + i));
             store(largest_.data() + i, largest);
-            counting |= size > kNegligible * largest;
+            counting |= here > kNegligible * largest;
         }
-        return (counting[0] | counting[1]) == 0;
+        return !any(counting);
     }
 
     const std::vector<double>& F_;

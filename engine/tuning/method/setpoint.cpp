@@ -8,6 +8,7 @@
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
+#include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 
@@ -16,10 +17,11 @@ namespace {
 
 constexpr double kTolerance = 1e-5, kSettled = 1e-6;  // of the responses that the choice is made on
 constexpr double kSameInstant = 1e-12;
-constexpr double kSpare = 2e-3;            // percentage points of overshoot, for the figures' own error
-constexpr double kDigits = 1e4;            // b is answered to four decimals
-constexpr int kLongestFilter = 24;         // doublings of the first filter tried
-constexpr double kFirstFilter = 1.0 / 64;  // of the integral of the error
+constexpr double kSpare = 2e-3;             // percentage points of overshoot, for the figures' own error
+constexpr double kDigits = 1e4;             // b is answered to four decimals
+constexpr int kLongestFilter = 24;          // doublings of the first filter tried
+constexpr double kFirstFilter = 1.0 / 64;   // of the integral of the error
+constexpr double kFilterTolerance = 1e-12;  // relative
 constexpr int kHalvings = 40;
 
 /// The responses to a unit step with b = 0, and what b = 1 adds, on the same instants.
@@ -166,11 +168,19 @@ bool never(double, double) { return false; }
 
 /// The shortest filter that keeps the limit, with b = 0; empty: none that was looked at does.
 std::optional<double> shortest_filter(const StepResponses& responses, double limit) {
-    const auto keeps = [&](double T) { return responses.overshoot_filtered(T) <= limit; };
-    double T = kFirstFilter * responses.time();
-    if (keeps(T)) return T;
-    for (int i = 0; i < kLongestFilter; ++i, T *= 2)
-        if (keeps(2 * T)) return border(2 * T, T, keeps, never);
+    const auto beyond = [&](double T) { return responses.overshoot_filtered(T) - limit; };
+    double T = kFirstFilter * responses.time(), here = beyond(T);
+    if (here <= 0) return T;
+    for (int i = 0; i < kLongestFilter; ++i, T *= 2) {
+        const double next = beyond(2 * T);
+        if (next > 0) {
+            here = next;
+            continue;
+        }
+        double step = kFilterTolerance * T, shortest = root_between(beyond, T, 2 * T, here, next, step);
+        for (; beyond(shortest) > 0; step *= 2) shortest = std::min(shortest + step, 2 * T);
+        return shortest;
+    }
     return std::nullopt;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/numerics/pair.h"
+
 namespace tunewright::robust {
 namespace {
 
@@ -14,17 +16,25 @@ constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so nea
 }  // namespace
 
 AxisCrossings::AxisCrossings(std::span<const double> L_re, std::span<const double> L_im) {
+    const double *re = L_re.data(), *im = L_im.data();
     double doubtful = 0;  // the largest |L|^2 of a doubtful stretch
-    for (std::size_t i = 1; i < L_re.size(); ++i) {
-        const double re0 = L_re[i - 1], im0 = L_im[i - 1], re1 = L_re[i], im1 = L_im[i];
-        const bool doubted = re0 * re1 + im0 * im1 < 0, crosses = (im0 > 0) != (im1 > 0);
-        if (!(doubted | crosses)) continue;
+    const auto look = [&](std::size_t i) {
+        const double re0 = re[i - 1], im0 = im[i - 1], re1 = re[i], im1 = im[i];
         // More than a quarter of a turn: the curve may have gone either way between them.
-        if (doubted) doubtful = std::max({doubtful, re0 * re0 + im0 * im0, re1 * re1 + im1 * im1});
-        if (!crosses) continue;
-        const double re = re0 + (re1 - re0) * im0 / (im0 - im1);
-        if (re < 0) crossings_.push_back({-1 / re, im1 > 0 ? 1 : -1});
+        if (re0 * re1 + im0 * im1 < 0) doubtful = std::max({doubtful, re0 * re0 + im0 * im0, re1 * re1 + im1 * im1});
+        if ((im0 > 0) == (im1 > 0)) return;
+        const double crossed = re0 + (re1 - re0) * im0 / (im0 - im1);
+        if (crossed < 0) crossings_.push_back({-1 / crossed, im1 > 0 ? 1 : -1});
+    };
+    // Nearly everywhere there is nothing to see.
+    std::size_t i = 1;
+    for (; i + 1 < L_re.size(); i += 2) {
+        const Pair re0 = load(re + i - 1), im0 = load(im + i - 1), re1 = load(re + i), im1 = load(im + i);
+        if (!any((re0 * re1 + im0 * im1 < 0) | ((im0 > 0) ^ (im1 > 0)))) continue;
+        look(i);
+        look(i + 1);
     }
+    if (i < L_re.size()) look(i);
     if (doubtful > 0) doubtful_from_ = 1 / std::sqrt(doubtful);
 }
 

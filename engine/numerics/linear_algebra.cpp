@@ -51,13 +51,14 @@ Complex resolvent_response(std::span<const double> A, std::span<const double> B,
 
 namespace {
 
-/// Solves (sI - A)' x = C'. Of a size that is known beforehand nothing is allocated: most plants are small, and a loop
-/// asks at hundreds of frequencies.
-template <int N>
+/// Solves (sI - A)' x = C'. Where it is known that there are at most kMost states nothing is allocated: most plants are
+/// small, and a loop asks at hundreds of frequencies.
+template <int kStates, int kMost>
 std::vector<Complex> resolvent_row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    Eigen::Matrix<Complex, N, N> pencil = (-Eigen::Map<const Matrix>(A.data(), n, n).transpose()).cast<Complex>();
+    Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMost, kMost> pencil =
+        (-Eigen::Map<const Matrix>(A.data(), n, n).transpose()).cast<Complex>();
     pencil.diagonal().array() += s;
-    const Eigen::Matrix<Complex, N, 1> row =
+    const Eigen::Matrix<Complex, kStates, 1, Eigen::ColMajor, kMost, 1> row =
         pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
     return {row.data(), row.data() + n};
 }
@@ -65,13 +66,11 @@ std::vector<Complex> resolvent_row_of(std::span<const double> A, std::span<const
 }  // namespace
 
 std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    switch (n) {
-        case 1: return {C[0] / (s - A[0])};
-        case 2: return resolvent_row_of<2>(A, C, n, s);
-        case 3: return resolvent_row_of<3>(A, C, n, s);
-        case 4: return resolvent_row_of<4>(A, C, n, s);
-        default: return resolvent_row_of<Eigen::Dynamic>(A, C, n, s);
-    }
+    constexpr int kAnyNumber = Eigen::Dynamic, kFew = 4;
+    if (n == 1) return {C[0] / (s - A[0])};
+    if (n == 2) return resolvent_row_of<2, 2>(A, C, n, s);
+    if (n <= kFew) return resolvent_row_of<kAnyNumber, kFew>(A, C, n, s);
+    return resolvent_row_of<kAnyNumber, kAnyNumber>(A, C, n, s);
 }
 
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
@@ -95,7 +94,7 @@ std::optional<std::vector<double>> solve(std::span<const double> matrix, std::sp
 std::vector<double> least_norm_solution(std::span<const double> matrix, std::span<const double> b, int n,
                                         double cutoff) {
     const Matrix M = as_matrix(matrix, n);
-    Eigen::JacobiSVD<Matrix> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::JacobiSVD<Matrix, Eigen::NoQRPreconditioner> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
     svd.setThreshold(cutoff);
     const Eigen::VectorXd x = svd.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
     return {x.data(), x.data() + n};

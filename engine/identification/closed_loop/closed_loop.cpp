@@ -1,6 +1,5 @@
 #include "engine/identification/closed_loop/closed_loop.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,6 +11,7 @@
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/number_text.h"
+#include "engine/numerics/dense.h"
 
 namespace tunewright {
 namespace {
@@ -102,8 +102,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     columns.rowwise() -= columns.colwise().mean().eval();
     Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(signal.data(), n);
     values.array() -= values.mean();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(columns);
-    return (columns * solver.solve(values)).squaredNorm();
+    return (columns * least_squares(columns, values)).squaredNorm();
 }
 
 std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const SetPointPart& part,

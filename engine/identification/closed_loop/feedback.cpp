@@ -1,10 +1,10 @@
 #include "engine/identification/closed_loop/feedback.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/identification/record/record_kind.h"
+#include "engine/numerics/dense.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -47,7 +47,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
             b += z[i] * Y.row(i).transpose();
         }
         G.diagonal().array() += kRidge;
-        const Eigen::VectorXd scaled = G.selfadjointView<Eigen::Lower>().ldlt().solve(b);
+        const Eigen::VectorXd scaled = solve_symmetric(G, b);
         out.residual = z - Y * scaled;
         out.coefficient = scaled.cwiseQuotient(length);
         const Eigen::VectorXd size = out.residual.cwiseAbs();

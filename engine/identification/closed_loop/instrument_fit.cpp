@@ -1,10 +1,10 @@
 #include "engine/identification/closed_loop/instrument_fit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/identification/record/series.h"
+#include "engine/numerics/dense.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {
@@ -105,12 +105,14 @@ struct InstrumentEquations {
             Z.col(column) = all_Z.col(free[k]) / length[column];
         }
     }
-    VectorXd step() const { return (Z.transpose() * J).fullPivLu().solve(Z.transpose() * e).cwiseQuotient(length); }
+    VectorXd step() const { return solve_square(gram(Z, J), transpose_times(Z, e)).cwiseQuotient(length); }
     /// The part of e that lies in the instruments' span.
     double merit() const {
         constexpr double kRidge = 1e-9;  // columns have length 1: dependent instruments count once
-        const VectorXd b = Z.transpose() * e;
-        return b.dot((Z.transpose() * Z + kRidge * MatrixXd::Identity(Z.cols(), Z.cols())).ldlt().solve(b));
+        const VectorXd b = transpose_times(Z, e);
+        MatrixXd G = gram(Z, Z);
+        G.diagonal().array() += kRidge;
+        return b.dot(solve_symmetric(G, b));
     }
 };
 
@@ -169,7 +171,7 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
     W = filtered(W, a);
     W.rowwise() -= W.colwise().mean();
     const VectorXd e = here.e.array() - here.e.mean();
-    const VectorXd explained = W * W.colPivHouseholderQr().solve(e);
+    const VectorXd explained = W * least_squares(W, e);
     const double total = e.squaredNorm();
     if (!(total > 0)) return 0;
     constexpr double kUnexplained = 1e-12;  // of the variance: rounding
@@ -183,14 +185,13 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
 double jackknife(const InstrumentEquations& here, Index gain) {
     constexpr Index kStretches = 10;
     const Index length = here.e.size() / kStretches;
-    const MatrixXd A = here.Z.transpose() * here.J;
-    const VectorXd b = here.Z.transpose() * here.e;
+    const MatrixXd A = gram(here.Z, here.J);
+    const VectorXd b = transpose_times(here.Z, here.e);
     std::vector<double> moved;
     for (Index k = 0; k < kStretches; ++k) {
         const auto Z = here.Z.middleRows(k * length, length);
-        const VectorXd step = (A - Z.transpose() * here.J.middleRows(k * length, length))
-                                  .fullPivLu()
-                                  .solve(b - Z.transpose() * here.e.segment(k * length, length));
+        const VectorXd step = solve_square(A - gram(Z, here.J.middleRows(k * length, length)),
+                                           b - transpose_times(Z, here.e.segment(k * length, length)));
         moved.push_back(step[gain]);
     }
     const double spread = deviation(moved);
@@ -203,7 +204,7 @@ double gain_variance(const InstrumentEquations& here, Index gain) {
     const auto m = static_cast<double>(here.J.cols());
     if (gain >= here.J.cols()) return 0;
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
-    const VectorXd row = here.Z * (here.Z.transpose() * here.J).fullPivLu().inverse().row(gain).transpose();
+    const VectorXd row = here.Z * inverse_of(gram(here.Z, here.J)).row(gain).transpose();
     const double scale = here.length[gain];
     return here.e.squaredNorm() / std::max(1.0, independent - m) * row.squaredNorm() / (scale * scale);
 }
@@ -214,14 +215,14 @@ std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, 
     const auto n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
     const double independent = effective_samples({here.e.data(), static_cast<std::size_t>(here.e.size())});
     const double white = here.e.squaredNorm() / n * (n / std::max(1.0, independent - m));
-    const MatrixXd inverse = (here.Z.transpose() * here.J).fullPivLu().inverse();
+    const MatrixXd inverse = inverse_of(gram(here.Z, here.J));
     const double variance = white * inflation;
-    const MatrixXd covariance = variance * inverse * (here.Z.transpose() * here.Z) * inverse.transpose();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(covariance);
+    const MatrixXd covariance = variance * inverse * gram(here.Z, here.Z) * inverse.transpose();
+    const PrincipalAxes axes = principal_axes(covariance);
     std::vector<std::vector<double>> rows;
     for (Index k = 0; k < covariance.cols(); ++k) {
         const VectorXd axis =
-            (std::sqrt(std::max(0.0, eigen.eigenvalues()[k])) * eigen.eigenvectors().col(k)).cwiseQuotient(here.length);
+            (std::sqrt(std::max(0.0, axes.values[k])) * axes.vectors.col(k)).cwiseQuotient(here.length);
         std::vector<double> row(static_cast<std::size_t>(all), 0.0);
         for (std::size_t i = 0; i < free.size(); ++i)
             row[static_cast<std::size_t>(free[i])] = axis[static_cast<Index>(i)];

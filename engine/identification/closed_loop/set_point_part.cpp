@@ -1,10 +1,10 @@
 #include "engine/identification/closed_loop/set_point_part.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/identification/record/series.h"
+#include "engine/numerics/dense.h"
 
 namespace tunewright {
 namespace {
@@ -63,10 +63,10 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
     for (int k = 0; k < kPoles; ++k) {
         const double rows = 1.5 * std::pow(static_cast<double>(n) / 9, static_cast<double>(k) / (kPoles - 1));
         const Eigen::MatrixXd X = regressors(moved, std::exp(-1 / rows));
-        Eigen::MatrixXd G = X.transpose() * X;
+        Eigen::MatrixXd G = gram(X, X);
         G.diagonal() *= 1 + kRidge;
         G.diagonal().array() += kRidge * static_cast<double>(n);
-        const Eigen::VectorXd c = G.ldlt().solve(X.transpose() * target);
+        const Eigen::VectorXd c = solve_symmetric(G, transpose_times(X, target));
         const Eigen::VectorXd left = target - X * c;
         const double sum = left.squaredNorm();
         if (least >= 0 && sum >= least) continue;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/dense.h"
+
 namespace tunewright {
 namespace {
 
@@ -59,29 +61,27 @@ Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double r
 
 Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) {
     const Eigen::MatrixXd J = whitened(rows.J, a);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J);
     const Eigen::Index n = J.rows(), m = J.cols();
     Eigen::MatrixXd both(n, kSteps + 1);
     both << whitened(G, a), whitened(rows.residual, a);
-    both = qr.householderQ().adjoint() * both;
-    const Eigen::MatrixXd seen = both.bottomLeftCorner(n - m, kSteps);
-    const Eigen::VectorXd e = both.col(kSteps).tail(n - m);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * seen);
+    const Reflected turned = reflected(J, both);
+    const Eigen::MatrixXd seen = turned.B.bottomLeftCorner(n - m, kSteps);
+    const Eigen::VectorXd e = turned.B.col(kSteps).tail(n - m);
+    const PrincipalAxes axes = principal_axes(gram(seen, seen));
     // Ascending: the last `used` are not rounding.
     constexpr double kRounding = 1e-10;  // of the greatest eigenvalue
-    const double enough = kRounding * eigen.eigenvalues()[kSteps - 1];
-    const auto used = (eigen.eigenvalues().array() > std::max(enough, 0.0)).count();
+    const double enough = kRounding * axes.values[kSteps - 1];
+    const auto used = (axes.values.array() > std::max(enough, 0.0)).count();
     if (used == 0) return {};
-    const Eigen::VectorXd s = eigen.eigenvalues().tail(used);
+    const Eigen::VectorXd s = axes.values.tail(used);
     const Eigen::VectorXd z =
-        (eigen.eigenvectors().rightCols(used).transpose() * (seen.transpose() * e)).array() / s.array().sqrt();
+        transpose_times(axes.vectors.rightCols(used), transpose_times(seen, e)).array() / s.array().sqrt();
     constexpr double kTiny = 1e-150;  // keeps the logarithm of what may be 0 finite
     constexpr double kLeast = 1e-12;  // of the squares: their difference is rounding below it
     const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kLeast * e.squaredNorm());
     Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
     best.a = a;
-    best.unlikeliness -=
-        std::log(1 - a * a) - 2 * qr.matrixQR().diagonal().head(m).array().abs().max(kTiny).log().sum();
+    best.unlikeliness -= std::log(1 - a * a) - 2 * turned.diagonal.head(m).array().abs().max(kTiny).log().sum();
     return best;
 }
 
@@ -90,8 +90,8 @@ Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, 
     // The noise's covariance is noise/(1 - a^2) a^|i - j|.
     Eigen::MatrixXd coloured = J;
     for (Eigen::Index k = 1; k < J.rows(); ++k) coloured.row(k) += found.a * coloured.row(k - 1);
-    const Eigen::MatrixXd forward = J.transpose() * coloured;
-    const Eigen::MatrixXd noise = forward + forward.transpose() - J.transpose() * J;
+    const Eigen::MatrixXd forward = gram(J, coloured);
+    const Eigen::MatrixXd noise = forward + forward.transpose() - gram(J, J);
     return found.noise / (1 - found.a * found.a) * noise + found.load * pulls * pulls.transpose();
 }
 
@@ -111,7 +111,7 @@ std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows&
         if (found.back().unlikeliness > least + kAsLikely) break;
         least = std::min(least, found.back().unlikeliness);
     }
-    const Eigen::MatrixXd pulls = rows.J.transpose() * G;
+    const Eigen::MatrixXd pulls = gram(rows.J, G);
     std::vector<Eigen::MatrixXd> all;
     for (const Strengths& one : found) {
         if (std::isfinite(one.unlikeliness) && one.unlikeliness <= least + kAsLikely)

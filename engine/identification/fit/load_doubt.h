@@ -1,7 +1,7 @@
 // How much a load that walks unseen may have changed a fit.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "engine/identification/fit/output_error.h"

@@ -1,9 +1,10 @@
 #include "engine/identification/fit/output_error.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "engine/numerics/dense.h"
 
 namespace tunewright {
 namespace {
@@ -82,16 +83,15 @@ public:
     double rough_sum(const ModelShape& shape) {
         const Eigen::MatrixXd& A = regressors(shape);
         const int m = static_cast<int>(A.cols());
-        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8> G(m, m);
-        Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> b(m);
+        FewByFew G(m, m);
+        Few b(m);
         constexpr double kRidge = 1e-12;  // dependent columns share their coefficient
         for (int k = 0; k < m; ++k) {
             b[k] = A.col(k).dot(y_);
             for (int i = 0; i <= k; ++i) G(i, k) = G(k, i) = A.col(i).dot(A.col(k));
             G(k, k) *= 1 + kRidge;
         }
-        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> x = G.ldlt().solve(b);
-        const double sum = y_.squaredNorm() - b.dot(x);
+        const double sum = y_.squaredNorm() - b.dot(solve_symmetric(G, b));
         return std::isfinite(sum) ? std::max(sum, 0.0) : std::numeric_limits<double>::max();
     }
 
@@ -273,7 +273,7 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
         A(i, i) += lambda * std::max(A(i, i), floor);
         b[i] = descent[free[i]];
     }
-    const Eigen::VectorXd reduced = A.ldlt().solve(b);
+    const Eigen::VectorXd reduced = solve_symmetric(A, b);
     Eigen::VectorXd step = Eigen::VectorXd::Zero(descent.size());
     for (int i = 0; i < m; ++i) step[free[i]] = reduced[i];
     return step;
@@ -351,9 +351,9 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& star
     for (; iteration < effort.most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
          ++iteration) {
         Eigen::MatrixXd& D = problem.sensitivities(shape, here.linear);
-        D -= here.basis * (here.basis.transpose() * D);
-        const Eigen::VectorXd descent = D.transpose() * here.residual;
-        const Eigen::MatrixXd normal = D.transpose() * D;
+        D.noalias() -= here.basis * gram(here.basis, D);
+        const Eigen::VectorXd descent = transpose_times(D, here.residual);
+        const Eigen::MatrixXd normal = gram(D, D);
         const std::vector<int> free = free_parameters(shape, places, bounds, descent);
         if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
         bool converged = false, better = false;

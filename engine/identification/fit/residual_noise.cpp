@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/numerics/dense.h"
+
 namespace tunewright {
 namespace {
 
@@ -105,7 +107,7 @@ Autoregression::Gains Autoregression::gains(std::size_t n) const {
 Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     const double variance = innovation * innovation;
     const auto order = static_cast<Eigen::Index>(a.size()), n = X.rows();
-    if (order == 0) return variance * (X.transpose() * X);
+    if (order == 0) return variance * gram(X, X);
     // R = innovation^2 H H' with H the impulse response: H' is the same filter backward in time, and what it goes on to
     // give before the first row makes the noise stationary there.
     Eigen::MatrixXd Z = X;
@@ -116,7 +118,7 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
                 z[i] += a[static_cast<std::size_t>(k - 1)] * z[i + k];
         }
     }
-    Eigen::MatrixXd product = Z.transpose() * Z, next = Z.topRows(std::min(order, n));
+    Eigen::MatrixXd product = gram(Z, Z), next = Z.topRows(std::min(order, n));
     const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), next.rows());
     const double enough = kNoMore * product.diagonal().maxCoeff();
     Eigen::RowVectorXd row(X.cols());
@@ -155,10 +157,10 @@ Eigen::MatrixXd ResidualNoise::weighed(const Eigen::MatrixXd& X) const {
     if (block_ == 1) return product;
     if (!fast_.a.empty()) return product + fast_.weighed(inside_blocks(X, means, block_));
     // White inside: what the rows have beyond their means needs no rows of its own.
-    Eigen::MatrixXd of_means = block * (means.transpose() * means);
+    Eigen::MatrixXd of_means = block * gram(means, means);
     const double last = static_cast<double>(X.rows()) - block * static_cast<double>(means.rows() - 1);
     of_means += (last - block) * means.bottomRows(1).transpose() * means.bottomRows(1);
-    return product + fast_.innovation * fast_.innovation * (X.transpose() * X - of_means);
+    return product + fast_.innovation * fast_.innovation * (gram(X, X) - of_means);
 }
 
 double student_factor(double freedom) {

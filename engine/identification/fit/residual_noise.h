@@ -1,7 +1,7 @@
 // The noise that a fit leaves behind, as a model: how strong, how slow, and how well known.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "engine/identification/fit/response.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,6 +1,5 @@
 #include "engine/identification/fit/uncertainty.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/record/series.h"
+#include "engine/numerics/dense.h"
 
 namespace tunewright {
 namespace {
@@ -112,7 +112,7 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
     Eigen::VectorXd q = fit.form.slope ? Eigen::VectorXd(time.array().square()) : Eigen::VectorXd(time);
     for (int column = 0; column < 2; ++column) {
         if (column > 0) q.array() *= time.array();
-        const Eigen::VectorXd moved = inverse * (J.topRows(n).transpose() * q);
+        const Eigen::VectorXd moved = inverse * transpose_times(J.topRows(n), q);
         Eigen::VectorXd alone = q - J.topRows(n) * moved;
         if (const double size = before.squaredNorm(); size > 0) alone -= before * (before.dot(alone) / size);
         const double size = alone.squaredNorm();
@@ -209,9 +209,10 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
         p.length[k] = std::max(p.J.col(k).norm(), kNoLength);
         p.J.col(k) /= p.length[k];
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(p.J.transpose() * p.J);
-    p.inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kSingular).cwiseInverse().asDiagonal() *
-                eigen.eigenvectors().transpose();
+    const PrincipalAxes axes = principal_axes(gram(p.J, p.J));
+    const Eigen::MatrixXd scaled =
+        axes.vectors * axes.values.cwiseMax(kSingular).cwiseSqrt().cwiseInverse().asDiagonal();
+    p.inverse = scaled * scaled.transpose();
     return p;
 }
 
@@ -221,7 +222,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
                                 std::span<const double> times, bool load) {
     const Eigen::MatrixXd others = p.beside_samples();
-    const Eigen::MatrixXd prior = left.long_run_variance() * others.transpose() * others;
+    const Eigen::MatrixXd prior = left.long_run_variance() * gram(others, others);
     Eigen::MatrixXd covariance = p.inverse * (left.weighed(p.of_samples()) + prior) * p.inverse;
     if (!load) return covariance;
     for (const Eigen::MatrixXd& spread : weighed_with_load(whole, few_rows(whole, times, p.length))) {
@@ -245,13 +246,13 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     const ScaledProblem p = scaled_problem(fit, left.long_run_variance());
     const Eigen::MatrixXd covariance =
         open_covariance(p, left, whole, times, load == LoadDoubt::counted && !on_plateaus);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (covariance + covariance.transpose()));
+    const PrincipalAxes axes = principal_axes(0.5 * (covariance + covariance.transpose()));
     // Rounding that is the same over a plateau is not noise that is estimated from few samples, so it is not widened.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
     all.reserve(static_cast<std::size_t>(m));
     for (int k = 0; k < m; ++k)
-        all.emplace_back(widened * std::sqrt(std::max(axes.eigenvalues()[k], 0.0)) * axes.eigenvectors().col(k));
+        all.emplace_back(widened * std::sqrt(std::max(axes.values[k], 0.0)) * axes.vectors.col(k));
     // Such rounding is not a drift either, although it looks like one.
     if (on_plateaus) {
         for (const auto& [first, last] : plateaus(fit, grid))

@@ -14,9 +14,8 @@ using namespace robust;
 
 namespace {
 
-constexpr double kNeighbour = 1;         // how far apart() a start may be
-constexpr double kFarthestBeyond = 1.5;  // of the distance between two designs: how far their line leads beyond them
-constexpr double kAlike = 0.5;           // of each logarithm of a design: more is another valley
+constexpr double kNeighbour = 1;  // how far apart() a start may be
+constexpr double kAlike = 0.5;    // of each logarithm of a design: more is another valley
 
 // Distance between two limits: what matters is how far they lie above 1.
 double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
@@ -42,7 +41,8 @@ DesignPoint RobustFront::point_of(const Design& design) const {
     return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), PI ? 0 : std::log(pid.Td)};
 }
 
-/// On the straight line through the two nearest neighbours, where both are near and alike; else the nearest one.
+/// Between the two nearest neighbours, where both are near and alike; else the nearest one. Not beyond them: each
+/// design is exact to the search's tolerance alone, which a line through two of them would magnify from one to the next.
 std::optional<DesignPoint> RobustFront::expected_at(double M) const {
     std::vector<std::pair<double, const Design*>> near;
     for (const auto& [other, design] : known_)
@@ -56,7 +56,7 @@ std::optional<DesignPoint> RobustFront::expected_at(double M) const {
     const DesignPoint next = point_of(*near[1].second);
     const double from = std::log(near[0].first - 1), to = std::log(near[1].first - 1);
     const double part = (std::log(M - 1) - from) / (to - from);
-    if (part < -kFarthestBeyond) return nearest;
+    if (part < 0) return nearest;
     DesignPoint expected = nearest;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const double change = next[i] - nearest[i];

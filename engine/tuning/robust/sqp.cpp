@@ -16,6 +16,7 @@ constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
 constexpr double kFeasible = 1e-8;  // and accepted with this much slack
 
 constexpr int kMaxRestoring = 12;           // Newton steps back to the feasible side; three or four are usual
+constexpr double kNearOfRestoring = -0.1;   // constraints below it do not stop a step back
 constexpr double kRestoringRadius = 0.5;    // of a logarithm
 constexpr std::size_t kRestoringPeaks = 6;  // the largest ones, as constraints of a step back
 constexpr double kMinLessGain = 1e-6;       // ln: less gain where the peaks have no common linear way out
@@ -111,8 +112,11 @@ std::optional<Restored> restored(const Sweep& sweep, DesignPoint x) {
     for (int k = 0; k < kMaxRestoring; ++k) {
         auto peaks = sweep.peaks(x, kNear);
         if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return Restored{x, std::move(peaks)};
-        const auto step = solve_quadratic_program(n, Matrix3::Identity(), Vector3::Zero(),
-                                                  linearised(peaks, sweep, x, kRestoringRadius, kRestoringPeaks));
+        const auto in_the_way = std::ranges::count_if(
+            peaks, [](const ActivePeak& peak) { return peak.value > kNearOfRestoring; });
+        const auto step = solve_quadratic_program(
+            n, Matrix3::Identity(), Vector3::Zero(),
+            linearised(peaks, sweep, x, kRestoringRadius, std::min(kRestoringPeaks, std::size_t(in_the_way))));
         if (step) {
             x = moved(x, step->p);
         } else {

@@ -1,0 +1,53 @@
+// Products, decompositions and solutions of dense matrices of any size, each compiled once behind this header: Eigen's
+// templates are most of what a source costs to compile that uses them itself. Small systems that are not Eigen's own
+// types: linear_algebra.h. Eigenvalues of any matrix: eigenvalues.h.
+//
+//   const Eigen::VectorXd x = solve_symmetric(gram(J, J), transpose_times(J, e));   // least squares by normal
+//   equations
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tunewright {
+
+/// A' B for A of n x m and B of n x k.
+Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B);
+
+/// A' b for A of n x m.
+Eigen::VectorXd transpose_times(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::VectorXd>& b);
+
+/// Eigenvalues in ascending order, eigenvectors in columns of length 1.
+struct PrincipalAxes {
+    Eigen::VectorXd values;
+    Eigen::MatrixXd vectors;
+};
+/// Of a symmetric matrix, of which the lower triangle is read.
+PrincipalAxes principal_axes(const Eigen::MatrixXd& A);
+
+/// A x = b for A symmetric and positive semidefinite (LDL' with pivoting), of which the lower triangle is read.
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// The same of at most this size, without any allocation.
+inline constexpr int kFew = 8;
+using FewByFew = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kFew, kFew>;
+using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kFew, 1>;
+Few solve_symmetric(const FewByFew& A, const Few& b);
+
+/// A x = b for any square A (LU with full pivoting): where A is singular, one of the x that leave the least.
+Eigen::VectorXd solve_square(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// A^-1 by the same decomposition; not finite where A is singular.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
+
+/// The x with the least |A x - b| (QR with column pivoting): dependent columns get 0.
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// A = Q R for A of n x m, n >= m: Q' B, of whose rows the last n - m are what no combination of A's columns reaches,
+/// and the diagonal of R.
+struct Reflected {
+    Eigen::MatrixXd B;
+    Eigen::VectorXd diagonal;
+};
+Reflected reflected(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+}  // namespace tunewright

@@ -42,7 +42,8 @@ DesignPoint RobustFront::point_of(const Design& design) const {
 }
 
 /// Between the two nearest neighbours, where both are near and alike; else the nearest one. Not beyond them: each
-/// design is exact to the search's tolerance alone, which a line through two of them would magnify from one to the next.
+/// design is exact to the search's tolerance alone, which a line through two of them would magnify from one to the
+/// next.
 std::optional<DesignPoint> RobustFront::expected_at(double M) const {
     std::vector<std::pair<double, const Design*>> near;
     for (const auto& [other, design] : known_)

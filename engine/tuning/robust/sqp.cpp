@@ -112,8 +112,8 @@ std::optional<Restored> restored(const Sweep& sweep, DesignPoint x) {
     for (int k = 0; k < kMaxRestoring; ++k) {
         auto peaks = sweep.peaks(x, kNear);
         if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return Restored{x, std::move(peaks)};
-        const auto in_the_way = std::ranges::count_if(
-            peaks, [](const ActivePeak& peak) { return peak.value > kNearOfRestoring; });
+        const auto in_the_way =
+            std::ranges::count_if(peaks, [](const ActivePeak& peak) { return peak.value > kNearOfRestoring; });
         const auto step = solve_quadratic_program(
             n, Matrix3::Identity(), Vector3::Zero(),
             linearised(peaks, sweep, x, kRestoringRadius, std::min(kRestoringPeaks, std::size_t(in_the_way))));

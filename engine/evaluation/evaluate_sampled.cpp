@@ -142,18 +142,24 @@ std::optional<double> longest_sample_time(const LinearPlant& plant, const Parall
     // loop confirms.
     TrackedPeak peak(plant, gains, omega_Ms);
     const auto near_peak = [&](double Ts) { return std::log(peak.at(Ts) / (factor * Ms)); };
-    double high = kFirstSample / omega_Ms, f_high = near_peak(high), low = shortest;
+    double high = kFirstSample / omega_Ms, f_high = near_peak(high), low = shortest, f_low = 0;
     while (f_high <= 0 && high < longest) f_high = near_peak(high *= 2);
     if (f_high > 0 && !resonates(plant)) {
         const double guess = root_between(near_peak, 0, high, f_0, f_high, kSampleTolerance * high);
-        if (std::abs(whole(guess)) <= kWholeLoop && whole(kShorter * guess) <= 0) return guess;
-        // Another peak of the loop has become the higher one: what is looked for lies not far below.
         low = std::max(kShorter * guess, shortest);
-        while (low > shortest && !(whole(low) <= 0 && whole(kShorter * low) <= 0))
-            low = std::max(kShorter * low, shortest);
+        f_low = whole(low);
+        if (f_low <= 0 && std::abs(whole(guess)) <= kWholeLoop) return guess;
+        // Another peak of the loop has become the higher one: what is looked for lies not far below.
+        while (low > shortest) {
+            const double lower = std::max(kShorter * low, shortest), f_lower = whole(lower);
+            if (f_low <= 0 && f_lower <= 0) break;
+            low = lower;
+            f_low = f_lower;
+        }
+    } else {
+        f_low = whole(low);
     }
     // The first sample time, from short ones on, that the whole loop does not bear.
-    double f_low = whole(low);
     if (f_low > 0) return std::nullopt;
     for (high = low * kNext; (f_high = whole(high)) <= 0; high *= kNext) {
         if (high > longest) return std::nullopt;

@@ -14,11 +14,10 @@ constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below 
 
 /// The indices of one kind of performance, or the reason why there are none.
 template <class Figures>
-void store(Figures& p, const Indices& indices, const StepResponse& response, double target, bool to_infinity) {
+void store(Figures& p, const Indices& indices) {
     p.TV = indices.TV;
     if (!indices.error) {
-        const char* reason = why_no_integral(response, target, to_infinity);
-        p.IAE = p.ISE = p.ITAE = no_figure(reason != nullptr ? reason : "");
+        p.IAE = p.ISE = p.ITAE = no_figure(indices.why_no_error);
         return;
     }
     p.IAE = indices.error->IAE;
@@ -51,8 +50,10 @@ Performance no_performance(const std::string& reason) {
 }
 
 Indices indices_of(const StepResponse& response, double target, bool to_infinity) {
-    Indices indices{std::nullopt, total_variation(response.nodes)};
-    if (why_no_integral(response, target, to_infinity) == nullptr)
+    Indices indices{.error = {},
+                    .why_no_error = why_no_integral(response, target, to_infinity),
+                    .TV = total_variation(response.nodes)};
+    if (indices.why_no_error == nullptr)
         indices.error =
             error_integrals(response.nodes, target, to_infinity ? response.error_integral_final : std::nullopt);
     return indices;
@@ -62,7 +63,7 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
                                      const std::optional<Indices>& indices) {
     SetpointPerformance p;
     const auto& nodes = response.nodes;
-    store(p, indices ? *indices : indices_of(response, step, to_infinity), response, step, to_infinity);
+    store(p, indices ? *indices : indices_of(response, step, to_infinity));
     const Extremes extremes = extremes_of_y(nodes);
     p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
     const auto rise = [&](double from, double to) {
@@ -80,7 +81,7 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
 LoadPerformance load_figures(const StepResponse& response, bool to_infinity, const std::optional<Indices>& indices) {
     LoadPerformance p;
     const auto& nodes = response.nodes;
-    store(p, indices ? *indices : indices_of(response, 0, to_infinity), response, 0, to_infinity);
+    store(p, indices ? *indices : indices_of(response, 0, to_infinity));
     const Extremes extremes = extremes_of_y(nodes);
     p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
     p.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)),

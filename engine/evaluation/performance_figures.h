@@ -12,7 +12,8 @@ namespace tunewright {
 
 /// What is integrated over a response.
 struct Indices {
-    std::optional<ErrorIntegrals> error;  ///< where they have a value
+    std::optional<ErrorIntegrals> error;
+    const char* why_no_error = nullptr;  ///< where the error's integrals have no value
     double TV = 0;
 };
 /// `target` is what y is to reach. `to_infinity`: integrals run to infinity (the response settled), else to the last

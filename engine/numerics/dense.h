@@ -2,8 +2,7 @@
 // templates are most of what a source costs to compile that uses them itself. Small systems that are not Eigen's own
 // types: linear_algebra.h. Eigenvalues of any matrix: eigenvalues.h.
 //
-//   const Eigen::VectorXd x = solve_symmetric(gram(J, J), transpose_times(J, e));   // least squares by normal
-//   equations
+//   x = solve_symmetric(gram(J, J), transpose_times(J, e));   // least squares by normal equations
 #pragma once
 
 #include <Eigen/Core>

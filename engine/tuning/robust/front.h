@@ -10,8 +10,8 @@
 
 namespace tunewright {
 
-/// Robust designs of one plant that differ in their limit on Ms alone. A new one is searched from where its neighbours
-/// lead; where that breaks the front's order (more room never costs more) the whole search is made.
+/// Robust designs of one plant that differ in their limit on Ms alone. A new one is searched from between its nearest
+/// neighbours; where that breaks the front's order (more room never costs more) the whole search is made.
 class RobustFront {
 public:
     /// Whose limits they are: the options but for Ms and Mt, which is M as well where `Mt` is empty, and the plants on

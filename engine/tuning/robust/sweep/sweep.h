@@ -16,8 +16,6 @@
 
 namespace tunewright::robust {
 
-class AxisCrossings;
-
 enum class ConstraintKind { S, T, CS, circle };
 
 /// A local maximum of a constraint over frequency, with its exact gradient in the point's logarithms (envelope
@@ -113,8 +111,7 @@ private:
     Entrance entrance(const Curve& curve, const LoopGains& c) const;
     static std::optional<int> crossed_below(const Entrance& in, double k);
     void forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
-    std::optional<bool> told_stable(const Curve& curve, const Entrance& in, const AxisCrossings& crossings,
-                                    const GainGap& gap) const;
+    struct Course;
     bool stable_at_low_gain() const;
     void tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;

@@ -113,6 +113,19 @@ void Sweep::forbid_below(const Curve& curve, const LoopGains& c, std::vector<Gai
         forbidden.push_back({.lower = 0, .upper = 1 / in.size});
 }
 
+/// A curve from rest on, and what it says of the loop's stability with the gain k.
+struct Sweep::Course {
+    int unstable_poles;
+    Entrance in;
+    AxisCrossings crossings;
+
+    std::optional<bool> stable(double k) const {
+        const auto below = crossed_below(in, k), on_grid = crossings.beyond(k);
+        if (!below || !on_grid) return std::nullopt;
+        return unstable_poles + *below + 2 * *on_grid == 0;
+    }
+};
+
 /// A stable plant with an integral of the right sign is stable at low gain.
 bool Sweep::stable_at_low_gain() const {
     return std::ranges::all_of(curves_, [this](const Curve& curve) {
@@ -123,24 +136,18 @@ bool Sweep::stable_at_low_gain() const {
 
 void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
     if (!std::ranges::all_of(curves_, [](const Curve& curve) { return curve.phase_at_low.has_value(); })) return;
-    std::vector<AxisCrossings> crossings;
+    std::vector<Course> courses;  // of every curve, worked out once they are asked for
     for (GainGap& gap : gaps) {
         if (gap.upper == kInfinity) continue;
         gap.stable = gap.proved = gap.lower == 0 && stable_at_low_gain();
         if (gap.proved) continue;
-        if (crossings.empty())
-            for (const Curve& curve : curves_) crossings.emplace_back(curve.L_re, curve.L_im);
+        if (courses.empty())
+            for (const Curve& curve : curves_)
+                courses.push_back({curve.unstable_poles, entrance(curve, c), {curve.L_re, curve.L_im}});
         gap.stable = true;
-        for (std::size_t i = 0; i < curves_.size() && gap.stable == true; ++i)
-            gap.stable = told_stable(curves_[i], entrance(curves_[i], c), crossings[i], gap);
+        for (std::size_t i = 0; i < courses.size() && gap.stable == true; ++i)
+            gap.stable = courses[i].stable(gap.middle());
     }
-}
-
-std::optional<bool> Sweep::told_stable(const Curve& curve, const Entrance& in, const AxisCrossings& crossings,
-                                       const GainGap& gap) const {
-    const auto below = crossed_below(in, gap.middle()), on_grid = crossings.beyond(gap.middle());
-    if (!below || !on_grid) return std::nullopt;
-    return curve.unstable_poles + *below + 2 * *on_grid == 0;
 }
 
 std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {

@@ -19,6 +19,7 @@ class Plant:
         self.name, num, den, L = line.rstrip("\n").split("\t")
         self.num, self.den = (np.array(field.split(), float) for field in (num, den))
         self.L = float(L)
+        self.integrators = len(self.den) - 1 - np.flatnonzero(self.den)[-1]
         self.omega = self.grid(POINTS)
 
     def __call__(self, w):
@@ -34,17 +35,19 @@ class Plant:
         return np.geomspace(1e-3 * crossover, 1e3 * crossover, points)
 
 
-def controller(w, Kp, Ti, Td):
-    s, f = 1j * w, 1j * w * TF_OVER_TD * Td
+def controller(w, Kp, Ti, Td, Tf=None):
+    """`Tf` of the filter where it is not the problem's own."""
+    s = 1j * w
+    f = s * (TF_OVER_TD * Td if Tf is None else Tf)
     return Kp * (1 + 1 / (s * Ti) + s * Td) / (1 + f + f * f / 2)
 
 
-def stable(loop):
-    """By Nyquist, of plants without unstable poles: from where the integrators let it come, 1 + L ends at 1 without a
-    turn around 0. Angles beyond a quarter turn are those of two integrators that come from beyond half a turn."""
+def stable(loop, right=0, origin=1):
+    """By Nyquist, `loop` on a grid from where its integrators let it come to where it ends: 1 + L turns by half a turn
+    for each of `right` unstable poles of the loop and by a quarter for each of `origin` integrators, the controller's
+    among them."""
     angle = np.unwrap(np.angle(1 + loop))
-    turns_before = 2 * np.pi if angle[0] > np.pi / 2 else 0
-    return abs(angle[-1] - turns_before) < np.pi / 2
+    return abs(angle[-1] - angle[0] - np.pi * (right + origin / 2)) < np.pi / 2
 
 
 def peak(values, w, of_loop):
@@ -56,22 +59,29 @@ def peak(values, w, of_loop):
     return highest
 
 
+def peaks(loop, w):
+    """Ms and Mt of the loop, a function of frequency, that a grid `w` shows."""
+    def sensitivity(w):
+        return np.abs(1 / (1 + loop(w)))
+
+    def complementary(w):
+        at = loop(w)
+        return np.abs(at / (1 + at))
+
+    return peak(sensitivity(w), w, sensitivity), peak(complementary(w), w, complementary)
+
+
 def excess(plant, answer, points=POINTS):
     """By how much the larger peak exceeds its limit, relative; infinite where the loop is not stable."""
     w = plant.omega if points == POINTS else plant.omega[::POINTS // points]
-    loop = plant(w) * controller(w, *answer)
-    if not (np.all(np.isfinite(loop)) and stable(loop)):
+
+    def loop(w):
+        return plant(w) * controller(w, *answer)
+
+    at = loop(w)
+    if not (np.all(np.isfinite(at)) and stable(at, 0, 1 + plant.integrators)):
         return np.inf
-
-    def sensitivity(w):
-        return np.abs(1 / (1 + plant(w) * controller(w, *answer)))
-
-    def complementary(w):
-        loop = plant(w) * controller(w, *answer)
-        return np.abs(loop / (1 + loop))
-
-    S = np.abs(1 / (1 + loop))
-    return max(peak(S, w, sensitivity), peak(S * np.abs(loop), w, complementary)) / LIMIT - 1
+    return max(peaks(loop, w)) / LIMIT - 1
 
 
 def held(plant, answer):

@@ -19,7 +19,7 @@ WRONG = {
     "test": (["engine"], ["--style", "tests/README.md"]),
     "check": (["tydi"], ["format", "tidy", "asan", "tsan", "fuzz", "api-fuzz", "--changed"]),
     "format": (["--chek"], ["--check"]),
-    "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records", "peers"]),
+    "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records", "peers", "families"]),
     "pictures": (["--only", "desing"], ["design", "identify"]),
 }
 

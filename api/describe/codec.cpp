@@ -1,5 +1,6 @@
 #include "api/describe/codec.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -251,6 +252,53 @@ Codec<std::map<std::string, double>> numbers_by_name(std::string keys) {
                             {"propertyNames", {{"description", keys}}},
                             {"additionalProperties", {{"type", {"number", "null"}}}}};
             }};
+}
+
+SchemaOf or_null(SchemaOf inner) {
+    return [inner = std::move(inner)](SchemaBook& book) {
+        return Json{{"oneOf", {inner(book), Json{{"type", "null"}}}}};
+    };
+}
+
+std::optional<std::size_t> ChoiceWords::read(const Json& value, Reader& reader) const {
+    std::string meant;
+    if (value.is_string()) {
+        const auto& given = value.get_ref<const std::string&>();
+        const auto at = std::find(names.begin(), names.end(), given);
+        if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+        meant = nearest(given, names);
+    }
+    reader.fault(reader.name() + " is " + shown(value) + "; it must be " + listed(names) + "." +
+                 (meant.empty() ? "" : " Did you mean " + meant + "?"));
+    return std::nullopt;
+}
+
+SchemaOf ChoiceWords::schema() const {
+    return [names = names](SchemaBook&) { return Json{{"type", "string"}, {"enum", names}}; };
+}
+
+bool ArrayLengths::hold(const Json& value, Reader& reader) const {
+    if (!value.is_array()) {
+        reader.fault(wrong_kind(value, "an array", reader));
+        return false;
+    }
+    if (value.size() < least || value.size() > most) {
+        reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; it must have " +
+                     std::to_string(least) + " to " + std::to_string(most) + ".");
+        return false;
+    }
+    return true;
+}
+
+SchemaOf ArrayLengths::schema(SchemaOf items, bool stated) const {
+    return [items = std::move(items), stated, *this](SchemaBook& book) {
+        Json out{{"type", "array"}, {"items", items(book)}};
+        if (stated) {
+            out["minItems"] = least;
+            out["maxItems"] = most;
+        }
+        return out;
+    };
 }
 
 }  // namespace tunewright::api

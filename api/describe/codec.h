@@ -1,13 +1,13 @@
 // How one JSON value of the contract is read, written and described: small codecs, put together by descriptions.
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "api/describe/callable.h"
 #include "api/describe/reader.h"
 #include "api/describe/suggest.h"
 #include "api/json/json.h"
@@ -21,16 +21,18 @@ struct SchemaBook {
     Json components = Json::object();
 };
 
+using SchemaOf = Callable<Json(SchemaBook&)>;
+
 /// One kind of value. Reading leaves the target alone and reports to the reader where the value is not valid.
 template <class T>
 struct Codec {
-    std::function<void(const Json&, T&, Reader&)> read;  ///< empty: only in answers
-    std::function<void(const T&, Writer&)> write;
-    std::function<Json(SchemaBook&)> schema;
-    std::function<bool(const T&)> skip = {};       ///< true: the member is left out when written; empty: never
-    std::function<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
+    Callable<void(const Json&, T&, Reader&)> read;  ///< empty: only in answers
+    Callable<void(const T&, Writer&)> write;
+    SchemaOf schema;
+    Callable<bool(const T&)> skip = {};       ///< true: the member is left out when written; empty: never
+    Callable<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
     /// The reason of an undefined value; empty, or "": the description's own for all.
-    std::function<std::string(const T&)> why = {};
+    Callable<std::string(const T&)> why = {};
 };
 
 /// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite.
@@ -79,6 +81,9 @@ Codec<Figure> figure();
 Codec<std::optional<double>> nullable_number();
 Codec<std::optional<bool>> nullable_bool();
 
+/// The schema of a value that may be null.
+SchemaOf or_null(SchemaOf inner);
+
 /// Only in answers: the value as `inner` writes it, or null with its reason.
 template <class T>
 Codec<OrReason<T>> or_reason(const Codec<T>& inner) {
@@ -86,9 +91,7 @@ Codec<OrReason<T>> or_reason(const Codec<T>& inner) {
     codec.write = [write = inner.write](const OrReason<T>& value, Writer& out) {
         value ? write(*value, out) : out.null();
     };
-    codec.schema = [schema = inner.schema](SchemaBook& book) {
-        return Json{{"oneOf", {schema(book), Json{{"type", "null"}}}}};
-    };
+    codec.schema = or_null(inner.schema);
     codec.undefined = [](const OrReason<T>& value) { return !value; };
     codec.why = [](const OrReason<T>& value) { return value.why; };
     return codec;
@@ -123,60 +126,66 @@ Codec<T> only_answered(Codec<T> codec) {
 
 /// The member is left out where `empty` holds.
 template <class T>
-Codec<T> unless(Codec<T> codec, std::function<bool(const T&)> empty) {
+Codec<T> unless(Codec<T> codec, Callable<bool(const T&)> empty) {
     codec.skip = std::move(empty);
     return codec;
 }
 
+/// The words of a choice.
+struct ChoiceWords {
+    std::vector<std::string> names;
+
+    /// The place of the word that the value is; reports to the reader where it is none of them.
+    std::optional<std::size_t> read(const Json& value, Reader& reader) const;
+    SchemaOf schema() const;
+};
+
 /// Words of the contract for the values of an enumeration, the first written for each value.
 template <class E>
-Codec<E> choice(std::vector<std::pair<std::string, E>> words) {
-    std::vector<std::string> names;
-    names.reserve(words.size());
-    for (const auto& [word, value] : words) names.push_back(word);
+Codec<E> choice(const std::vector<std::pair<std::string, E>>& words) {
+    ChoiceWords known;
+    std::vector<E> meanings;
+    for (const auto& [word, meaning] : words) {
+        known.names.push_back(word);
+        meanings.push_back(meaning);
+    }
     Codec<E> codec;
-    codec.read = [words, names](const Json& value, E& target, Reader& reader) {
-        if (value.is_string()) {
-            for (const auto& [word, meaning] : words) {
-                if (value.get_ref<const std::string&>() == word) {
-                    target = meaning;
-                    return;
-                }
-            }
-        }
-        const std::string meant = value.is_string() ? nearest(value.get_ref<const std::string&>(), names) : "";
-        reader.fault(reader.name() + " is " + shown(value) + "; it must be " + listed(names) + "." +
-                     (meant.empty() ? "" : " Did you mean " + meant + "?"));
+    codec.read = [known, meanings](const Json& value, E& target, Reader& reader) {
+        if (const auto at = known.read(value, reader)) target = meanings[*at];
     };
-    codec.write = [words](const E& value, Writer& out) {
-        for (const auto& [word, meaning] : words) {
-            if (meaning == value) return out.text(word);
+    codec.write = [known, meanings](const E& value, Writer& out) {
+        for (std::size_t i = 0; i < meanings.size(); ++i) {
+            if (meanings[i] == value) return out.text(known.names[i]);
         }
         out.null();
     };
-    codec.schema = [names](SchemaBook&) { return Json{{"type", "string"}, {"enum", names}}; };
+    codec.schema = known.schema();
     return codec;
 }
+
+/// The lengths of an array.
+struct ArrayLengths {
+    std::size_t least, most;
+
+    /// False: the value is no array of such a length, which is reported.
+    bool hold(const Json& value, Reader& reader) const;
+    /// `stated`: with its lengths.
+    SchemaOf schema(SchemaOf items, bool stated) const;
+};
 
 /// An array of `least` to `most` values.
 template <class T>
 Codec<std::vector<T>> list_of(Codec<T> inner, std::size_t least = 0, std::size_t most = 100) {
+    const ArrayLengths lengths{least, most};
     Codec<std::vector<T>> codec;
     if (inner.read) {
-        codec.read = [read = inner.read, least, most](const Json& value, std::vector<T>& target, Reader& reader) {
-            if (!value.is_array()) return reader.fault(wrong_kind(value, "an array", reader));
-            if (value.size() < least || value.size() > most) {
-                return reader.fault(reader.name() + " has " + std::to_string(value.size()) +
-                                    " elements; it must have " + std::to_string(least) + " to " + std::to_string(most) +
-                                    ".");
-            }
+        codec.read = [read = inner.read, lengths](const Json& value, std::vector<T>& target, Reader& reader) {
+            if (!lengths.hold(value, reader)) return;
             target.clear();
-            target.reserve(value.size());
-            for (std::size_t i = 0; i < value.size(); ++i) {
+            target.resize(value.size());
+            for (std::size_t i = 0; i < target.size(); ++i) {
                 const Reader::At at(reader, i);
-                T element{};
-                read(value[i], element, reader);
-                target.push_back(std::move(element));
+                read(value[i], target[i], reader);
             }
         };
     }
@@ -185,14 +194,7 @@ Codec<std::vector<T>> list_of(Codec<T> inner, std::size_t least = 0, std::size_t
         for (const T& value : values) write(value, out);
         out.end_array();
     };
-    codec.schema = [schema = inner.schema, least, most, reads = bool(inner.read)](SchemaBook& book) {
-        Json out{{"type", "array"}, {"items", schema(book)}};
-        if (reads) {
-            out["minItems"] = least;
-            out["maxItems"] = most;
-        }
-        return out;
-    };
+    codec.schema = lengths.schema(inner.schema, bool(inner.read));
     return codec;
 }
 

@@ -14,7 +14,7 @@ namespace tunewright::api {
 template <class T>
 class Description {
 public:
-    using Check = std::function<void(const Json&, T&, Reader&)>;
+    using Check = Callable<void(const Json&, T&, Reader&)>;
 
     Description(std::string_view name, std::string_view sentence) : members_(name, sentence) {}
 
@@ -30,21 +30,19 @@ public:
     requires std::is_base_of_v<Owner, T> Description& field(std::string_view name, M Owner::*member, Codec<M> codec,
                                                             std::string_view sentence,
                                                             const FieldOptions& options = {}) {
-        const T initial{};
-        const M* place = &(initial.*member);
+        const M* place = &(initial().*member);
         members_.add(name, sentence, options,
-                     reinterpret_cast<const char*>(place) - reinterpret_cast<const char*>(&initial),
-                     std::make_unique<CodecOf<M>>(std::move(codec)), place);
+                     reinterpret_cast<const char*>(place) - reinterpret_cast<const char*>(&initial()),
+                     codec_of(std::move(codec)), place);
         return *this;
     }
 
     /// A member whose meaning depends on its neighbours. `read` may be empty (answers), `write` too (requests).
-    Description& field(std::string_view name, Check read, std::function<void(const T&, Writer&)> write,
-                       std::function<Json(SchemaBook&)> schema, std::string_view sentence,
-                       const FieldOptions& options = {}, std::function<bool(const T&)> skip = {}) {
+    Description& field(std::string_view name, Check read, Callable<void(const T&, Writer&)> write,
+                       Callable<Json(SchemaBook&)> schema, std::string_view sentence, const FieldOptions& options = {},
+                       Callable<bool(const T&)> skip = {}) {
         members_.add(name, sentence, options,
-                     std::make_unique<CodecOf<T>>(
-                         Codec<T>{std::move(read), std::move(write), std::move(schema), std::move(skip), {}, {}}));
+                     codec_of(Codec<T>{std::move(read), std::move(write), std::move(schema), std::move(skip)}));
         return *this;
     }
 
@@ -95,6 +93,11 @@ public:
     Json schema(SchemaBook& book) const { return members_.schema(book); }
 
 private:
+    static const T& initial() {
+        static const T value{};
+        return value;
+    }
+
     Members members_;
     std::vector<Check> checks_, presence_;
 };

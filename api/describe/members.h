@@ -60,6 +60,11 @@ private:
     Codec<M> codec_;
 };
 
+template <class M>
+std::unique_ptr<const AnyCodec> codec_of(Codec<M>&& codec) {
+    return std::unique_ptr<const AnyCodec>(new CodecOf<M>(std::move(codec)));
+}
+
 class Members {
 public:
     Members(std::string_view name, std::string_view sentence);

@@ -21,7 +21,7 @@ public:
 
     /// Alternatives of one word are tried in order: the first whose `matches` holds (empty: always) is taken.
     template <class T>
-    Union& alternative(const Description<T>& description, std::function<bool(const Json&)> matches = {}) {
+    Union& alternative(const Description<T>& description, Callable<bool(const Json&)> matches = {}) {
         const Description<T>* what = &description;
         if (words_.empty() || words_.back() != what->tag_value()) words_.push_back(what->tag_value());
         alternatives_.push_back({what->tag_value(), std::move(matches),
@@ -106,22 +106,22 @@ public:
 private:
     struct Alternative {
         std::string word;
-        std::function<bool(const Json&)> matches;
-        std::function<void(const Json&, V&, Reader&)> read;
-        std::function<Json(SchemaBook&)> schema;
+        Callable<bool(const Json&)> matches;
+        Callable<void(const Json&, V&, Reader&)> read;
+        Callable<Json(SchemaBook&)> schema;
     };
 
     struct Included {
         std::vector<std::string> words;
-        std::function<void(const Json&, V&, Reader&)> read;
-        std::function<Json(SchemaBook&)> schema;
+        Callable<void(const Json&, V&, Reader&)> read;
+        Callable<Json(SchemaBook&)> schema;
     };
 
     std::string name_, sentence_, tag_, otherwise_;
     std::vector<std::string> words_;
     std::vector<Alternative> alternatives_;
     std::vector<Included> included_;
-    std::vector<std::function<void(const V&, Writer&)>> writers_;
+    std::vector<Callable<void(const V&, Writer&)>> writers_;
     std::vector<std::pair<std::string, std::string>> refused_;
 };
 

@@ -1,7 +1,6 @@
 // What methods tell beside their controllers, as entries carry it: one contract file a report, listed in reports.cpp.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,9 +12,9 @@ namespace tunewright::api {
 struct ReportContract {
     std::string field;     ///< of the entry
     std::string sentence;  ///< what it is
-    std::function<bool(const MethodReport&)> is;
-    std::function<void(const MethodReport&, Writer&)> write;
-    std::function<Json(SchemaBook&)> schema;
+    Callable<bool(const MethodReport&)> is;
+    Callable<void(const MethodReport&, Writer&)> write;
+    Callable<Json(SchemaBook&)> schema;
     bool last = false;  ///< stands at the entry's end, after the comparison with the optimum
 };
 

@@ -1,7 +1,5 @@
 #include "api/contract/result/result.h"
 
-#include <functional>
-
 #include "api/contract/built/built.h"
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
@@ -135,7 +133,7 @@ const Description<OperatingPoint>& operating_point_contract() {
 
 // The fields operating_point and linear_model of an answer; left out where `of` gives null.
 template <class Answer>
-void add_operating_point(Description<Answer>& d, std::function<const OperatingPoint*(const Answer&)> of) {
+void add_operating_point(Description<Answer>& d, Callable<const OperatingPoint*(const Answer&)> of) {
     const auto none = [of](const Answer& answer) { return of(answer) == nullptr; };
     d.field(
          "operating_point", {},

@@ -20,7 +20,14 @@ class TwoSteps {
 public:
     template <class Make>
     const Transition& over(double dt, const Make& make) {
-        if (same_step(dt, usual_dt_)) return usual_;
+        if (same_step(dt, usual_dt_)) [[likely]]
+            return usual_;
+        return unusual(dt, make);
+    }
+
+private:
+    template <class Make>
+    [[gnu::noinline]] const Transition& unusual(double dt, const Make& make) {
         if (same_step(dt, other_dt_)) {
             std::swap(usual_dt_, other_dt_);
             std::swap(usual_, other_);
@@ -31,51 +38,62 @@ public:
         return other_;
     }
 
-private:
     double usual_dt_ = -1, other_dt_ = -1;
     Transition usual_{}, other_{};
 };
 
-/// T x' + x = v.
+// Each system keeps how far its state is from the rest under the input: a step is then a product alone, which the next
+// one waits for. `enter` gives the input that holds from now on.
+
+/// T x' + x = v; e = x - v.
 struct Lag {
-    double T, x = 0;
+    double T, v = 0, e = 0;
     TwoSteps<double> decay = {};
 
-    void advance(double dt, double v) {
-        x = v + (x - v) * decay.over(dt, [&](double step) { return std::exp(-step / T); });
+    void enter(double input) {
+        e += v - input;
+        v = input;
     }
-    double value() const { return x; }
-    double slope(double v) const { return (v - x) / T; }
-    double curvature(double v) const { return -slope(v) / T; }
+    void advance(double dt) {
+        e *= decay.over(dt, [&](double step) { return std::exp(-step / T); });
+    }
+    double value() const { return v + e; }
+    double slope() const { return -e / T; }
+    double curvature() const { return e / (T * T); }
 };
 
 /// x' = v.
 struct Integrator {
-    double x = 0;
+    double v = 0, x = 0;
 
-    void advance(double dt, double v) { x += v * dt; }
+    void enter(double input) { v = input; }
+    void advance(double dt) { x += v * dt; }
     double value() const { return x; }
-    double slope(double v) const { return v; }
-    double curvature(double) const { return 0; }
+    double slope() const { return v; }
+    double curvature() const { return 0; }
 };
 
-/// x' = l, T l' + l = v.
+/// x' = l, T l' + l = v; e = l - v.
 struct LaggedIntegrator {
-    double T, x = 0, l = 0;
+    double T, v = 0, x = 0, e = 0;
     TwoSteps<double> changes = {};
 
-    void advance(double dt, double v) {
-        const double change = changes.over(dt, [&](double step) { return std::expm1(-step / T); });
-        x += v * dt - (l - v) * T * change;
-        l += (l - v) * change;
+    void enter(double input) {
+        e += v - input;
+        v = input;
+    }
+    void advance(double dt) {
+        const double change = e * changes.over(dt, [&](double step) { return std::expm1(-step / T); });
+        x += v * dt - T * change;
+        e += change;
     }
     double value() const { return x; }
-    double slope(double) const { return l; }
-    double curvature(double v) const { return (v - l) / T; }
+    double slope() const { return v + e; }
+    double curvature() const { return -e / T; }
 };
 
-/// a2 x'' + a1 x' + x = v. The transition matrix over dt in closed form, through the roots -sigma +- w (real) or -sigma
-/// +- i w.
+/// a2 x'' + a1 x' + x = v; e = x - v. The transition matrix over dt in closed form, through the roots -sigma +- w
+/// (real) or -sigma +- i w.
 class SecondOrder {
 public:
     SecondOrder(double a1, double a2) : a1_(a1), a2_(a2), sigma_(a1 / (2 * a2)) {
@@ -89,20 +107,24 @@ public:
         slow_ = 1 / (a2 * fast_);
     }
 
-    void advance(double dt, double v) {
+    void enter(double input) {
+        e_ += v_ - input;
+        v_ = input;
+    }
+    void advance(double dt) {
         const Turn& turn = turns_.over(dt, [&](double step) { return turn_over(step); });
-        const double e = x_ - v, e1 = x1_;
-        x_ = v + turn.xx * e + turn.sine * e1;
+        const double e = e_, e1 = x1_;
+        e_ = turn.xx * e + turn.sine * e1;
         x1_ = turn.dx * e + turn.dd * e1;
     }
-    double value() const { return x_; }
-    double slope(double) const { return x1_; }
-    double curvature(double v) const { return (v - x_ - a1_ * x1_) / a2_; }
+    double value() const { return v_ + e_; }
+    double slope() const { return x1_; }
+    double curvature() const { return -(e_ + a1_ * x1_) / a2_; }
 
 private:
     enum class Kind { real, equal, complex };
 
-    /// The transition matrix [xx, sine; dx, dd] of (x - v, x').
+    /// The transition matrix [xx, sine; dx, dd] of (e, x').
     struct Turn {
         double xx = 1, sine = 0, dx = 0, dd = 1;
     };
@@ -130,7 +152,7 @@ private:
     double a1_, a2_, sigma_, w_ = 0, fast_ = 0, slow_ = 0;
     Kind kind_ = Kind::real;
     TwoSteps<Turn> turns_;
-    double x_ = 0, x1_ = 0;
+    double v_ = 0, e_ = 0, x1_ = 0;
 };
 
 /// x' = l, a2 l'' + a1 l' + l = v, so that x is the integral of v less a1 l + a2 l'.
@@ -138,18 +160,22 @@ class IntegratedSecondOrder {
 public:
     IntegratedSecondOrder(double a1, double a2) : a1_(a1), a2_(a2), l_(a1, a2) {}
 
-    void advance(double dt, double v) {
-        l_.advance(dt, v);
-        area_ += v * dt;
+    void enter(double input) {
+        l_.enter(input);
+        v_ = input;
     }
-    double value() const { return area_ - a1_ * l_.value() - a2_ * l_.slope(0); }
-    double slope(double) const { return l_.value(); }
-    double curvature(double) const { return l_.slope(0); }
+    void advance(double dt) {
+        l_.advance(dt);
+        area_ += v_ * dt;
+    }
+    double value() const { return area_ - a1_ * l_.value() - a2_ * l_.slope(); }
+    double slope() const { return l_.value(); }
+    double curvature() const { return l_.slope(); }
 
 private:
     double a1_, a2_;
     SecondOrder l_;
-    double area_ = 0;
+    double v_ = 0, area_ = 0;
 };
 
 /// T3 x' + x = l, a2 l'' + a1 l' + l = v. The state is (l, l' sqrt(a2), x) less its rest under v.
@@ -160,14 +186,16 @@ public:
         A_ << 0, w, 0, -w, -a1 / a2, 0, 1 / T3, 0, -1 / T3;
     }
 
-    void advance(double dt, double v) {
-        const Eigen::Matrix3d& turn = turns_.over(dt, [&](double step) { return exponential(A_ * step); });
-        const Eigen::Vector3d rest(v, 0, v);
-        state_ = rest + turn * (state_ - rest);
+    void enter(double input) {
+        state_ += Eigen::Vector3d(v_ - input, 0, v_ - input);
+        v_ = input;
     }
-    double value() const { return state_[2]; }
-    double slope(double) const { return (state_[0] - state_[2]) / T3_; }
-    double curvature(double) const { return (A_(0, 1) * state_[1] - slope(0)) / T3_; }
+    void advance(double dt) {
+        state_ = turns_.over(dt, [&](double step) { return exponential(A_ * step); }) * state_;
+    }
+    double value() const { return v_ + state_[2]; }
+    double slope() const { return (state_[0] - state_[2]) / T3_; }
+    double curvature() const { return (A_(0, 1) * state_[1] - slope()) / T3_; }
 
 private:
     /// By Taylor's series of a part so short that its norm is below 1/2, squared back; the terms end below 1e-17.
@@ -183,7 +211,7 @@ private:
         return sum;
     }
 
-    double T3_;
+    double T3_, v_ = 0;
     Eigen::Matrix3d A_;
     TwoSteps<Eigen::Matrix3d> turns_;
     Eigen::Vector3d state_ = Eigen::Vector3d::Zero();
@@ -191,21 +219,21 @@ private:
 
 template <int kDerivatives, class System>
 void run(std::span<const double> times, const InputSteps& input, double L, System system, UnitResponse& out) {
-    double now = 0, v = 0;
+    double now = 0;
     std::size_t j = 0;
     for (std::size_t i = 0; i < times.size(); ++i) {
         const double t = times[i];
         for (; j < input.time.size() && input.time[j] + L <= t; ++j) {
             const double event = input.time[j] + L;
-            if (event > now) system.advance(event - now, v);
+            if (event > now) system.advance(event - now);
             now = event;
-            v = input.level[j];
+            system.enter(input.level[j]);
         }
-        if (t > now) system.advance(t - now, v);
+        if (t > now) system.advance(t - now);
         now = t;
         out.x[i] = system.value();
-        if constexpr (kDerivatives > 0) out.x1[i] = system.slope(v);
-        if constexpr (kDerivatives > 1) out.x2[i] = system.curvature(v);
+        if constexpr (kDerivatives > 0) out.x1[i] = system.slope();
+        if constexpr (kDerivatives > 1) out.x2[i] = system.curvature();
     }
 }
 

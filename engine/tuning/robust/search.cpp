@@ -14,6 +14,7 @@ namespace {
 constexpr double kResonant = 0.4;          // damping of a pair below which a plant may have several valleys
 constexpr double kShortTd = 0.1;           // times 1/reference: below it the cost hardly depends on ln Td
 constexpr double kSameDesign = 0.02;       // of each logarithm
+constexpr double kSameValley = 0.1;        // of each logarithm: a rough run that comes so near to an end goes there
 constexpr double kHopeless = 0.7;          // of ln of the cost: a start so much dearer than the best is left out
 constexpr double kRoughTolerance = 3e-3;   // of ln of the cost: of a run that only shows how deep a valley is
 constexpr double kWorthFollowing = 0.02;   // of ln of the cost: so much dearer a valley may still be the deepest
@@ -74,7 +75,7 @@ public:
     void explore(const std::optional<Candidate>& start) {
         if (!start || stopped()) return;
         const double before = best_ ? best_->log_cost : kNoDesign;
-        const SqpResult rough = run(*start, kRoughTolerance);
+        const SqpResult rough = run(*start, kRoughTolerance, kSameValley);
         if (stopped() || !rough.converged || rough.log_cost > before + kWorthFollowing) return;
         ends_.pop_back();
         run({rough.x, rough.log_cost, rough.stable}, SqpOptions{}.cost_tolerance);
@@ -94,12 +95,12 @@ public:
     const std::optional<Found>& best() const { return best_; }
 
 private:
-    SqpResult run(const Candidate& start, double cost_tolerance) {
+    SqpResult run(const Candidate& start, double cost_tolerance, double same = kSameDesign) {
         bool stop = false;
         const Report watch = [&](const DesignPoint& x, double cost) {
             stop =
                 report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
-            return !stop && !known(x);
+            return !stop && !known(x, same);
         };
         const SqpOptions options{.cost_tolerance = cost_tolerance, .stable_start = start.stable};
         const SqpResult result = minimise(sweep_, problem_, start.x, options, watch);
@@ -135,10 +136,10 @@ private:
         best_->stopped = stop;
     }
 
-    bool known(const DesignPoint& x) const {
+    bool known(const DesignPoint& x, double same) const {
         return std::ranges::any_of(ends_, [&](const DesignPoint& end) {
             for (std::size_t i = 0; i < 3; ++i)
-                if (std::abs(x[i] - end[i]) > kSameDesign) return false;
+                if (std::abs(x[i] - end[i]) > same) return false;
             return true;
         });
     }

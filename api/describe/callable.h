@@ -7,7 +7,7 @@
 
 namespace tunewright::api {
 
-/// What a callable captured, shared by its copies.
+/// What a callable captured, shared by its copies. Compiled once, in codec.cpp.
 class Captured {
 public:
     Captured() = default;

@@ -50,13 +50,6 @@ std::string broken_rule(double value, const NumberRule& rule) {
 
 }  // namespace
 
-Captured::Captured(const void* state, void (*destroy)(const void*)) : state_(state, destroy) {}
-Captured::Captured(const Captured&) noexcept = default;
-Captured::Captured(Captured&&) noexcept = default;
-Captured& Captured::operator=(const Captured&) noexcept = default;
-Captured& Captured::operator=(Captured&&) noexcept = default;
-Captured::~Captured() = default;
-
 std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader) {
     const std::string what = value.is_null()         ? "null"
                              : value.is_structured() ? kind_of(value)

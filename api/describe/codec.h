@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "api/describe/callable.h"
 #include "api/describe/reader.h"
 #include "api/describe/suggest.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "engine/callable.h"
 #include "engine/figure.h"
 
 namespace tunewright::api {

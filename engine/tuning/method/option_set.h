@@ -3,7 +3,6 @@
 #pragma once
 
 #include <complex>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/callable.h"
 #include "engine/tuning/method/options.h"
 
 namespace tunewright {
@@ -237,9 +237,9 @@ public:
 
 private:
     struct Binding {
-        std::function<void(const MethodOptions&, const std::string& prefix, T&)> read;
+        Callable<void(const MethodOptions&, const std::string& prefix, T&)> read;
         /// Empty: given_for() leaves the member out.
-        std::function<void(const T& value, const T& other, MethodOptions&)> write = {};
+        Callable<void(const T& value, const T& other, MethodOptions&)> write = {};
     };
 
     static OptionDescription described(OptionType type, const std::string& name, const std::string& sentence,

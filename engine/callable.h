@@ -1,22 +1,28 @@
-// A function of a known signature with what it captured. The contract's descriptions hold hundreds of these, each of a
-// type of its own; they cost a third of the compile time of std::function.
+// A function of a known signature with what it captured. Descriptions of options and of the contract hold hundreds of
+// these, each of a type of its own; they cost a third of the compile time of std::function.
 #pragma once
 
 #include <memory>
 #include <utility>
 
-namespace tunewright::api {
+namespace tunewright {
 
-/// What a callable captured, shared by its copies. Compiled once, in codec.cpp.
+/// What a callable captured, shared by its copies. Never inlined: they are copied where descriptions are put together.
 class Captured {
 public:
     Captured() = default;
-    Captured(const void* state, void (*destroy)(const void*));
-    Captured(const Captured&) noexcept;
-    Captured(Captured&&) noexcept;
-    Captured& operator=(const Captured&) noexcept;
-    Captured& operator=(Captured&&) noexcept;
-    ~Captured();
+    [[gnu::noinline]] Captured(const void* state, void (*destroy)(const void*)) : state_(state, destroy) {}
+    [[gnu::noinline]] Captured(const Captured& other) noexcept : state_(other.state_) {}
+    [[gnu::noinline]] Captured(Captured&& other) noexcept : state_(std::move(other.state_)) {}
+    [[gnu::noinline]] Captured& operator=(const Captured& other) noexcept {
+        state_ = other.state_;
+        return *this;
+    }
+    [[gnu::noinline]] Captured& operator=(Captured&& other) noexcept {
+        state_ = std::move(other.state_);
+        return *this;
+    }
+    [[gnu::noinline]] ~Captured() {}
 
     const void* get() const { return state_.get(); }
 
@@ -53,4 +59,4 @@ private:
     Captured captured_;
 };
 
-}  // namespace tunewright::api
+}  // namespace tunewright

@@ -45,6 +45,10 @@ private:
 // Each system keeps how far its state is from the rest under the input: a step is then a product alone, which the next
 // one waits for. `enter` gives the input that holds from now on.
 
+/// Of a state: smaller than this it is at rest. Left to decay it would end among denormal numbers, a hundred times as
+/// slow, and never leave them.
+constexpr double kAtRest = 1e-250;
+
 /// T x' + x = v; e = x - v.
 struct Lag {
     double T, v = 0, e = 0;
@@ -56,6 +60,7 @@ struct Lag {
     }
     void advance(double dt) {
         e *= decay.over(dt, [&](double step) { return std::exp(-step / T); });
+        if (std::abs(e) < kAtRest) e = 0;
     }
     double value() const { return v + e; }
     double slope() const { return -e / T; }
@@ -86,6 +91,7 @@ struct LaggedIntegrator {
         const double change = e * changes.over(dt, [&](double step) { return std::expm1(-step / T); });
         x += v * dt - T * change;
         e += change;
+        if (std::abs(e) < kAtRest) e = 0;
     }
     double value() const { return x; }
     double slope() const { return v + e; }
@@ -116,6 +122,7 @@ public:
         const double e = e_, e1 = x1_;
         e_ = turn.xx * e + turn.sine * e1;
         x1_ = turn.dx * e + turn.dd * e1;
+        if (std::abs(e_) < kAtRest && std::abs(x1_) < kAtRest) e_ = x1_ = 0;
     }
     double value() const { return v_ + e_; }
     double slope() const { return x1_; }
@@ -192,6 +199,7 @@ public:
     }
     void advance(double dt) {
         state_ = turns_.over(dt, [&](double step) { return exponential(A_ * step); }) * state_;
+        if (state_.cwiseAbs().maxCoeff() < kAtRest) state_.setZero();
     }
     double value() const { return v_ + state_[2]; }
     double slope() const { return (state_[0] - state_[2]) / T3_; }

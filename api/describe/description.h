@@ -38,8 +38,8 @@ public:
     }
 
     /// A member whose meaning depends on its neighbours. `read` may be empty (answers), `write` too (requests).
-    Description& field(std::string_view name, Check read, Callable<void(const T&, Writer&)> write,
-                       Callable<Json(SchemaBook&)> schema, std::string_view sentence, const FieldOptions& options = {},
+    Description& field(std::string_view name, Check read, Callable<void(const T&, Writer&)> write, SchemaOf schema,
+                       std::string_view sentence, const FieldOptions& options = {},
                        Callable<bool(const T&)> skip = {}) {
         members_.add(name, sentence, options,
                      codec_of(Codec<T>{std::move(read), std::move(write), std::move(schema), std::move(skip)}));

@@ -108,13 +108,13 @@ private:
         std::string word;
         Callable<bool(const Json&)> matches;
         Callable<void(const Json&, V&, Reader&)> read;
-        Callable<Json(SchemaBook&)> schema;
+        SchemaOf schema;
     };
 
     struct Included {
         std::vector<std::string> words;
         Callable<void(const Json&, V&, Reader&)> read;
-        Callable<Json(SchemaBook&)> schema;
+        SchemaOf schema;
     };
 
     std::string name_, sentence_, tag_, otherwise_;

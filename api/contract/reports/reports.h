@@ -14,7 +14,7 @@ struct ReportContract {
     std::string sentence;  ///< what it is
     Callable<bool(const MethodReport&)> is;
     Callable<void(const MethodReport&, Writer&)> write;
-    Callable<Json(SchemaBook&)> schema;
+    SchemaOf schema;
     bool last = false;  ///< stands at the entry's end, after the comparison with the optimum
 };
 

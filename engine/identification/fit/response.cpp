@@ -64,7 +64,7 @@ struct Lag {
     }
     double value() const { return v + e; }
     double slope() const { return -e / T; }
-    double curvature() const { return e / (T * T); }
+    double curvature() const { return -slope() / T; }
 };
 
 /// x' = v.
